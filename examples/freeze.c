@@ -43,24 +43,21 @@ struct freeze_type {
 
 const struct freeze_type freeze_knot =
     TYPE(exh_knot, F(exh_knot, x, I32), F(exh_knot, y, I32), F(exh_knot, slope, GAIN));
-const struct freeze_type freeze_quad =
-    TYPE(exh_quad_cfg, F(exh_quad_cfg, par, PAR), F(exh_quad_cfg, jump_cnt, I32),
-         F(exh_quad_cfg, unused, U8));
-const struct freeze_type freeze_velocity_window =
-    TYPE(exh_velocity_window_cfg, F(exh_velocity_window_cfg, gain, GAIN),
-         F(exh_velocity_window_cfg, n, U8));
-const struct freeze_type freeze_drive =
-    TYPE(exh_drive_cfg, F(exh_drive_cfg, par, PAR), F(exh_drive_cfg, force_to_cur, TABLE),
-         F(exh_drive_cfg, cur_to_force, TABLE), F(exh_drive_cfg, f_top_N_q20, I32),
-         F(exh_drive_cfg, tick_N_q20, GAIN), F(exh_drive_cfg, i2t_budget_q32, I64),
-         F(exh_drive_cfg, i2t_fold, GAIN), F(exh_drive_cfg, i2t_shift, U8),
-         F(exh_drive_cfg, dac_A_q26, GAIN));
+const struct freeze_type freeze_quad = TYPE(exh_quad_cfg, F(exh_quad_cfg, par, PAR),
+    F(exh_quad_cfg, jump_cnt, I32), F(exh_quad_cfg, unused, U8));
+const struct freeze_type freeze_velocity_window = TYPE(exh_velocity_window_cfg,
+    F(exh_velocity_window_cfg, gain, GAIN), F(exh_velocity_window_cfg, n, U8));
+const struct freeze_type freeze_drive = TYPE(exh_drive_cfg, F(exh_drive_cfg, par, PAR),
+    F(exh_drive_cfg, force_to_cur, TABLE), F(exh_drive_cfg, cur_to_force, TABLE),
+    F(exh_drive_cfg, f_top_N_q20, I32), F(exh_drive_cfg, tick_N_q20, GAIN),
+    F(exh_drive_cfg, i2t_budget_q32, I64), F(exh_drive_cfg, i2t_fold, GAIN),
+    F(exh_drive_cfg, i2t_shift, U8), F(exh_drive_cfg, dac_A_q26, GAIN));
 const struct freeze_type freeze_track =
     TYPE(exh_tracking_cfg, F(exh_tracking_cfg, tol_A_q26, I32), F(exh_tracking_cfg, ticks, U32));
 const struct freeze_type freeze_safety =
     TYPE(exh_safety_cfg, F(exh_safety_cfg, late_max, U32), F(exh_safety_cfg, small_N_q20, I32),
-         F(exh_safety_cfg, arm_ticks, U32), F(exh_safety_cfg, ramp_q30, I32),
-         F(exh_safety_cfg, release_ticks, U32), F(exh_safety_cfg, fall, GAIN));
+        F(exh_safety_cfg, arm_ticks, U32), F(exh_safety_cfg, ramp_q30, I32),
+        F(exh_safety_cfg, release_ticks, U32), F(exh_safety_cfg, fall, GAIN));
 
 static int nothing(const uint8_t *p, size_t len_B)
 {
@@ -174,13 +171,13 @@ static int period(const char *text, struct exh_period *T)
 static int usage(FILE *to, int status)
 {
     fprintf(to,
-            "usage: freeze RATE BITS\n"
-            "What the set-up of scene %s makes, as C, to stdout: %s/frozen.h says what for.\n"
-            "  RATE  of the loop: HZ, 1 .. 20000, or its period N/D in seconds, as the board's "
-            "timer makes it\n"
-            "  BITS  width of the board's counters, 16 .. 32\n"
-            "Exit status: 0 ok, 1 set-up refuses, 2 bad usage.\n",
-            freeze_scene->name, "examples");
+        "usage: freeze RATE BITS\n"
+        "What the set-up of scene %s makes, as C, to stdout: %s/frozen.h says what for.\n"
+        "  RATE  of the loop: HZ, 1 .. 20000, or its period N/D in seconds, as the board's "
+        "timer makes it\n"
+        "  BITS  width of the board's counters, 16 .. 32\n"
+        "Exit status: 0 ok, 1 set-up refuses, 2 bad usage.\n",
+        freeze_scene->name, "examples");
     return status;
 }
 
@@ -195,7 +192,7 @@ int main(int argc, char **argv)
     if (argc != 3) { return usage(stderr, 2); }
     if (!period(argv[1], &board.T)) {
         fprintf(stderr, "RATE: %s (1 .. 20000 Hz, or N/D s): give what the board's timer makes\n",
-                argv[1]);
+            argv[1]);
         return 2;
     }
     if (!number(argv[2], '\0', &bits, &rest) || bits < 16 || bits > 32) {
@@ -206,7 +203,7 @@ int main(int argc, char **argv)
     err = freeze_scene->setup(board);
     if (err < 0) {
         fprintf(stderr, "freeze: %s, %s, %s bits: %s\n", freeze_scene->name, argv[1], argv[2],
-                exh_error_text(err));
+            exh_error_text(err));
         return 1;
     }
     printf(

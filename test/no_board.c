@@ -25,7 +25,4 @@ int exh_board_link_recv(void *buf, size_t cap_B)
     return 0;
 }
 
-uint32_t exh_board_cycles(void)
-{
-    return 1;
-}
+uint32_t exh_board_cycles(void) { return 1; }

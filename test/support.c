@@ -37,8 +37,8 @@ void exh_fix_saturated(const char *file, int line);
 
 uint64_t check_count;
 uint32_t check_saturations;
-const int32_t check_corner[CHECK_CORNERS] = {INT32_MIN, INT32_MIN + 1, -65536,   -1, 0,
-                                             1,         65535,         INT32_MAX};
+const int32_t check_corner[CHECK_CORNERS] = {
+    INT32_MIN, INT32_MIN + 1, -65536, -1, 0, 1, 65535, INT32_MAX};
 
 static struct {
     const char *test; /* the one that runs */
@@ -164,7 +164,7 @@ static void print_again(void)
         print_error("    again: EXH_TEST=%s\n", run.test);
     } else {
         print_error("    again: EXH_TEST=%s EXH_SEED=%" PRIu64 " EXH_CASE=%" PRIu64 "\n", run.test,
-                    run.seed, run.next - 1);
+            run.seed, run.next - 1);
     }
 }
 
@@ -294,7 +294,7 @@ void check_failed(const char *file, int line, const char *cond, const char *fmt,
         check_line("    again: EXH_TEST=%s", run.test);
     } else {
         check_line("    again: EXH_TEST=%s EXH_SEED=%" PRIu64 " EXH_CASE=%" PRIu64, run.test,
-                   run.seed, run.next - 1);
+            run.seed, run.next - 1);
     }
 }
 

@@ -38,23 +38,17 @@ static inline struct wide wide_sub(struct wide a, struct wide b)
     return wide_add(a, wide_neg(b));
 }
 
-static inline int wide_negative(struct wide a)
-{
-    return (int)(a.hi >> 63);
-}
+static inline int wide_negative(struct wide a) { return (int)(a.hi >> 63); }
 
-static inline struct wide wide_abs(struct wide a)
-{
-    return wide_negative(a) ? wide_neg(a) : a;
-}
+static inline struct wide wide_abs(struct wide a) { return wide_negative(a) ? wide_neg(a) : a; }
 
 static inline struct wide wide_mulu(uint64_t a, uint64_t b)
 {
     const uint64_t al = a & UINT32_MAX, ah = a >> 32, bl = b & UINT32_MAX, bh = b >> 32;
     const uint64_t ll = al * bl, lh = al * bh, hl = ah * bl;
     const uint64_t mid = (ll >> 32) + (lh & UINT32_MAX) + (hl & UINT32_MAX);
-    const struct wide w = {ah * bh + (lh >> 32) + (hl >> 32) + (mid >> 32),
-                           mid << 32 | (ll & UINT32_MAX)};
+    const struct wide w = {
+        ah * bh + (lh >> 32) + (hl >> 32) + (mid >> 32), mid << 32 | (ll & UINT32_MAX)};
     return w;
 }
 

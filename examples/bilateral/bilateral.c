@@ -29,7 +29,7 @@ static void like_the_first(struct bilateral_cfg *cfg)
 }
 
 int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct bilateral_par *par,
-                    struct exh_scene_board board, struct exh_scene_calib *calib)
+    struct exh_scene_board board, struct exh_scene_calib *calib)
 {
     const uint64_t num = (uint64_t)board.T.num * (uint32_t)par->glove_own.every;
     int err;
@@ -40,11 +40,11 @@ int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct
     if (num > UINT32_MAX) { return -EXH_E_RATE; }
     /* Every value of both in range: no overflow. */
     cfg->rest_ticks = (uint32_t)exh_udiv64((uint64_t)(uint32_t)par->own.f0_rest_ms * board.T.den,
-                                           UINT64_C(1000) * board.T.num, NULL) +
+                          UINT64_C(1000) * board.T.num, NULL) +
                       1;
     glove_cal_of_rows(&cfg->cal, &par->glove_own, par->sensor);
-    err = exh_glove_setup(&cfg->glove, &par->glove, &cfg->cal,
-                          (struct exh_period){(uint32_t)num, board.T.den});
+    err = exh_glove_setup(
+        &cfg->glove, &par->glove, &cfg->cal, (struct exh_period){(uint32_t)num, board.T.den});
     cfg->vouches = EXH_ARM_CALIBRATION | EXH_ARM_POLARITY;
     for (unsigned k = 0; err == 0 && k < cfg->n; k++) {
         err = bilateral_finger_setup(cfg, s, k, board, calib);
@@ -81,8 +81,7 @@ static void see(struct bilateral *s, const struct bilateral_cfg *cfg, const stru
 
 /* Position and velocity of all fingers in use, by place; force by the monitor. */
 static void sense(struct bilateral *s, const struct bilateral_cfg *cfg,
-                  const struct exh_drive_in *in, struct bilateral_paper *p,
-                  struct exh_axis_now *now)
+    const struct exh_drive_in *in, struct bilateral_paper *p, struct exh_axis_now *now)
 {
     const unsigned n = bilateral_n(cfg);
     for (unsigned k = 0; k < n; k++) {
@@ -110,8 +109,8 @@ static uint32_t din_by_place(const struct bilateral_cfg *cfg, uint32_t din)
 }
 
 /* The gate's codes from places back to fingers. */
-static void out_by_finger(const struct bilateral_cfg *cfg, const struct exh_drive_out *placed,
-                          struct exh_drive_out *out)
+static void out_by_finger(
+    const struct bilateral_cfg *cfg, const struct exh_drive_out *placed, struct exh_drive_out *out)
 {
     out->enable = 0;
     out->alive = placed->alive;
@@ -136,13 +135,10 @@ static void tell_finger(struct bilateral_more *m, const struct bilateral_finger 
     m->let_go = exh_from_u32(p->let_go_n);
 }
 
-static int32_t at_most(uint32_t v)
-{
-    return v < INT32_MAX ? (int32_t)v : INT32_MAX;
-}
+static int32_t at_most(uint32_t v) { return v < INT32_MAX ? (int32_t)v : INT32_MAX; }
 
-static void tell_box(struct bilateral_box *b, const struct bilateral *s,
-                     const struct exh_scene_in *in)
+static void tell_box(
+    struct bilateral_box *b, const struct bilateral *s, const struct exh_scene_in *in)
 {
     const struct exh_wire_rx *rx = &s->wire.rx;
     b->state = s->safety.state;
@@ -177,9 +173,8 @@ static uint8_t steps_held(const struct bilateral_cfg *cfg)
 }
 
 void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
-                    const struct exh_scene_in *in, const struct exh_scene_mail *mail,
-                    struct exh_params *params, struct exh_drive_out *out,
-                    struct bilateral_signals *sig)
+    const struct exh_scene_in *in, const struct exh_scene_mail *mail, struct exh_params *params,
+    struct exh_drive_out *out, struct bilateral_signals *sig)
 {
     const unsigned n = bilateral_n(cfg);
     struct exh_axis_now now[BILATERAL_FINGERS];
@@ -202,7 +197,7 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
     for (unsigned k = 0; k < n; k++) {
         const unsigned f = bilateral_at(cfg, k);
         limits[k] = now[k].limits | bilateral_finger_feel(s, cfg, k, &permit, &i[k], &sig->paper[f],
-                                                          &sig->more[f].bits);
+                                        &sig->more[f].bits);
     }
     exh_gate_step(&s->safety, cfg->drive, n, i, limits, &placed);
     out_by_finger(cfg, &placed, out);
@@ -288,15 +283,9 @@ static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
     bilateral_tick(&state, &cfg, in, &mail_in, &params, out, &signals);
 }
 
-static void write_mail(void)
-{
-    bilateral_write(&state, &cfg, &signals, &mail_out);
-}
+static void write_mail(void) { bilateral_write(&state, &cfg, &signals, &mail_out); }
 
-static void state_bytes(struct exh_bytes *c)
-{
-    bilateral_bytes(c, &state);
-}
+static void state_bytes(struct exh_bytes *c) { bilateral_bytes(c, &state); }
 
 struct bilateral *bilateral_memory(struct bilateral_cfg **c)
 {
@@ -304,13 +293,10 @@ struct bilateral *bilateral_memory(struct bilateral_cfg **c)
     return &state;
 }
 
-struct exh_integrity *bilateral_guard(void)
-{
-    return &guard;
-}
+struct exh_integrity *bilateral_guard(void) { return &guard; }
 
-static const struct exh_scene_link wire = {exh_board_link_recv, exh_board_link_send, &mail_in,
-                                           &mail_out, write_mail};
+static const struct exh_scene_link wire = {
+    exh_board_link_recv, exh_board_link_send, &mail_in, &mail_out, write_mail};
 
 const struct exh_scene exh_scene_bilateral = {
     .name = "bilateral",

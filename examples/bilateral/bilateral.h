@@ -197,17 +197,16 @@ struct bilateral {
 /* Configuration from parameters, and of the calibrations that calib has of fingers in use (NULL:
  * none); cfg keeps pointers to par and to s. 0 or -EXH_E…. */
 int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct bilateral_par *par,
-                    struct exh_scene_board board, struct exh_scene_calib *calib);
+    struct exh_scene_board board, struct exh_scene_calib *calib);
 
 /* One tick; params: where packets stage what they ask for. */
 void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
-                    const struct exh_scene_in *in, const struct exh_scene_mail *mail,
-                    struct exh_params *params, struct exh_drive_out *out,
-                    struct bilateral_signals *sig);
+    const struct exh_scene_in *in, const struct exh_scene_mail *mail, struct exh_params *params,
+    struct exh_drive_out *out, struct bilateral_signals *sig);
 
 /* Behind it: the packets that go out. */
 void bilateral_write(struct bilateral *s, const struct bilateral_cfg *cfg,
-                     const struct bilateral_signals *sig, struct exh_scene_mail *out);
+    const struct bilateral_signals *sig, struct exh_scene_mail *out);
 
 void bilateral_bytes(struct exh_bytes *c, struct bilateral *s);
 
@@ -225,54 +224,53 @@ static inline unsigned bilateral_at(const struct bilateral_cfg *cfg, unsigned k)
 }
 
 /* The parts of the finger at a place. */
-static inline struct exh_axis bilateral_axis(struct bilateral *s, const struct bilateral_cfg *cfg,
-                                             unsigned k)
+static inline struct exh_axis bilateral_axis(
+    struct bilateral *s, const struct bilateral_cfg *cfg, unsigned k)
 {
     const unsigned f = bilateral_at(cfg, k);
     struct bilateral_finger *now = &s->finger[f];
     const struct bilateral_finger_cfg *c = &cfg->finger[f];
-    return (struct exh_axis){&now->quad, &c->quad,    &now->velocity, &c->velocity, &now->watch,
-                             &c->watch,  &now->track, &c->track,      &now->drive,  &cfg->drive[k]};
+    return (struct exh_axis){&now->quad, &c->quad, &now->velocity, &c->velocity, &now->watch,
+        &c->watch, &now->track, &c->track, &now->drive, &cfg->drive[k]};
 }
 
 /* --- parts (finger.c, wire.c, trace.c) --- */
 
 int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsigned place,
-                           struct exh_scene_board board, struct exh_scene_calib *calib);
+    struct exh_scene_board board, struct exh_scene_calib *calib);
 void bilateral_wire_setup(struct bilateral_wire_cfg *cfg, struct bilateral_wire *s,
-                          uint32_t session, struct exh_period T);
+    uint32_t session, struct exh_period T);
 void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
-                         const struct exh_scene_mail *in, uint32_t missed,
-                         struct exh_params *params);
+    const struct exh_scene_mail *in, uint32_t missed, struct exh_params *params);
 void bilateral_wire_bytes(struct exh_bytes *c, struct bilateral_wire *s);
 /* One packet, if there is room. */
-void bilateral_wire_put(struct bilateral_wire *w, struct exh_scene_mail *out,
-                        struct exh_wire_packet *p);
+void bilateral_wire_put(
+    struct bilateral_wire *w, struct exh_scene_mail *out, struct exh_wire_packet *p);
 /* Nobody has asked, or who did has gone. */
 void bilateral_trace_stop(struct bilateral_trace *t);
 void bilateral_trace_ask(struct bilateral_trace *t, const struct exh_wire_packet *p);
 /* Behind a tick: its frame, and one packet at most. */
-void bilateral_trace_write(struct bilateral *s, const struct bilateral_signals *sig,
-                           struct exh_scene_mail *out);
+void bilateral_trace_write(
+    struct bilateral *s, const struct bilateral_signals *sig, struct exh_scene_mail *out);
 void bilateral_trace_bytes(struct exh_bytes *c, struct bilateral_trace *t);
 void bilateral_finger_bytes(struct exh_bytes *c, struct bilateral_finger *s);
 
 /* The age of what is known of where it is; UINT32_MAX: nothing, as one of its sensors is not
  * believed: held angles make a distance that is not. */
-uint32_t bilateral_finger_age(const struct bilateral *s, const struct bilateral_cfg *cfg,
-                              unsigned f);
+uint32_t bilateral_finger_age(
+    const struct bilateral *s, const struct bilateral_cfg *cfg, unsigned f);
 /* Of the box, behind link and glove: enum exh_fault. */
 int bilateral_cause_setup(struct bilateral_cfg *cfg, struct exh_period T);
-uint32_t bilateral_causes(struct bilateral *s, const struct bilateral_cfg *cfg,
-                          const struct exh_scene_in *in);
+uint32_t bilateral_causes(
+    struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_scene_in *in);
 
 /* From the newest glove frame. */
 void bilateral_finger_see(struct bilateral_finger *s, const struct bilateral_cfg *cfg, unsigned f,
-                          const int32_t *angle_turn_q32);
+    const int32_t *angle_turn_q32);
 /* Position to force and current. Returns limit bits. */
 uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *cfg, unsigned place,
-                               const struct exh_permit *permit, struct exh_current_ledger *i,
-                               struct bilateral_paper *p, int32_t *bits);
+    const struct exh_permit *permit, struct exh_current_ledger *i, struct bilateral_paper *p,
+    int32_t *bits);
 
 /* Stages a calibration in the scene's parameters, between defaults() and set-up: 0, or
  * -EXH_E_RANGE with *bad (may be NULL). */

@@ -41,8 +41,8 @@ static int glove_lost(struct bilateral *s, const struct bilateral_cfg *cfg, uint
     return cfg->glove_ticks != 0 && s->unsure_ticks >= cfg->glove_ticks;
 }
 
-uint32_t bilateral_causes(struct bilateral *s, const struct bilateral_cfg *cfg,
-                          const struct exh_scene_in *in)
+uint32_t bilateral_causes(
+    struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_scene_in *in)
 {
     const int glove = glove_lost(s, cfg, in->missed);
     const int supply = exh_supply_step(&s->supply, &cfg->supply, in->drive.supply_raw, in->missed);

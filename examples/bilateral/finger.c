@@ -13,23 +13,22 @@ static uint32_t sensors_of(const struct exh_hand_map *map, unsigned f)
     return mask;
 }
 
-uint32_t bilateral_finger_age(const struct bilateral *s, const struct bilateral_cfg *cfg,
-                              unsigned f)
+uint32_t bilateral_finger_age(
+    const struct bilateral *s, const struct bilateral_cfg *cfg, unsigned f)
 {
     return s->glove_faults & cfg->finger[f].sensors ? UINT32_MAX : s->glove_age_ticks;
 }
 
 int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsigned place,
-                           struct exh_scene_board board, struct exh_scene_calib *calib)
+    struct exh_scene_board board, struct exh_scene_calib *calib)
 {
     const unsigned f = cfg->at[place];
     const struct bilateral_par *par = cfg->par;
     const struct exh_drive_par *drive = &par->drive[f];
     struct bilateral_finger_cfg *c = &cfg->finger[f];
     const struct exh_calib_finger finger = {f, drive, par->kf_NpA_q20[f]};
-    const struct exh_axis_setup parts = {
-        &c->quad,       &par->quad[f], &c->velocity,   &par->velocity[f],  &c->watch,
-        &par->watch[f], &c->track,     &par->track[f], &cfg->drive[place], &s->drive_now[f]};
+    const struct exh_axis_setup parts = {&c->quad, &par->quad[f], &c->velocity, &par->velocity[f],
+        &c->watch, &par->watch[f], &c->track, &par->track[f], &cfg->drive[place], &s->drive_now[f]};
     int err;
 
     s->drive_now[f] = *drive;
@@ -37,19 +36,19 @@ int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsig
     err = exh_calib_set_tables(&c->calib, calib, &par->calib, &finger);
     if (err == 0) {
         err = exh_axis_setup(&parts, board.T, board.enc_bits, exh_calib_to_cur(&c->calib),
-                             exh_calib_to_force(&c->calib));
+            exh_calib_to_force(&c->calib));
     }
     if (err == 0) { err = exh_hand_setup(&c->hand, &exh_hit2_bones[f], &par->hand[f]); }
     if (err == 0) { err = exh_hand_couple(&c->hand, &exh_hit2_map, f); }
     if (err == 0) {
         err = exh_precontact_setup(&c->precontact, &par->precontact[f], par->material,
-                                   BILATERAL_MATERIALS, par->hand[f].pad_m_q30, board.T);
+            BILATERAL_MATERIALS, par->hand[f].pad_m_q30, board.T);
     }
     return err;
 }
 
 void bilateral_finger_see(struct bilateral_finger *s, const struct bilateral_cfg *cfg, unsigned f,
-                          const int32_t *angle_turn_q32)
+    const int32_t *angle_turn_q32)
 {
     s->clamped = (uint8_t)exh_hand_joints(&exh_hit2_map, f, angle_turn_q32, s->joint_turn_q32);
     if (cfg->par->precontact[f].from_slope) {
@@ -64,13 +63,13 @@ void bilateral_finger_see(struct bilateral_finger *s, const struct bilateral_cfg
 
 /* The law and the drive with the material of the plane that is frozen. Else there is no contact,
  * and the drive's own limit holds: it is there since the tick's beginning, with all others. */
-static struct exh_contact_par touch(struct bilateral *s, const struct bilateral_cfg *cfg,
-                                    unsigned f)
+static struct exh_contact_par touch(
+    struct bilateral *s, const struct bilateral_cfg *cfg, unsigned f)
 {
     const struct exh_precontact *p = &s->finger[f].precontact;
     const struct exh_contact_par *own = &cfg->par->contact[f];
     const struct exh_contact_par law = {p->taken.k_Npm_q10, p->taken.b_Nspm_q20, own->f0_N_q20,
-                                        own->f0_band_m_q30, own->hyst_m_q30};
+        own->f0_band_m_q30, own->hyst_m_q30};
     struct exh_drive_par *drive = &s->drive_now[f];
     if (p->phase == EXH_PRECONTACT_FROZEN && p->taken.f_max_N_q20 < drive->f_max_N_q20) {
         drive->f_max_N_q20 = p->taken.f_max_N_q20;
@@ -95,13 +94,13 @@ static void wind_in(struct bilateral_finger *s, uint32_t rest_ticks)
 }
 
 uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *cfg, unsigned place,
-                               const struct exh_permit *permit, struct exh_current_ledger *i,
-                               struct bilateral_paper *p, int32_t *bits)
+    const struct exh_permit *permit, struct exh_current_ledger *i, struct bilateral_paper *p,
+    int32_t *bits)
 {
     const unsigned f = bilateral_at(cfg, place);
     struct bilateral_finger *now = &s->finger[f];
     const struct exh_precontact_in where = {now->tip_m_q30, now->slope_q24, p->q_m_q30,
-                                            bilateral_finger_age(s, cfg, f), now->contact.touching};
+        bilateral_finger_age(s, cfg, f), now->contact.touching};
     struct exh_contact_in q = {p->q_m_q30, p->qd_mps_q27, 0};
     struct exh_contact_par law;
     struct exh_force_ledger force;

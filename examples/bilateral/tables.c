@@ -5,25 +5,25 @@
 
 static const struct exh_signal kf_rows[] = {
     {0x8601, EXH_Q_FORCE, EXH_WHEN_SETUP, EXH_Q(1, 10, EXH_Q_FORCE), EXH_Q(100, 1, EXH_Q_FORCE),
-     EXH_Q(3339, 1000, EXH_Q_FORCE), "kf", "n_per_a",
-     "string force per motor current, without a calibration"},
+        EXH_Q(3339, 1000, EXH_Q_FORCE), "kf", "n_per_a",
+        "string force per motor current, without a calibration"},
 };
 
 static const struct exh_signal own_rows[] = {
     {0x8610, 0, EXH_WHEN_SETUP, 1, MASK, 1 << EXH_INDEX, "fingers", "",
-     "in use, bits: 1 thumb .. 16 little"},
+        "in use, bits: 1 thumb .. 16 little"},
     {0x8611, 0, EXH_WHEN_ANY, 1, 10000, 5, "state_every", "",
-     "ticks from one state packet to the next"},
+        "ticks from one state packet to the next"},
     {0x8612, 0, EXH_WHEN_SETUP, 0, INT32_MAX, 0, "session", "",
-     "of the link, another at every start; 0: of the board's cycle counter"},
+        "of the link, another at every start; 0: of the board's cycle counter"},
     {0x8613, 0, EXH_WHEN_ANY, 100, 60000, 1000, "quiet", "ms",
-     "nothing heard for so long: any hello begins anew"},
+        "nothing heard for so long: any hello begins anew"},
     {0x8614, 0, EXH_WHEN_SETUP, 1, 60000, 20, "f0_rest", "ms",
-     "a string that runs out no farther for so long is wound in"},
+        "a string that runs out no farther for so long is wound in"},
     {0x8615, 0, EXH_WHEN_SETUP, 0, 60000, 1000, "glove_time", "ms",
-     "nothing known of a finger in use for so long: a fault; 0: never"},
+        "nothing known of a finger in use for so long: a fault; 0: never"},
     {0x8616, 0, EXH_WHEN_SETUP, 0, 60000, 0, "link_time", "ms",
-     "no planes for so long: a fault; 0: never, contacts are local"},
+        "no planes for so long: a fault; 0: never, contacts are local"},
 };
 
 #define OUT(id, frac, min, max, name, unit, help) \
@@ -127,16 +127,14 @@ static const struct exh_signal_group output_groups[] = {
 const struct exh_signal_table bilateral_outputs = {output_groups, LEN(output_groups)};
 
 EXH_STATIC_ASSERT(bilateral_par_matches_rows,
-                  sizeof(struct bilateral_par) ==
-                      sizeof(int32_t) *
-                          (BILATERAL_FINGERS *
-                               (EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS +
-                                EXH_DRIVE_ROWS + EXH_TRACKING_ROWS + EXH_MOTION_ROWS +
-                                LEN(kf_rows) + EXH_HAND_ROWS + EXH_PRECONTACT_ROWS) +
-                           BILATERAL_MATERIALS * EXH_MATERIAL_ROWS + EXH_SAFETY_ROWS +
-                           EXH_SUPPLY_ROWS + EXH_GLOVE_ROWS + LEN(own_rows) + EXH_CALIB_SET_ROWS +
-                           GLOVE_OWN_ROWS + GLOVE_CAL_ROWS * EXH_GLOVE_SENSORS + EXH_TUNE_ROWS));
+    sizeof(struct bilateral_par) ==
+        sizeof(int32_t) *
+            (BILATERAL_FINGERS * (EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS +
+                                     EXH_DRIVE_ROWS + EXH_TRACKING_ROWS + EXH_MOTION_ROWS +
+                                     LEN(kf_rows) + EXH_HAND_ROWS + EXH_PRECONTACT_ROWS) +
+                BILATERAL_MATERIALS * EXH_MATERIAL_ROWS + EXH_SAFETY_ROWS + EXH_SUPPLY_ROWS +
+                EXH_GLOVE_ROWS + LEN(own_rows) + EXH_CALIB_SET_ROWS + GLOVE_OWN_ROWS +
+                GLOVE_CAL_ROWS * EXH_GLOVE_SENSORS + EXH_TUNE_ROWS));
 EXH_STATIC_ASSERT(bilateral_signals_match_rows,
-                  sizeof(struct bilateral_signals) ==
-                      sizeof(int32_t) *
-                          (BILATERAL_FINGERS * (LEN(paper_rows) + LEN(more_rows)) + LEN(box_rows)));
+    sizeof(struct bilateral_signals) ==
+        sizeof(int32_t) * (BILATERAL_FINGERS * (LEN(paper_rows) + LEN(more_rows)) + LEN(box_rows)));

@@ -85,8 +85,8 @@ static void put_frames(struct bilateral_wire *w, struct exh_scene_mail *out, uin
     t->answer = 0;
 }
 
-void bilateral_trace_write(struct bilateral *s, const struct bilateral_signals *sig,
-                           struct exh_scene_mail *out)
+void bilateral_trace_write(
+    struct bilateral *s, const struct bilateral_signals *sig, struct exh_scene_mail *out)
 {
     struct bilateral_trace *t = &s->wire.trace;
     uint32_t n;

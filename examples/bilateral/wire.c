@@ -7,8 +7,8 @@
 #define HELLO_THEN     128u
 #define US_Q           20
 
-void bilateral_wire_setup(struct bilateral_wire_cfg *cfg, struct bilateral_wire *s,
-                          uint32_t session, struct exh_period T)
+void bilateral_wire_setup(
+    struct bilateral_wire_cfg *cfg, struct bilateral_wire *s, uint32_t session, struct exh_period T)
 {
     uint64_t rest;
     const uint64_t whole_us = exh_udiv64(UINT64_C(1000000) * T.num, T.den, &rest);
@@ -16,23 +16,20 @@ void bilateral_wire_setup(struct bilateral_wire_cfg *cfg, struct bilateral_wire 
     cfg->ms_per_tick_q20 = (uint32_t)exh_udiv64(cfg->tick_us_q20, 1000, NULL);
     cfg->ticks_per_us_q32 =
         (uint32_t)exh_udiv64((uint64_t)T.den << 32, UINT64_C(1000000) * T.num, NULL);
-    cfg->hello = (struct exh_wire_hello){EXH_WIRE_CONTROLLER, EXH_VERSION_NUMBER,
-                                         exh_signal_crc(&bilateral_params)};
+    cfg->hello = (struct exh_wire_hello){
+        EXH_WIRE_CONTROLLER, EXH_VERSION_NUMBER, exh_signal_crc(&bilateral_params)};
     s->tx.session = session;
     s->age_ticks = UINT32_MAX;
 }
 
-static uint32_t now_us(const struct bilateral_wire *s)
-{
-    return (uint32_t)(s->now_us_q20 >> US_Q);
-}
+static uint32_t now_us(const struct bilateral_wire *s) { return (uint32_t)(s->now_us_q20 >> US_Q); }
 
 /* --- in --- */
 
 /* The planes are as old as the question they answer, at the most. Of a finger that nobody has seen
  * yet, or whose sensors are not believed, none is kept: a distance to it would be a guess. */
-static void take_planes(struct bilateral *s, const struct bilateral_cfg *cfg,
-                        const struct exh_wire_planes *planes)
+static void take_planes(
+    struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_wire_planes *planes)
 {
     struct bilateral_wire *w = &s->wire;
     uint32_t age_ticks;
@@ -44,7 +41,7 @@ static void take_planes(struct bilateral *s, const struct bilateral_cfg *cfg,
         const struct exh_plane plane = exh_wire_plane_of(planes, f);
         if (bilateral_finger_age(s, cfg, f) == UINT32_MAX) { continue; }
         (void)exh_precontact_update(&s->finger[f].precontact, &cfg->finger[f].precontact, &plane,
-                                    age_ticks); /* a refused one it counts itself */
+            age_ticks); /* a refused one it counts itself */
     }
 }
 
@@ -62,8 +59,7 @@ static struct exh_wire_ack stage(struct exh_params *params, const struct exh_wir
 }
 
 void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
-                         const struct exh_scene_mail *in, uint32_t missed,
-                         struct exh_params *params)
+    const struct exh_scene_mail *in, uint32_t missed, struct exh_params *params)
 {
     struct bilateral_wire *w = &s->wire;
     const uint32_t before_us = now_us(w);
@@ -100,8 +96,8 @@ void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
 
 /* --- out --- */
 
-void bilateral_wire_put(struct bilateral_wire *w, struct exh_scene_mail *out,
-                        struct exh_wire_packet *p)
+void bilateral_wire_put(
+    struct bilateral_wire *w, struct exh_scene_mail *out, struct exh_wire_packet *p)
 {
     int32_t n;
     if (out->packets == EXH_SCENE_PACKETS) { return; }
@@ -109,8 +105,8 @@ void bilateral_wire_put(struct bilateral_wire *w, struct exh_scene_mail *out,
     if (n > 0) { out->len_B[out->packets++] = (uint16_t)n; }
 }
 
-static void put_hello(struct bilateral_wire *w, const struct bilateral_wire_cfg *cfg,
-                      struct exh_scene_mail *out)
+static void put_hello(
+    struct bilateral_wire *w, const struct bilateral_wire_cfg *cfg, struct exh_scene_mail *out)
 {
     struct exh_wire_packet p = {.type = EXH_WIRE_HELLO};
     p.u.hello = cfg->hello;
@@ -118,7 +114,7 @@ static void put_hello(struct bilateral_wire *w, const struct bilateral_wire_cfg 
 }
 
 static void finger_of(struct exh_wire_state *to, const struct bilateral *s,
-                      const struct bilateral_paper *p, unsigned f)
+    const struct bilateral_paper *p, unsigned f)
 {
     const struct bilateral_finger *now = &s->finger[f];
     for (unsigned j = 0; j < EXH_HAND_JOINTS; j++) {
@@ -145,7 +141,7 @@ static uint16_t age_ms(const struct bilateral_wire *w, const struct bilateral_wi
 }
 
 static void put_state(struct bilateral *s, const struct bilateral_cfg *cfg,
-                      const struct bilateral_signals *sig, struct exh_scene_mail *out)
+    const struct bilateral_signals *sig, struct exh_scene_mail *out)
 {
     struct exh_wire_packet p = {.type = EXH_WIRE_STATE};
     p.u.state.tick = s->safety.tick;
@@ -159,7 +155,7 @@ static void put_state(struct bilateral *s, const struct bilateral_cfg *cfg,
 }
 
 void bilateral_write(struct bilateral *s, const struct bilateral_cfg *cfg,
-                     const struct bilateral_signals *sig, struct exh_scene_mail *out)
+    const struct bilateral_signals *sig, struct exh_scene_mail *out)
 {
     struct bilateral_wire *w = &s->wire;
     const uint32_t state_every = (uint32_t)cfg->par->own.state_every;

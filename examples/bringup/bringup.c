@@ -28,8 +28,8 @@ static int monitor_off(struct bringup *s, const struct bringup_cfg *cfg, int32_t
     return ++s->window >= cfg->doubt_ticks && window_off(s, cfg);
 }
 
-static uint8_t doubt(struct bringup *s, const struct bringup_cfg *cfg, unsigned far,
-                     struct bringup_view v)
+static uint8_t doubt(
+    struct bringup *s, const struct bringup_cfg *cfg, unsigned far, struct bringup_view v)
 {
     const int32_t v_max = cfg->par->own.v_max_mps_q27;
     const int64_t moved = exh_wrap_diff(v.cnt, s->start_cnt);
@@ -69,7 +69,7 @@ static void next_phase(struct bringup *s, const struct bringup_cfg *cfg)
 /* A phase that asks for the switch waits until it is let go and taken: one that was held before the
  * question is no answer to it. */
 static void wait(struct bringup *s, const struct bringup_cfg *cfg, const struct bringup_phase *p,
-                 uint8_t command, int32_t cnt)
+    uint8_t command, int32_t cnt)
 {
     const uint32_t cause = s->safety.present;
     const int run = exh_safety_is_running(&s->safety);
@@ -102,8 +102,8 @@ static int needs_run(const struct bringup *s, const struct bringup_cfg *cfg)
 }
 
 /* One tick of whatever goes on: the force for it, N q20. */
-static int32_t go_on(struct bringup *s, const struct bringup_cfg *cfg, uint8_t command,
-                     struct bringup_view v)
+static int32_t go_on(
+    struct bringup *s, const struct bringup_cfg *cfg, uint8_t command, struct bringup_view v)
 {
     const struct bringup_own_par *own = &cfg->par->own;
     const struct bringup_phase *p = bringup_phase(cfg->list, s->phase);
@@ -173,7 +173,7 @@ static int32_t monitor_A_q26(const struct bringup_cfg *cfg, int16_t mon_raw)
 }
 
 static void signals(const struct bringup *s, const struct exh_axis_now *now, struct bringup_view v,
-                    uint32_t limits, struct bringup_signals *sig)
+    uint32_t limits, struct bringup_signals *sig)
 {
     sig->q_m_q30 = now->pos_m_q30;
     sig->v_mps_q27 = v.v_mps_q27;
@@ -191,22 +191,21 @@ static void signals(const struct bringup *s, const struct exh_axis_now *now, str
 #define VOUCHED (EXH_UNTESTED | EXH_UNCALIBRATED | EXH_UNPOLARISED)
 
 void bringup_tick(struct bringup *s, const struct bringup_cfg *cfg, const struct exh_scene_in *in,
-                  struct exh_drive_out *out, struct bringup_signals *sig)
+    struct exh_drive_out *out, struct bringup_signals *sig)
 {
     const struct bringup_par *par = cfg->par;
     const int32_t finger = par->own.finger;
     /* Without track: its phases compare monitor and code themselves, and more closely. */
     const struct exh_axis axis = {.quad = &s->quad,
-                                  .quad_cfg = &cfg->quad,
-                                  .velocity = &s->vel,
-                                  .velocity_cfg = &cfg->vel,
-                                  .drive = &s->drive,
-                                  .drive_cfg = &cfg->drive};
+        .quad_cfg = &cfg->quad,
+        .velocity = &s->vel,
+        .velocity_cfg = &cfg->vel,
+        .drive = &s->drive,
+        .drive_cfg = &cfg->drive};
     const struct exh_axis_now now = exh_axis_sense(&axis, &in->drive, (unsigned)finger);
     const uint32_t ready = in->drive.din >> finger & EXH_DIN_DRIVE0;
     const struct bringup_view v = {now.cnt, now.vel_mps_q27,
-                                   monitor_A_q26(cfg, in->drive.mon_raw[finger]),
-                                   (in->drive.din & 3u) | (ready ? 4u : 0u)};
+        monitor_A_q26(cfg, in->drive.mon_raw[finger]), (in->drive.din & 3u) | (ready ? 4u : 0u)};
     const uint8_t command = command_of(s, cfg, in->command);
     const struct exh_safety_in box = {
         inputs_of(&par->own, in->drive.din), EXH_UNTRACKED, in->missed, command, 1, VOUCHED};

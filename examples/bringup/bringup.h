@@ -176,14 +176,14 @@ const struct bringup_phase *bringup_phase(unsigned list, unsigned phase); /* NUL
 /* One tick of it, its result; the force asked for, or the current that stands for it, goes to
  * *f_N_q20. */
 uint8_t bringup_step(struct bringup *s, const struct bringup_cfg *cfg,
-                     const struct bringup_phase *p, struct bringup_view v, int32_t *f_N_q20);
+    const struct bringup_phase *p, struct bringup_view v, int32_t *f_N_q20);
 
 /* 0 or -EXH_E_RANGE. Divides. */
-int bringup_setup(struct bringup_cfg *cfg, const struct bringup_par *par,
-                  struct exh_scene_board board);
+int bringup_setup(
+    struct bringup_cfg *cfg, const struct bringup_par *par, struct exh_scene_board board);
 void bringup_start(struct bringup *s);
 void bringup_tick(struct bringup *s, const struct bringup_cfg *cfg, const struct exh_scene_in *in,
-                  struct exh_drive_out *out, struct bringup_signals *sig);
+    struct exh_drive_out *out, struct bringup_signals *sig);
 
 /* "the monitor does not show the current commanded"; never NULL. */
 const char *bringup_result_text(unsigned result);
@@ -191,8 +191,8 @@ const char *bringup_result_text(unsigned result);
 /* What there is to tell of the last tick, lines with their ends, into text: its length, 0 if
  * nothing. Divides: not in a tick. */
 #define BRINGUP_TEXT_B 400
-unsigned bringup_text(char text[BRINGUP_TEXT_B], const struct bringup *s,
-                      const struct bringup_cfg *cfg);
+unsigned bringup_text(
+    char text[BRINGUP_TEXT_B], const struct bringup *s, const struct bringup_cfg *cfg);
 
 extern const struct exh_scene exh_scene_bringup;
 

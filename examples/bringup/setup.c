@@ -37,7 +37,7 @@ static const struct exh_signal own_rows[] = {
     ROW(0x8705, EXH_Q_FORCE, EXH_Q(1, 1, EXH_Q_FORCE), EXH_Q(50, 1, EXH_Q_FORCE),
         EXH_Q(3339, 1000, EXH_Q_FORCE), "kf", "n_per_a", "string force per motor current"),
     ROW_A(0x8706, "da_max", 100, 540, 528,
-          "stage 1: highest code, as a current; a drive that is off may be given 1000"),
+        "stage 1: highest code, as a current; a drive that is off may be given 1000"),
     ROW_A(0x8707, "load_max", 100, 1000, 300, "stage 2: highest current"),
     ROW_A(0x8708, "run_max", 100, 500, 200, "stage 3: highest current"),
     ROW_N(0x8709, "f_string", 500, 10000, 1500, "stage 4: highest force"),
@@ -47,8 +47,8 @@ static const struct exh_signal own_rows[] = {
     ROW_A(0x870D, "home_cur", 10, 500, 100, "homing pulls with this"),
     ROW(0x870E, 0, 1, 1000, 5, "ramp", "", "fastest rise, a_per_s in stages 1 to 3, n_per_s above"),
     ROW_A(0x870F, "zero_tol", 1, 200, 20, "monitor at no current: not farther from 0"),
-    ROW_A(0x8710, "mon_tol", 1, 200, 20,
-          "monitor off the current commanded: not by more than this"),
+    ROW_A(
+        0x8710, "mon_tol", 1, 200, 20, "monitor off the current commanded: not by more than this"),
     ROW(0x8711, 0, 0, 30, 10, "mon_percent", "percent", "and this share of it"),
     ROW(0x8712, 0, 1, 50, 25, "read_percent", "percent", "the balance off the force: not by more"),
     ROW_V(0x8713, "v_max", 1000, 250, "faster than this for three ticks ends it"),
@@ -60,8 +60,8 @@ static const struct exh_signal own_rows[] = {
     ROW_M(0x8719, "home_max", 500, 300000, "travel limit of homing"),
     ROW_MS(0x871A, "hold", 100, 60000, 3000, "a level is held for this, means are taken over it"),
     ROW_MS(0x871B, "doubt", 5, 500, 50, "the monitor is compared over this"),
-    ROW_MS(0x871C, "dwell", 10, 1000, 100,
-           "time at each current of polarity; movement is per dwell"),
+    ROW_MS(
+        0x871C, "dwell", 10, 1000, 100, "time at each current of polarity; movement is per dwell"),
     ROW_MS(0x871D, "stop_time", 20, 1000, 200, "stage 3: at rest so long after letting go"),
     ROW_MS(0x871E, "step_time", 100, 60000, 20000, "no motion takes longer"),
     ROW_MS(0x871F, "wait_time", 1000, 600000, 120000, "no wait for the person takes longer"),
@@ -77,12 +77,12 @@ static const struct exh_signal signal_rows[] = {
     {0x8802, EXH_Q_VEL, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "qd", "m_per_s", "velocity"},
     {0x8803, EXH_Q_CUR, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "i_des", "a", "current coded"},
     {0x8804, EXH_Q_CUR, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "i_mon", "a",
-     "current monitored"},
+        "current monitored"},
     {0x8805, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "phase", "", "of the stage, from 0"},
     {0x8806, 0, EXH_WHEN_OUTPUT, 0, BRINGUP_RESULTS, 0, "result", "", "why it ended, 1 done"},
     {0x8807, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "limits", "", "limits acting, bits"},
     {0x8808, 0, EXH_WHEN_OUTPUT, 0, 5, 0, "state", "",
-     "0 off, 1 arm, 2 run, 3 limit, 4 release, 5 fault"},
+        "0 off, 1 arm, 2 run, 3 limit, 4 release, 5 fault"},
     {0x8809, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "faults", "", "fault causes latched, bits"},
     {0x880A, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "present", "", "fault causes now, bits"},
 };
@@ -97,10 +97,10 @@ static const struct exh_signal_table param_table = {param_groups, 4};
 static const struct exh_signal_group signal_groups[] = {{signal_rows, COUNT(signal_rows), 1}};
 static const struct exh_signal_table signal_table = {signal_groups, 1};
 
-EXH_STATIC_ASSERT(bringup_own_matches_rows,
-                  sizeof(struct bringup_own_par) / sizeof(int32_t) == COUNT(own_rows));
+EXH_STATIC_ASSERT(
+    bringup_own_matches_rows, sizeof(struct bringup_own_par) / sizeof(int32_t) == COUNT(own_rows));
 EXH_STATIC_ASSERT(bringup_signals_match_rows,
-                  sizeof(struct bringup_signals) / sizeof(int32_t) == COUNT(signal_rows));
+    sizeof(struct bringup_signals) / sizeof(int32_t) == COUNT(signal_rows));
 
 /* --- set-up --- */
 
@@ -118,11 +118,21 @@ static uint32_t crc_limits(uint32_t crc, int32_t stage, const struct bringup_own
     const struct {
         int32_t stage, limit;
     } of[] = {
-        {1, own->loop},          {1, own->da_max_A_q26},  {1, own->zero_A_q26},
-        {1, own->mon_A_q26},     {1, own->mon_percent},   {2, own->load_max_A_q26},
-        {2, own->move_m_q30},    {3, own->run_max_A_q26}, {3, own->pol_max_A_q26},
-        {3, own->v_max_mps_q27}, {3, own->travel_m_q30},  {4, own->kf_NpA_q20},
-        {4, own->f_max_N_q20},   {4, own->home_A_q26},    {4, own->read_percent},
+        {1, own->loop},
+        {1, own->da_max_A_q26},
+        {1, own->zero_A_q26},
+        {1, own->mon_A_q26},
+        {1, own->mon_percent},
+        {2, own->load_max_A_q26},
+        {2, own->move_m_q30},
+        {3, own->run_max_A_q26},
+        {3, own->pol_max_A_q26},
+        {3, own->v_max_mps_q27},
+        {3, own->travel_m_q30},
+        {4, own->kf_NpA_q20},
+        {4, own->f_max_N_q20},
+        {4, own->home_A_q26},
+        {4, own->read_percent},
     };
     for (size_t i = 0; i < COUNT(of); i++) {
         if (stage >= of[i].stage) { crc = crc_word(crc, of[i].limit); }
@@ -159,12 +169,12 @@ static int setup_levels(struct bringup_cfg *cfg)
         cfg->kf_NpA_q20 = own->kf_NpA_q20;
         top_N_q20 = f_N_q20;
         top_A_q26 = exh_clamp((int64_t)exh_udiv64((uint64_t)(uint32_t)f_N_q20 << EXH_Q_CUR,
-                                                  (uint32_t)own->kf_NpA_q20, NULL),
-                              1, EXH_PROBE_CUR_MAX_A_Q26);
+                                  (uint32_t)own->kf_NpA_q20, NULL),
+            1, EXH_PROBE_CUR_MAX_A_Q26);
     }
     for (int32_t k = 0; k < BRINGUP_LEVELS; k++) {
-        cfg->level_N_q20[k] = (int32_t)exh_udiv64((uint64_t)(uint32_t)top_N_q20 * (uint32_t)(k + 1),
-                                                  BRINGUP_LEVELS, NULL);
+        cfg->level_N_q20[k] = (int32_t)exh_udiv64(
+            (uint64_t)(uint32_t)top_N_q20 * (uint32_t)(k + 1), BRINGUP_LEVELS, NULL);
     }
     cfg->to_cur[0] = (struct exh_knot){0, 0, {0, 0}};
     cfg->to_cur[1] = (struct exh_knot){top_N_q20, top_A_q26, {0, 0}};
@@ -180,16 +190,16 @@ static int setup_motions(struct bringup_cfg *cfg, struct exh_period T)
     const struct bringup_own_par *own = &cfg->par->own;
     const struct exh_probe_scale scale = {cfg->par->quad.step_m_q42, T};
     const struct exh_probe_par polarity = {own->step_A_q26, own->pol_max_A_q26, own->dwell_ms,
-                                           own->time_ms,    own->move_m_q30,    own->travel_m_q30};
-    const struct exh_home_par home = {own->home_A_q26, own->dwell_ms,       own->time_ms,
-                                      own->move_m_q30, own->home_min_m_q30, own->home_max_m_q30};
+        own->time_ms, own->move_m_q30, own->travel_m_q30};
+    const struct exh_home_par home = {own->home_A_q26, own->dwell_ms, own->time_ms, own->move_m_q30,
+        own->home_min_m_q30, own->home_max_m_q30};
     const int err = exh_probe_setup(&cfg->polarity, &polarity, scale);
     if (exh_probe_ticks(own->dwell_ms, T) < 2 || exh_probe_ticks(own->doubt_ms, T) < 2) {
         return -EXH_E_RATE;
     }
     cfg->turn_cnt = exh_clamp(
         (int64_t)exh_udiv64((uint64_t)(uint32_t)own->turn_m_q30 << (EXH_Q_STEP - EXH_Q_POS),
-                            (uint32_t)scale.step_m_q42, NULL),
+            (uint32_t)scale.step_m_q42, NULL),
         4, INT32_MAX / 2);
     cfg->hold_ticks = exh_probe_ticks(own->hold_ms, T);
     cfg->doubt_ticks = exh_probe_ticks(own->doubt_ms, T);
@@ -207,7 +217,7 @@ static int setup_weigh(struct bringup_cfg *cfg, struct exh_period T)
     const struct bringup_own_par *own = &cfg->par->own;
     const struct exh_probe_scale scale = {cfg->par->quad.step_m_q42, T};
     const struct exh_probe_par probe = {own->step_A_q26, cfg->to_cur[1].y, own->dwell_ms,
-                                        own->time_ms,    own->move_m_q30,  own->travel_m_q30};
+        own->time_ms, own->move_m_q30, own->travel_m_q30};
     const struct exh_weigh_par weigh = {probe, own->home_A_q26 / 2, own->hold_ms};
     cfg->mass_N_q20 = exh_sat32(exh_mul_shr(own->mass_kg_q20, GRAVITY_MPS2_Q20, EXH_Q_FORCE));
     if (cfg->list != BRINGUP_WEIGHS) { return 0; }
@@ -217,16 +227,16 @@ static int setup_weigh(struct bringup_cfg *cfg, struct exh_period T)
     return exh_weigh_setup(&cfg->weigh, &weigh, scale);
 }
 
-int bringup_setup(struct bringup_cfg *cfg, const struct bringup_par *par,
-                  struct exh_scene_board board)
+int bringup_setup(
+    struct bringup_cfg *cfg, const struct bringup_par *par, struct exh_scene_board board)
 {
     static const struct exh_velocity_par window = {3}; /* 8 ticks */
     const struct exh_axis_setup parts = {.quad = &cfg->quad,
-                                         .quad_par = &par->quad,
-                                         .velocity = &cfg->vel,
-                                         .velocity_par = &window,
-                                         .drive = &cfg->drive,
-                                         .drive_par = &cfg->drive_par};
+        .quad_par = &par->quad,
+        .velocity = &cfg->vel,
+        .velocity_par = &window,
+        .drive = &cfg->drive,
+        .drive_par = &cfg->drive_par};
     const struct exh_table to_cur = {cfg->to_cur, 2}, none = {NULL, 0};
     int err = exh_rows_validate(own_rows, COUNT(own_rows), &par->own) ? 0 : -EXH_E_RANGE;
     if (err < 0) { return err; }
@@ -242,7 +252,7 @@ int bringup_setup(struct bringup_cfg *cfg, const struct bringup_par *par,
     err = setup_levels(cfg);
     if (err == 0) {
         err = exh_gain_set(&cfg->looped_A_q26, UINT64_C(32490) << (EXH_Q_CUR + EXH_Q_DAC),
-                           UINT64_C(32768) * (uint32_t)par->drive.dac_rawpA_q16);
+            UINT64_C(32768) * (uint32_t)par->drive.dac_rawpA_q16);
     }
     if (err == 0) { err = exh_axis_setup(&parts, board.T, board.enc_bits, to_cur, none); }
     if (err == 0) { err = exh_safety_setup(&cfg->safety, &par->safety, board.T); }
@@ -282,15 +292,9 @@ static void tell(void)
     if (len > 0) { (void)exh_board_log(text, len); }
 }
 
-const struct bringup *bringup_state(void)
-{
-    return &state;
-}
+const struct bringup *bringup_state(void) { return &state; }
 
-const struct bringup_cfg *bringup_config(void)
-{
-    return &cfg;
-}
+const struct bringup_cfg *bringup_config(void) { return &cfg; }
 
 /* Not replayable: its state is not saved. */
 const struct exh_scene exh_scene_bringup = {

@@ -54,8 +54,8 @@ static uint8_t rest(struct bringup *s, const struct bringup_cfg *cfg, struct bri
     return s->mon.sum > off_A_q26 || -s->mon.sum > off_A_q26 ? BRINGUP_MONITOR : EXH_PROBE_DONE;
 }
 
-static uint8_t levels(struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v,
-                      int32_t *f_N_q20)
+static uint8_t levels(
+    struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v, int32_t *f_N_q20)
 {
     *f_N_q20 = cfg->level_N_q20[s->level];
     if (measures(s, cfg)) {
@@ -77,8 +77,8 @@ static uint8_t levels(struct bringup *s, const struct bringup_cfg *cfg, struct b
     return s->level < BRINGUP_LEVELS ? EXH_PROBE_BUSY : EXH_PROBE_DONE;
 }
 
-static uint8_t polarity(struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v,
-                        int32_t *f_N_q20)
+static uint8_t polarity(
+    struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v, int32_t *f_N_q20)
 {
     if (s->tick == 0) { exh_probe_start(&s->probe, v.cnt, 0); }
     (void)exh_probe_step(&s->probe, &cfg->polarity, v.cnt);
@@ -86,8 +86,8 @@ static uint8_t polarity(struct bringup *s, const struct bringup_cfg *cfg, struct
     return s->probe.result;
 }
 
-static uint8_t speed(struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v,
-                     int32_t *f_N_q20)
+static uint8_t speed(
+    struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v, int32_t *f_N_q20)
 {
     *f_N_q20 = cfg->level_N_q20[BRINGUP_LEVELS - 1];
     if (-v.v_mps_q27 >= cfg->par->own.v_trip_mps_q27) { return EXH_PROBE_DONE; }
@@ -105,8 +105,8 @@ static uint8_t stop(struct bringup *s, const struct bringup_cfg *cfg, struct bri
                                                                              : EXH_PROBE_TIME;
 }
 
-static uint8_t home(struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v,
-                    int32_t *f_N_q20)
+static uint8_t home(
+    struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v, int32_t *f_N_q20)
 {
     if (s->tick == 0) { exh_home_start(&s->homing, v.cnt); }
     (void)exh_home_step(&s->homing, &cfg->home, v.cnt);
@@ -114,8 +114,8 @@ static uint8_t home(struct bringup *s, const struct bringup_cfg *cfg, struct bri
     return s->homing.result;
 }
 
-static uint8_t weigh(struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v,
-                     int32_t *f_N_q20)
+static uint8_t weigh(
+    struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v, int32_t *f_N_q20)
 {
     if (s->tick == 0) { exh_weigh_start(&s->weigh, &cfg->weigh, v.cnt); }
     (void)exh_weigh_step(&s->weigh, &cfg->weigh, v.cnt, s->coded_A_q26, v.mon_A_q26);
@@ -137,7 +137,7 @@ static uint8_t table(const struct bringup_cfg *cfg)
 }
 
 uint8_t bringup_step(struct bringup *s, const struct bringup_cfg *cfg,
-                     const struct bringup_phase *p, struct bringup_view v, int32_t *f_N_q20)
+    const struct bringup_phase *p, struct bringup_view v, int32_t *f_N_q20)
 {
     *f_N_q20 = 0;
     switch (p->step) {
@@ -158,43 +158,43 @@ uint8_t bringup_step(struct bringup *s, const struct bringup_cfg *cfg,
 #define HANDS 1
 static const struct bringup_phase phases[] = {
     {1, BRINGUP_ASK_NOTHING, BRINGUP_REST, HANDS, BRINGUP_FAR_OWN, "rest",
-     "no drive connected; D/A to the monitor's input and a meter"},
+        "no drive connected; D/A to the monitor's input and a meter"},
     {1, BRINGUP_ASK_TURN, BRINGUP_TURN, HANDS, BRINGUP_FAR_OWN, "encoder",
-     "pull the string out by hand, let it back in"},
+        "pull the string out by hand, let it back in"},
     {1, BRINGUP_ASK_INPUTS, BRINGUP_INPUTS, HANDS, BRINGUP_FAR_OWN, "inputs",
-     "open and close emergency stop, dead-man, drive ready"},
+        "open and close emergency stop, dead-man, drive ready"},
     {1, BRINGUP_ASK_HOLD, BRINGUP_LEVEL, 0, BRINGUP_FAR_TRAVEL, "output",
-     "hold the dead-man and read the meter; emergency stop if it is wrong"},
+        "hold the dead-man and read the meter; emergency stop if it is wrong"},
     {2, BRINGUP_ASK_HOLD, BRINGUP_REST, 0, BRINGUP_FAR_MOVE, "rest",
-     "a dummy load on the drive; hold the dead-man"},
+        "a dummy load on the drive; hold the dead-man"},
     {2, BRINGUP_ASK_NOTHING, BRINGUP_LEVEL, 0, BRINGUP_FAR_MOVE, "load", ""},
     {2, BRINGUP_ASK_NOTHING, BRINGUP_REST, 0, BRINGUP_FAR_MOVE, "off", ""},
     {3, BRINGUP_ASK_TURN, BRINGUP_TURN, HANDS, BRINGUP_FAR_OWN, "encoder",
-     "the motor on the drive; pull its string out by hand, let it back in"},
+        "the motor on the drive; pull its string out by hand, let it back in"},
     {3, BRINGUP_ASK_HOLD, BRINGUP_REST, 0, BRINGUP_FAR_MOVE, "rest",
-     "string drawn out and free; hold the dead-man"},
+        "string drawn out and free; hold the dead-man"},
     {3, BRINGUP_ASK_NOTHING, BRINGUP_POLARITY, 0, BRINGUP_FAR_TRAVEL, "polarity", ""},
     {3, BRINGUP_ASK_NOTHING, BRINGUP_RUN, 0, BRINGUP_FAR_TRAVEL, "speed", ""},
     {3, BRINGUP_ASK_NOTHING, BRINGUP_STOP, 0, BRINGUP_FAR_TRAVEL, "stop", ""},
     {4, BRINGUP_ASK_TURN, BRINGUP_TURN, HANDS, BRINGUP_FAR_OWN, "encoder",
-     "pull the string out by hand, let it back in"},
+        "pull the string out by hand, let it back in"},
     {4, BRINGUP_ASK_HOLD, BRINGUP_REST, 0, BRINGUP_FAR_MOVE, "rest",
-     "string drawn out and free; hold the dead-man"},
+        "string drawn out and free; hold the dead-man"},
     {4, BRINGUP_ASK_NOTHING, BRINGUP_HOME, 0, BRINGUP_FAR_OWN, "home", ""},
     {4, BRINGUP_ASK_HOOK, BRINGUP_LEVEL, 0, BRINGUP_FAR_TRAVEL, "force",
-     "let go; the balance on the string, just taut; hold the dead-man and read it"},
+        "let go; the balance on the string, just taut; hold the dead-man and read it"},
     {4, BRINGUP_ASK_NOTHING, BRINGUP_TABLE, HANDS, BRINGUP_FAR_OWN, "table", ""},
     {6, BRINGUP_ASK_TURN, BRINGUP_TURN, HANDS, BRINGUP_FAR_OWN, "encoder",
-     "pull the string out by hand, let it back in"},
+        "pull the string out by hand, let it back in"},
     {6, BRINGUP_ASK_HOLD, BRINGUP_REST, 0, BRINGUP_FAR_MOVE, "rest",
-     "string drawn out and free; hold the dead-man"},
+        "string drawn out and free; hold the dead-man"},
     {6, BRINGUP_ASK_NOTHING, BRINGUP_HOME, 0, BRINGUP_FAR_OWN, "home", ""},
     {6, BRINGUP_ASK_HOOK, BRINGUP_WEIGH, 0, BRINGUP_FAR_TRAVEL, "mass",
-     "let go; the mass on the string, standing, just taut; hold the dead-man"},
+        "let go; the mass on the string, standing, just taut; hold the dead-man"},
     {5, BRINGUP_ASK_TURN, BRINGUP_TURN, HANDS, BRINGUP_FAR_OWN, "encoder",
-     "a finger in it: bend it, stretch it"},
+        "a finger in it: bend it, stretch it"},
     {5, BRINGUP_ASK_HOLD, BRINGUP_REST, 0, BRINGUP_FAR_TRAVEL, "rest",
-     "finger bent and still; hold the dead-man"},
+        "finger bent and still; hold the dead-man"},
     {5, BRINGUP_ASK_NOTHING, BRINGUP_LEVEL, 0, BRINGUP_FAR_TRAVEL, "force", ""},
 };
 

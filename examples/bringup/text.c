@@ -30,10 +30,7 @@ static void put_int(struct text *t, int64_t v, unsigned places)
 }
 
 /* raw 2^-frac in thousandths, the nearest. */
-static int64_t milli(int64_t raw, unsigned frac)
-{
-    return exh_shr_round(raw * 1000, frac);
-}
+static int64_t milli(int64_t raw, unsigned frac) { return exh_shr_round(raw * 1000, frac); }
 
 static void put_mA(struct text *t, const char *before, int32_t A_q26)
 {
@@ -111,23 +108,11 @@ static void put_names(struct text *t, const char *const *name, unsigned count, u
 
 static void put_causes(struct text *t, const struct bringup *s)
 {
-    static const char *const name[] = {"emergency stop",
-                                       "drive not ready",
-                                       "ticks missed",
-                                       "encoder",
-                                       "dead-man released",
-                                       "current tracking",
-                                       "encoder stands",
-                                       "too fast",
-                                       "glove",
-                                       "card",
-                                       "link",
-                                       "supply",
-                                       "watchdog",
-                                       "configuration",
-                                       "state of the box"};
+    static const char *const name[] = {"emergency stop", "drive not ready", "ticks missed",
+        "encoder", "dead-man released", "current tracking", "encoder stands", "too fast", "glove",
+        "card", "link", "supply", "watchdog", "configuration", "state of the box"};
     put_names(t, name, EXH_FAULTS,
-              s->safety.state == EXH_STATE_FAULT ? s->safety.faults : s->safety.present);
+        s->safety.state == EXH_STATE_FAULT ? s->safety.faults : s->safety.present);
 }
 
 static void put_missing(struct text *t, const struct bringup *s)
@@ -233,8 +218,8 @@ static void put_end(struct text *t, const struct bringup_cfg *cfg)
     put(t, "\n");
 }
 
-unsigned bringup_text(char text[BRINGUP_TEXT_B], const struct bringup *s,
-                      const struct bringup_cfg *cfg)
+unsigned bringup_text(
+    char text[BRINGUP_TEXT_B], const struct bringup *s, const struct bringup_cfg *cfg)
 {
     struct text t = {text, 0};
     if (s->tell & BRINGUP_TELL_START) { put_start(&t, cfg); }

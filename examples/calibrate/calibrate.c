@@ -19,48 +19,48 @@
 
 static const struct exh_signal own_rows[] = {
     {0x8201, EXH_Q_FORCE, EXH_WHEN_SETUP, EXH_Q(97, 10, EXH_Q_FORCE), EXH_Q(99, 10, EXH_Q_FORCE),
-     EXH_Q(981, 100, EXH_Q_FORCE), "gravity", "m_per_s2", "where the masses hang"},
+        EXH_Q(981, 100, EXH_Q_FORCE), "gravity", "m_per_s2", "where the masses hang"},
     ROW_A(0x8202, "i_max", 3300, 3300, "no step goes beyond this current"),
     ROW_A(0x8203, "i_step", 100, 5, "currents rise and fall by this"),
     ROW_A(0x8204, "pol_max", 500, 300, "polarity check: no further than this"),
     ROW_A(0x8205, "home_cur", 500, 100, "homing pulls with this"),
     ROW_A(0x8206, "slack_cur", 500, 50, "takes up a standing mass's slack"),
     {0x8212, EXH_Q_FORCE, EXH_WHEN_SETUP, EXH_Q(1, 10, EXH_Q_FORCE), EXH_Q(50, 1, EXH_Q_FORCE),
-     EXH_Q(2, 1, EXH_Q_FORCE), "kf_min", "n_per_a",
-     "no mass gets more current than its force over this"},
+        EXH_Q(2, 1, EXH_Q_FORCE), "kf_min", "n_per_a",
+        "no mass gets more current than its force over this"},
     ROW_A(0x8207, "end_cur", 6600, 6600, "tables go on straight from the last mass to here"),
     ROW_M(0x8208, "move", 5, 300, "this far within a dwell is movement"),
     ROW_M(0x8209, "travel", 100, 30000, "travel limit of all steps but home"),
     ROW_M(0x820A, "home_min", 500, 100000, "an end nearer than this is a jam"),
     ROW_M(0x820B, "home_max", 500, 300000, "travel limit of homing"),
     {0x820C, EXH_Q_VEL, EXH_WHEN_SETUP, EXH_Q(1, 1000, EXH_Q_VEL), EXH_Q(1, 4, EXH_Q_VEL),
-     EXH_Q(2, 100, EXH_Q_VEL), "f0_speed", "m_per_s", "f0 returns the slack string so fast"},
+        EXH_Q(2, 100, EXH_Q_VEL), "f0_speed", "m_per_s", "f0 returns the slack string so fast"},
     ROW_MS(0x820D, "dwell", 1000, 100, "time at each current"),
     ROW_MS(0x820E, "hold", 10000, 500, "means are taken over this"),
     ROW_MS(0x820F, "step_time", 600000, 120000, "no phase of a step takes longer"),
     ROW_MS(0x8210, "wait_time", 1000000, 600000, "no wait for a person takes longer"),
     {0x8211, 0, EXH_WHEN_ANY, 0, CALIBRATE_MASS + CALIBRATE_MASSES, 0, "go", "",
-     "the person's word: step + 1, new while it waits"},
+        "the person's word: step + 1, new while it waits"},
 };
 
 /* Instances: the list of masses. */
 static const struct exh_signal mass_rows[] = {
     {0x8220, EXH_Q_FORCE, EXH_WHEN_SETUP, 0, EXH_Q(5, 1, EXH_Q_FORCE), 0, "mass", "kg",
-     "a known mass, rising from one to the next; 0 ends the list"},
+        "a known mass, rising from one to the next; 0 ends the list"},
 };
 
 static const struct exh_signal signal_rows[] = {
     {0x8301, EXH_Q_POS, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "q", "m", "position"},
     {0x8302, EXH_Q_CUR, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "i_des", "a", "current coded"},
     {0x8303, EXH_Q_CUR, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "i_mon", "a",
-     "current monitored"},
+        "current monitored"},
     {0x8304, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "step", "",
-     "0 zero, 1 polarity, 2 home, 3 f0, 4... masses"},
+        "0 zero, 1 polarity, 2 home, 3 f0, 4... masses"},
     {0x8305, 0, EXH_WHEN_OUTPUT, 0, 1, 0, "waits", "", "for the person"},
     {0x8306, 0, EXH_WHEN_OUTPUT, 0, CALIBRATE_RESULTS, 0, "result", "", "why it ended, 1 done"},
     {0x8307, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "limits", "", "limits acting, bits"},
     {0x8308, 0, EXH_WHEN_OUTPUT, 0, 5, 0, "state", "",
-     "0 off, 1 arm, 2 run, 3 limit, 4 release, 5 fault"},
+        "0 off, 1 arm, 2 run, 3 limit, 4 release, 5 fault"},
     {0x8309, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "faults", "", "fault causes latched, bits"},
     {0x830A, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "present", "", "fault causes now, bits"},
 };
@@ -79,12 +79,12 @@ static const struct exh_signal_table param_table = {param_groups, 6};
 static const struct exh_signal_group signal_groups[] = {{signal_rows, COUNT(signal_rows), 1}};
 static const struct exh_signal_table signal_table = {signal_groups, 1};
 
-EXH_STATIC_ASSERT(calibrate_par_matches_rows, sizeof(struct calibrate_par) / sizeof(int32_t) ==
-                                                  EXH_QUAD_ROWS + EXH_DRIVE_ROWS +
-                                                      EXH_TRACKING_ROWS + EXH_SAFETY_ROWS +
-                                                      COUNT(own_rows) + CALIBRATE_MASSES);
+EXH_STATIC_ASSERT(calibrate_par_matches_rows,
+    sizeof(struct calibrate_par) / sizeof(int32_t) == EXH_QUAD_ROWS + EXH_DRIVE_ROWS +
+                                                          EXH_TRACKING_ROWS + EXH_SAFETY_ROWS +
+                                                          COUNT(own_rows) + CALIBRATE_MASSES);
 EXH_STATIC_ASSERT(calibrate_signals_match_rows,
-                  sizeof(struct calibrate_signals) / sizeof(int32_t) == COUNT(signal_rows));
+    sizeof(struct calibrate_signals) / sizeof(int32_t) == COUNT(signal_rows));
 
 /* --- set-up --- */
 
@@ -98,19 +98,19 @@ static int own_ok(const struct calibrate_own_par *own)
 }
 
 /* The motions, all bounded by the same few parameters. */
-static int setup_motions(struct calibrate_cfg *cfg, const struct calibrate_own_par *own,
-                         struct exh_probe_scale scale)
+static int setup_motions(
+    struct calibrate_cfg *cfg, const struct calibrate_own_par *own, struct exh_probe_scale scale)
 {
     const struct exh_probe_par mass = {own->step_A_q26, own->i_max_A_q26, own->dwell_ms,
-                                       own->time_ms,    own->move_m_q30,  own->travel_m_q30};
-    const struct exh_home_par home = {own->home_A_q26, own->dwell_ms,       own->time_ms,
-                                      own->move_m_q30, own->home_min_m_q30, own->home_max_m_q30};
+        own->time_ms, own->move_m_q30, own->travel_m_q30};
+    const struct exh_home_par home = {own->home_A_q26, own->dwell_ms, own->time_ms, own->move_m_q30,
+        own->home_min_m_q30, own->home_max_m_q30};
     struct exh_probe_par polarity = mass, f0 = mass;
     int err;
     polarity.end_A_q26 = f0.end_A_q26 = own->pol_max_A_q26;
     f0.move_m_q30 = exh_clamp(
-        (int64_t)exh_udiv64((uint64_t)(uint32_t)own->f0_speed_mps_q27 * (uint32_t)own->dwell_ms,
-                            125, NULL),
+        (int64_t)exh_udiv64(
+            (uint64_t)(uint32_t)own->f0_speed_mps_q27 * (uint32_t)own->dwell_ms, 125, NULL),
         1, INT32_MAX); /* v q27 * ms / 1000, in q30 */
     if (exh_probe_ticks(own->dwell_ms, scale.T) < 2) { return -EXH_E_RATE; }
     cfg->zero_ticks = exh_probe_ticks(own->hold_ms, scale.T);
@@ -129,21 +129,21 @@ static int64_t force_of(const struct calibrate_par *par, unsigned i)
 /* A mass that does not lift is held fast: the lighter it should be, the sooner it is seen.
  * One that the slack current alone might lift is refused. */
 static int setup_mass(struct exh_weigh_cfg *cfg, const struct calibrate_par *par, unsigned i,
-                      struct exh_probe_scale scale)
+    struct exh_probe_scale scale)
 {
     const struct calibrate_own_par *own = &par->own;
     const uint64_t most_A_q26 =
         exh_udiv64((uint64_t)force_of(par, i) << EXH_Q_CUR, (uint32_t)own->kf_min_NpA_q20, NULL);
     const int32_t end_A_q26 =
         most_A_q26 < (uint32_t)own->i_max_A_q26 ? (int32_t)most_A_q26 : own->i_max_A_q26;
-    const struct exh_probe_par probe = {own->step_A_q26, end_A_q26,       own->dwell_ms,
-                                        own->time_ms,    own->move_m_q30, own->travel_m_q30};
+    const struct exh_probe_par probe = {own->step_A_q26, end_A_q26, own->dwell_ms, own->time_ms,
+        own->move_m_q30, own->travel_m_q30};
     const struct exh_weigh_par weigh = {probe, own->slack_A_q26, own->hold_ms};
     return exh_weigh_setup(cfg, &weigh, scale);
 }
 
-static int setup_masses(struct calibrate_cfg *cfg, const struct calibrate_par *par,
-                        struct exh_probe_scale scale)
+static int setup_masses(
+    struct calibrate_cfg *cfg, const struct calibrate_par *par, struct exh_probe_scale scale)
 {
     int err = 0;
     cfg->masses = 0;
@@ -155,18 +155,18 @@ static int setup_masses(struct calibrate_cfg *cfg, const struct calibrate_par *p
     return err == 0 && cfg->masses == 0 ? -EXH_E_RANGE : err;
 }
 
-int calibrate_setup(struct calibrate_cfg *cfg, const struct calibrate_par *par,
-                    struct exh_scene_board board)
+int calibrate_setup(
+    struct calibrate_cfg *cfg, const struct calibrate_par *par, struct exh_scene_board board)
 {
     const struct exh_probe_scale scale = {par->quad.step_m_q42, board.T};
     const struct exh_table to_cur = {cfg->one_to_one, 2}, none = {NULL, 0};
     const int32_t end_A_q26 = par->own.i_max_A_q26;
     const struct exh_axis_setup parts = {.quad = &cfg->quad,
-                                         .quad_par = &par->quad,
-                                         .track = &cfg->track,
-                                         .track_par = &par->track,
-                                         .drive = &cfg->drive,
-                                         .drive_par = &par->drive};
+        .quad_par = &par->quad,
+        .track = &cfg->track,
+        .track_par = &par->track,
+        .drive = &cfg->drive,
+        .drive_par = &par->drive};
     int err;
     if (!own_ok(&par->own)) { return -EXH_E_RANGE; }
     cfg->par = par;
@@ -189,11 +189,11 @@ struct view {
 };
 
 /* Each: one tick of a step, its result; the current asked for goes to *cur_A_q26. */
-typedef uint8_t step_fn(struct calibrate *s, const struct calibrate_cfg *cfg, struct view v,
-                        int32_t *cur_A_q26);
+typedef uint8_t step_fn(
+    struct calibrate *s, const struct calibrate_cfg *cfg, struct view v, int32_t *cur_A_q26);
 
-static uint8_t zero(struct calibrate *s, const struct calibrate_cfg *cfg, struct view v,
-                    int32_t *cur_A_q26)
+static uint8_t zero(
+    struct calibrate *s, const struct calibrate_cfg *cfg, struct view v, int32_t *cur_A_q26)
 {
     const int64_t moved = exh_wrap_diff(v.cnt, s->start_cnt);
     const int32_t move = cfg->polarity.move_cnt;
@@ -203,8 +203,8 @@ static uint8_t zero(struct calibrate *s, const struct calibrate_cfg *cfg, struct
     return s->zero_raw.n >= cfg->zero_ticks ? EXH_PROBE_DONE : EXH_PROBE_BUSY;
 }
 
-static uint8_t polarity(struct calibrate *s, const struct calibrate_cfg *cfg, struct view v,
-                        int32_t *cur_A_q26)
+static uint8_t polarity(
+    struct calibrate *s, const struct calibrate_cfg *cfg, struct view v, int32_t *cur_A_q26)
 {
     if (s->tick == 0) { exh_probe_start(&s->polarity, v.cnt, 0); }
     (void)exh_probe_step(&s->polarity, &cfg->polarity, v.cnt);
@@ -212,8 +212,8 @@ static uint8_t polarity(struct calibrate *s, const struct calibrate_cfg *cfg, st
     return s->polarity.result;
 }
 
-static uint8_t home(struct calibrate *s, const struct calibrate_cfg *cfg, struct view v,
-                    int32_t *cur_A_q26)
+static uint8_t home(
+    struct calibrate *s, const struct calibrate_cfg *cfg, struct view v, int32_t *cur_A_q26)
 {
     if (s->tick == 0) { exh_home_start(&s->home, v.cnt); }
     (void)exh_home_step(&s->home, &cfg->home, v.cnt);
@@ -221,8 +221,8 @@ static uint8_t home(struct calibrate *s, const struct calibrate_cfg *cfg, struct
     return s->home.result;
 }
 
-static uint8_t f0(struct calibrate *s, const struct calibrate_cfg *cfg, struct view v,
-                  int32_t *cur_A_q26)
+static uint8_t f0(
+    struct calibrate *s, const struct calibrate_cfg *cfg, struct view v, int32_t *cur_A_q26)
 {
     if (s->tick == 0) { exh_probe_start(&s->f0, v.cnt, 0); }
     (void)exh_probe_step(&s->f0, &cfg->f0, v.cnt);
@@ -230,8 +230,8 @@ static uint8_t f0(struct calibrate *s, const struct calibrate_cfg *cfg, struct v
     return s->f0.result;
 }
 
-static uint8_t mass(struct calibrate *s, const struct calibrate_cfg *cfg, struct view v,
-                    int32_t *cur_A_q26)
+static uint8_t mass(
+    struct calibrate *s, const struct calibrate_cfg *cfg, struct view v, int32_t *cur_A_q26)
 {
     const unsigned i = s->step - CALIBRATE_MASS;
     struct exh_weigh *w = &s->weigh[i];
@@ -246,25 +246,18 @@ static const struct {
     step_fn *step;
     enum calibrate_ask ask;
 } steps[] = {
-    {"zero", zero, CALIBRATE_ASK_SLACK}, {"polarity", polarity, CALIBRATE_ASK_SLACK},
-    {"home", home, CALIBRATE_ASK_SLACK}, {"f0", f0, CALIBRATE_ASK_SLACK},
+    {"zero", zero, CALIBRATE_ASK_SLACK},
+    {"polarity", polarity, CALIBRATE_ASK_SLACK},
+    {"home", home, CALIBRATE_ASK_SLACK},
+    {"f0", f0, CALIBRATE_ASK_SLACK},
     {"mass", mass, CALIBRATE_ASK_MASS},
 };
 
-static unsigned kind(unsigned step)
-{
-    return step < CALIBRATE_MASS ? step : CALIBRATE_MASS;
-}
+static unsigned kind(unsigned step) { return step < CALIBRATE_MASS ? step : CALIBRATE_MASS; }
 
-enum calibrate_ask calibrate_ask(unsigned step)
-{
-    return steps[kind(step)].ask;
-}
+enum calibrate_ask calibrate_ask(unsigned step) { return steps[kind(step)].ask; }
 
-const char *calibrate_step_text(unsigned step)
-{
-    return steps[kind(step)].text;
-}
+const char *calibrate_step_text(unsigned step) { return steps[kind(step)].text; }
 
 const char *calibrate_result_text(unsigned result)
 {
@@ -337,15 +330,14 @@ void calibrate_start(struct calibrate *s, const struct calibrate_cfg *cfg)
 #define VOUCHED (EXH_UNTESTED | EXH_UNCALIBRATED | EXH_UNPOLARISED)
 
 void calibrate_tick(struct calibrate *s, const struct calibrate_cfg *cfg,
-                    const struct exh_scene_in *in, struct exh_drive_out *out,
-                    struct calibrate_signals *sig)
+    const struct exh_scene_in *in, struct exh_drive_out *out, struct calibrate_signals *sig)
 {
     const struct exh_axis axis = {.quad = &s->quad,
-                                  .quad_cfg = &cfg->quad,
-                                  .track = &s->track,
-                                  .track_cfg = &cfg->track,
-                                  .drive = &s->drive,
-                                  .drive_cfg = &cfg->drive};
+        .quad_cfg = &cfg->quad,
+        .track = &s->track,
+        .track_cfg = &cfg->track,
+        .drive = &s->drive,
+        .drive_cfg = &cfg->drive};
     const struct exh_axis_now now = exh_axis_sense(&axis, &in->drive, 0);
     const struct view v = {now.cnt, now.mon_A_q26, in->drive.mon_raw[0]};
     const struct exh_safety_in box = {in->drive.din, 0, in->missed, in->command, 1, VOUCHED};
@@ -378,8 +370,8 @@ void calibrate_tick(struct calibrate *s, const struct calibrate_cfg *cfg,
 
 /* --- what came out --- */
 
-void calibrate_points(const struct calibrate *s, const struct calibrate_cfg *cfg,
-                      struct exh_calib *c)
+void calibrate_points(
+    const struct calibrate *s, const struct calibrate_cfg *cfg, struct exh_calib *c)
 {
     const struct calibrate_par *par = cfg->par;
     /* Who reads the monitor later takes off this code, so the points do it, too. */
@@ -428,15 +420,9 @@ static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
     calibrate_tick(&state, &cfg, in, out, &signals);
 }
 
-const struct calibrate *calibrate_state(void)
-{
-    return &state;
-}
+const struct calibrate *calibrate_state(void) { return &state; }
 
-const struct calibrate_cfg *calibrate_config(void)
-{
-    return &cfg;
-}
+const struct calibrate_cfg *calibrate_config(void) { return &cfg; }
 
 /* Not replayable: its state is not saved. */
 const struct exh_scene exh_scene_calibrate = {

@@ -117,16 +117,15 @@ struct calibrate {
 /* Configuration from parameters. 0 or -EXH_E…; -EXH_E_RATE: a dwell has less than two
  * ticks; -EXH_E_MONOTONE: the masses don't rise; -EXH_E_RANGE: there is none, or a
  * parameter is refused. Divides. */
-int calibrate_setup(struct calibrate_cfg *cfg, const struct calibrate_par *par,
-                    struct exh_scene_board board);
+int calibrate_setup(
+    struct calibrate_cfg *cfg, const struct calibrate_par *par, struct exh_scene_board board);
 
 /* As at power-on: a word that is there already is none. */
 void calibrate_start(struct calibrate *s, const struct calibrate_cfg *cfg);
 
 /* One tick. */
 void calibrate_tick(struct calibrate *s, const struct calibrate_cfg *cfg,
-                    const struct exh_scene_in *in, struct exh_drive_out *out,
-                    struct calibrate_signals *sig);
+    const struct exh_scene_in *in, struct exh_drive_out *out, struct calibrate_signals *sig);
 
 enum calibrate_ask calibrate_ask(unsigned step);
 
@@ -136,8 +135,8 @@ const char *calibrate_result_text(unsigned result);
 
 /* What was measured so far, into points of c (room: c->cap) and its values; whose,
  * when and for how long is the caller's. Divides: not in a tick. */
-void calibrate_points(const struct calibrate *s, const struct calibrate_cfg *cfg,
-                      struct exh_calib *c);
+void calibrate_points(
+    const struct calibrate *s, const struct calibrate_cfg *cfg, struct exh_calib *c);
 
 extern const struct exh_scene exh_scene_calibrate;
 

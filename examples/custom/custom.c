@@ -11,7 +11,7 @@ const struct exh_signal custom_input_rows[CUSTOM_INPUT_ROWS] = {
 
 static const struct exh_signal own_rows[] = {
     {0x8B11, EXH_Q_FORCE, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "ask", "n",
-     "force that the controller asked for; the least value: none"},
+        "force that the controller asked for; the least value: none"},
 };
 
 static const struct exh_signal_group param_groups[] = {DROP_PARAM_GROUPS};
@@ -23,8 +23,8 @@ static const struct exh_signal_table signal_table = {signal_groups, DROP_SIGNAL_
 static const struct exh_signal_group input_groups[] = {{custom_input_rows, CUSTOM_INPUT_ROWS, 1}};
 static const struct exh_signal_table input_table = {input_groups, 1};
 
-EXH_STATIC_ASSERT(custom_inputs_match_rows,
-                  sizeof(struct custom_inputs) == CUSTOM_INPUT_ROWS * sizeof(int32_t));
+EXH_STATIC_ASSERT(
+    custom_inputs_match_rows, sizeof(struct custom_inputs) == CUSTOM_INPUT_ROWS * sizeof(int32_t));
 
 /* --- the one instance of this image --- */
 
@@ -57,8 +57,8 @@ static int same(const char *a, const char *b)
 }
 
 /* 1: the table has this name. */
-static int find(const struct exh_signal_table *t, const int32_t *value, const char *name,
-                struct slot_wire *w)
+static int find(
+    const struct exh_signal_table *t, const int32_t *value, const char *name, struct slot_wire *w)
 {
     const uint32_t n = exh_signal_count(t);
     for (uint32_t i = 0; i < n; i++) {
@@ -71,10 +71,7 @@ static int find(const struct exh_signal_table *t, const int32_t *value, const ch
     return 0;
 }
 
-const char *custom_unknown(void)
-{
-    return unknown;
-}
+const char *custom_unknown(void) { return unknown; }
 
 static void end(void)
 {

@@ -21,20 +21,11 @@ void real_wire(const struct slot_wire *wire, unsigned n, struct exh_period T)
     }
 }
 
-double real_in(unsigned i)
-{
-    return (double)*wires[i].value * scale[i];
-}
+double real_in(unsigned i) { return (double)*wires[i].value * scale[i]; }
 
-double real_T_s(void)
-{
-    return (double)period.num / (double)period.den;
-}
+double real_T_s(void) { return (double)period.num / (double)period.den; }
 
-double real_t_s(void)
-{
-    return (double)tick * (double)period.num / (double)period.den;
-}
+double real_t_s(void) { return (double)tick * (double)period.num / (double)period.den; }
 
 int32_t real_none(void)
 {

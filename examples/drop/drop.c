@@ -3,10 +3,10 @@
 
 const struct exh_signal drop_own_rows[DROP_OWN_ROWS] = {
     {0x8001, EXH_Q_POS, EXH_WHEN_SLEWED, -EXH_Q(1, 1, EXH_Q_POS), EXH_Q(1, 1, EXH_Q_POS),
-     EXH_Q(7, 100, EXH_Q_POS), "q_lim", "m", "virtual contact, from where the string starts"},
+        EXH_Q(7, 100, EXH_Q_POS), "q_lim", "m", "virtual contact, from where the string starts"},
     {0x8002, EXH_Q_FORCE, EXH_WHEN_SETUP, EXH_Q(1, 10, EXH_Q_FORCE), EXH_Q(100, 1, EXH_Q_FORCE),
-     EXH_Q(3339, 1000, EXH_Q_FORCE), "kf", "n_per_a",
-     "string force per motor current, without a calibration"},
+        EXH_Q(3339, 1000, EXH_Q_FORCE), "kf", "n_per_a",
+        "string force per motor current, without a calibration"},
 };
 
 const struct exh_signal drop_paper_rows[DROP_PAPER_ROWS] = {
@@ -16,17 +16,17 @@ const struct exh_signal drop_paper_rows[DROP_PAPER_ROWS] = {
     {0x8104, EXH_Q_CUR, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "i_des", "a", "current coded"},
     {0x8105, 0, EXH_WHEN_OUTPUT, 0, 1, 0, "c", "", "contact condition applies"},
     {0x8106, EXH_Q_FORCE, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "f_mon", "n",
-     "force by the current monitor"},
+        "force by the current monitor"},
 };
 
 const struct exh_signal drop_more_rows[DROP_MORE_ROWS] = {
     {0x8107, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "limits", "", "limits acting, bits"},
     {0x8108, 0, EXH_WHEN_OUTPUT, 0, 5, 0, "state", "",
-     "0 off, 1 arm, 2 run, 3 limit, 4 release, 5 fault"},
+        "0 off, 1 arm, 2 run, 3 limit, 4 release, 5 fault"},
     {0x8109, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "faults", "", "fault causes latched, bits"},
     {0x810A, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "present", "", "fault causes now, bits"},
     {0x810B, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "arm_step", "",
-     "arming is at, or was refused by"},
+        "arming is at, or was refused by"},
 };
 
 static const struct exh_signal_group param_groups[] = {DROP_PARAM_GROUPS};
@@ -37,18 +37,16 @@ static const struct exh_signal_table signal_table = {signal_groups, DROP_SIGNAL_
 
 #define PARAMS (sizeof(struct drop_par) / sizeof(int32_t))
 EXH_STATIC_ASSERT(drop_par_matches_rows,
-                  PARAMS == EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS + EXH_DRIVE_ROWS +
-                                EXH_TRACKING_ROWS + EXH_MOTION_ROWS + EXH_SAFETY_ROWS +
-                                EXH_SUPPLY_ROWS + DROP_OWN_ROWS + EXH_CALIB_SET_ROWS +
-                                EXH_TUNE_ROWS);
+    PARAMS == EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS + EXH_DRIVE_ROWS +
+                  EXH_TRACKING_ROWS + EXH_MOTION_ROWS + EXH_SAFETY_ROWS + EXH_SUPPLY_ROWS +
+                  DROP_OWN_ROWS + EXH_CALIB_SET_ROWS + EXH_TUNE_ROWS);
 
 int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scene_board board,
-               struct exh_scene_calib *calib)
+    struct exh_scene_calib *calib)
 {
     const struct exh_calib_finger finger = {0, &par->drive, par->own.kf_NpA_q20};
-    const struct exh_axis_setup parts = {&cfg->quad,  &par->quad,  &cfg->velocity, &par->velocity,
-                                         &cfg->watch, &par->watch, &cfg->track,    &par->track,
-                                         &cfg->drive, &par->drive};
+    const struct exh_axis_setup parts = {&cfg->quad, &par->quad, &cfg->velocity, &par->velocity,
+        &cfg->watch, &par->watch, &cfg->track, &par->track, &cfg->drive, &par->drive};
     int err;
 
     cfg->par = par;
@@ -56,7 +54,7 @@ int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scen
     err = exh_calib_set_tables(&cfg->calib, calib, &par->calib, &finger);
     if (err == 0) {
         err = exh_axis_setup(&parts, board.T, board.enc_bits, exh_calib_to_cur(&cfg->calib),
-                             exh_calib_to_force(&cfg->calib));
+            exh_calib_to_force(&cfg->calib));
     }
     if (err == 0) { err = exh_safety_setup(&cfg->safety, &par->safety, board.T); }
     if (err == 0) { err = exh_supply_setup(&cfg->supply, &par->supply, board.T); }
@@ -65,8 +63,8 @@ int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scen
 
 static struct exh_axis axis_of(struct drop *s, const struct drop_cfg *cfg)
 {
-    return (struct exh_axis){&s->quad,    &cfg->quad, &s->velocity, &cfg->velocity, &s->watch,
-                             &cfg->watch, &s->track,  &cfg->track,  &s->drive,      &cfg->drive};
+    return (struct exh_axis){&s->quad, &cfg->quad, &s->velocity, &cfg->velocity, &s->watch,
+        &cfg->watch, &s->track, &cfg->track, &s->drive, &cfg->drive};
 }
 
 /* Causes that are not the finger's. */
@@ -77,13 +75,13 @@ static uint32_t causes(struct drop *s, const struct drop_cfg *cfg, const struct 
 }
 
 void drop_law(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene_in *in,
-              struct drop_now *now, struct drop_signals *sig)
+    struct drop_now *now, struct drop_signals *sig)
 {
     const struct exh_axis axis = axis_of(s, cfg);
     const struct exh_axis_now of = exh_axis_sense(&axis, &in->drive, 0);
     const uint8_t ready = (uint8_t)((cfg->tested ? EXH_ARM_SELFTEST : 0u) | cfg->calib.vouches);
-    const struct exh_safety_in box = {in->drive.din, causes(s, cfg, in), in->missed, in->command, 1,
-                                      ready};
+    const struct exh_safety_in box = {
+        in->drive.din, causes(s, cfg, in), in->missed, in->command, 1, ready};
     const struct exh_contact_in q = {of.pos_m_q30, of.vel_mps_q27, cfg->par->own.q_lim_m_q30};
 
     now->permit = exh_axis_permit(&s->safety, &cfg->safety, &of, 1, box);
@@ -96,7 +94,7 @@ void drop_law(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene
 }
 
 void drop_out(struct drop *s, const struct drop_cfg *cfg, struct drop_now *now,
-              struct exh_drive_out *out, struct drop_signals *sig)
+    struct exh_drive_out *out, struct drop_signals *sig)
 {
     const struct exh_axis axis = axis_of(s, cfg);
     now->limits |= exh_axis_force(&axis, &now->permit, &now->f, &now->i);
@@ -112,7 +110,7 @@ void drop_out(struct drop *s, const struct drop_cfg *cfg, struct drop_now *now,
 }
 
 void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene_in *in,
-               struct exh_drive_out *out, struct drop_signals *sig)
+    struct exh_drive_out *out, struct drop_signals *sig)
 {
     struct drop_now now;
     drop_law(s, cfg, in, &now, sig);
@@ -164,10 +162,7 @@ static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
     drop_tick(&state, &cfg, in, out, &signals);
 }
 
-static void state_bytes(struct exh_bytes *c)
-{
-    drop_bytes(c, &state);
-}
+static void state_bytes(struct exh_bytes *c) { drop_bytes(c, &state); }
 
 struct drop *drop_memory(struct drop_cfg **c)
 {
@@ -175,10 +170,7 @@ struct drop *drop_memory(struct drop_cfg **c)
     return &state;
 }
 
-struct exh_integrity *drop_guard(void)
-{
-    return &guard;
-}
+struct exh_integrity *drop_guard(void) { return &guard; }
 
 const struct exh_scene exh_scene_drop = {
     .name = "drop",

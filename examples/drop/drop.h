@@ -35,10 +35,7 @@ extern const struct exh_signal drop_more_rows[DROP_MORE_ROWS];
 /* The first is the paper's, in its order: what a CSV holds. */
 #define DROP_SIGNAL_N 2
 #define DROP_SIGNAL_GROUPS \
-    {drop_paper_rows, DROP_PAPER_ROWS, 1}, \
-    { \
-        drop_more_rows, DROP_MORE_ROWS, 1 \
-    }
+    {drop_paper_rows, DROP_PAPER_ROWS, 1}, { drop_more_rows, DROP_MORE_ROWS, 1 }
 
 /* All parameters, in the order of the scene's signal table. */
 struct drop_par {
@@ -99,7 +96,7 @@ struct drop {
 /* Configuration from parameters, and of a calibration of finger 0 if calib has one (NULL: none). 0
  * or -EXH_E…. */
 int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scene_board board,
-               struct exh_scene_calib *calib);
+    struct exh_scene_calib *calib);
 
 /* What the first half of a tick hands to the second. Between them a scene may add to the force
  * ledger what acts behind the law. */
@@ -113,16 +110,16 @@ struct drop_now {
 
 /* From the inputs through the law, and from there to the outputs. */
 void drop_law(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene_in *in,
-              struct drop_now *now, struct drop_signals *sig);
+    struct drop_now *now, struct drop_signals *sig);
 void drop_out(struct drop *s, const struct drop_cfg *cfg, struct drop_now *now,
-              struct exh_drive_out *out, struct drop_signals *sig);
+    struct exh_drive_out *out, struct drop_signals *sig);
 
 /* State through a cursor. */
 void drop_bytes(struct exh_bytes *c, struct drop *s);
 
 /* One tick. */
 void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene_in *in,
-               struct exh_drive_out *out, struct drop_signals *sig);
+    struct exh_drive_out *out, struct drop_signals *sig);
 
 /* The memory of the one instance, for who damages it to see what happens. */
 struct drop *drop_memory(struct drop_cfg **cfg);

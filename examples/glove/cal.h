@@ -23,9 +23,9 @@ struct glove_sensor_par {
 extern const struct exh_signal glove_cal_rows[GLOVE_CAL_ROWS];
 
 /* A calibration into parameters and back; sensor: EXH_GLOVE_SENSORS of them. `every` stays. */
-void glove_rows_of_cal(struct glove_own_par *own, struct glove_sensor_par *sensor,
-                       const struct exh_glove_cal *cal);
+void glove_rows_of_cal(
+    struct glove_own_par *own, struct glove_sensor_par *sensor, const struct exh_glove_cal *cal);
 void glove_cal_of_rows(struct exh_glove_cal *cal, const struct glove_own_par *own,
-                       const struct glove_sensor_par *sensor);
+    const struct glove_sensor_par *sensor);
 
 #endif

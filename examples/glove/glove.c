@@ -47,7 +47,7 @@ static const struct exh_signal signal_rows[] = {
     ANGLE(20, "wrist_pitch", "up"),
     ANGLE(21, "wrist_yaw", "out"),
     {0x8517, 0, EXH_WHEN_OUTPUT, 0, ALL_SENSORS, 0, "glove_faults", "",
-     "sensors not believed, bits"},
+        "sensors not believed, bits"},
     JOINT(0, "thumb_q0", "robot: sideways"),
     JOINT(1, "thumb_q1", "knuckle"),
     JOINT(2, "thumb_q2", "middle joint, the last follows it"),
@@ -80,22 +80,20 @@ static const struct exh_signal signal_rows[] = {
     TIP(13, "little_y", ""),
     TIP(14, "little_z", ""),
     {0x8550, 0, EXH_WHEN_OUTPUT, 0, UINT16_MAX, 0, "age", "",
-     "ticks since the frame was converted"},
+        "ticks since the frame was converted"},
 };
 #define SIGNALS (sizeof signal_rows / sizeof signal_rows[0])
 
-static const struct exh_signal_group param_groups[] = {
-    {exh_glove_rows, EXH_GLOVE_ROWS, 1},
-    {exh_hand_rows, EXH_HAND_ROWS, 1},
-    {glove_own_rows, GLOVE_OWN_ROWS, 1},
+static const struct exh_signal_group param_groups[] = {{exh_glove_rows, EXH_GLOVE_ROWS, 1},
+    {exh_hand_rows, EXH_HAND_ROWS, 1}, {glove_own_rows, GLOVE_OWN_ROWS, 1},
     {glove_cal_rows, GLOVE_CAL_ROWS, EXH_GLOVE_SENSORS}};
 static const struct exh_signal_table param_table = {param_groups, 4};
 static const struct exh_signal_group signal_groups[] = {{signal_rows, SIGNALS, 1}};
 static const struct exh_signal_table signal_table = {signal_groups, 1};
 
 EXH_STATIC_ASSERT(glove_par_matches_rows, sizeof(struct glove_par) == PARAMS * sizeof(int32_t));
-EXH_STATIC_ASSERT(glove_signals_match_rows,
-                  sizeof(struct glove_signals) == SIGNALS * sizeof(int32_t));
+EXH_STATIC_ASSERT(
+    glove_signals_match_rows, sizeof(struct glove_signals) == SIGNALS * sizeof(int32_t));
 
 /* --- calibration --- */
 

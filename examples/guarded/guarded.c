@@ -3,29 +3,27 @@
 
 static const struct exh_signal rows[] = {
     {0x8201, 24, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "energy", "j",
-     "taken up by the present contact, as coded"},
+        "taken up by the present contact, as coded"},
     {0x8202, EXH_Q_FORCE, EXH_WHEN_OUTPUT, INT32_MIN, 0, 0, "f_pas", "n",
-     "what passivity takes from the law's force"},
+        "what passivity takes from the law's force"},
 };
 
 static const struct exh_signal own_rows[] = {
     {0x8203, 0, EXH_WHEN_SETUP, 0, 1, 0, "rule_on", "",
-     "1: k and b outside the rule of gains are refused"},
+        "1: k and b outside the rule of gains are refused"},
 };
 
 static const struct exh_signal_group param_groups[] = {DROP_PARAM_GROUPS,
-                                                       {exh_passivity_rows, EXH_PASSIVITY_ROWS, 1},
-                                                       {own_rows, 1, 1},
-                                                       {exh_gains_rows, EXH_GAINS_ROWS, 1}};
+    {exh_passivity_rows, EXH_PASSIVITY_ROWS, 1}, {own_rows, 1, 1},
+    {exh_gains_rows, EXH_GAINS_ROWS, 1}};
 static const struct exh_signal_table param_table = {param_groups, DROP_PARAM_N + 3};
 
 static const struct exh_signal_group signal_groups[] = {DROP_SIGNAL_GROUPS, {rows, 2, 1}};
 static const struct exh_signal_table signal_table = {signal_groups, DROP_SIGNAL_N + 1};
 
 EXH_STATIC_ASSERT(guarded_par_matches_rows,
-                  sizeof(struct guarded_par) ==
-                      sizeof(struct drop_par) +
-                          (EXH_PASSIVITY_ROWS + 1 + EXH_GAINS_ROWS) * sizeof(int32_t));
+    sizeof(struct guarded_par) ==
+        sizeof(struct drop_par) + (EXH_PASSIVITY_ROWS + 1 + EXH_GAINS_ROWS) * sizeof(int32_t));
 
 /* 0, or what is wrong with the rule, or that k and b are outside. */
 static int ask_rule(const struct guarded_par *par, struct exh_period T)
@@ -37,7 +35,7 @@ static int ask_rule(const struct guarded_par *par, struct exh_period T)
 }
 
 int guarded_setup(struct guarded_cfg *cfg, const struct guarded_par *par,
-                  struct exh_scene_board board, struct exh_scene_calib *calib)
+    struct exh_scene_board board, struct exh_scene_calib *calib)
 {
     const struct exh_velocity_scale scale = {par->drop.quad.step_m_q42, board.T};
     const struct exh_calib_tables *t = &cfg->drop.calib;
@@ -47,13 +45,13 @@ int guarded_setup(struct guarded_cfg *cfg, const struct guarded_par *par,
     if (err == 0) { err = exh_table_invert(cfg->held, t->force_to_cur, t->to_cur_n); }
     if (err == 0) {
         err = exh_passivity_setup(&cfg->passivity, &par->passivity, &cfg->drop.drive, held, scale,
-                                  par->drop.watch.speed_mps_q27);
+            par->drop.watch.speed_mps_q27);
     }
     return err == 0 ? ask_rule(par, board.T) : err;
 }
 
 void guarded_tick(struct guarded *s, const struct guarded_cfg *cfg, const struct exh_scene_in *in,
-                  struct exh_drive_out *out, struct guarded_signals *sig)
+    struct exh_drive_out *out, struct guarded_signals *sig)
 {
     struct drop_now now;
     drop_law(&s->drop, &cfg->drop, in, &now, &sig->drop);
@@ -116,10 +114,7 @@ static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
     guarded_tick(&state, &cfg, in, out, &signals);
 }
 
-static void state_bytes(struct exh_bytes *c)
-{
-    guarded_bytes(c, &state);
-}
+static void state_bytes(struct exh_bytes *c) { guarded_bytes(c, &state); }
 
 struct guarded *guarded_memory(struct guarded_cfg **c)
 {

@@ -37,7 +37,7 @@ struct guarded {
 /* Configuration from parameters; calib as drop_setup(). 0 or -EXH_E…; with rule_on also what
  * exh_gains_setup() says of the rule, and -EXH_E_GAINS for k and b outside. */
 int guarded_setup(struct guarded_cfg *cfg, const struct guarded_par *par,
-                  struct exh_scene_board board, struct exh_scene_calib *calib);
+    struct exh_scene_board board, struct exh_scene_calib *calib);
 
 /* For whoever stages values of this image's scene, over a link too: as exh_params_stage(), with
  * rule_on as exh_gains_stage() under the rule that set-up took. */
@@ -45,7 +45,7 @@ int guarded_stage(uint16_t id, uint16_t instance, int32_t raw);
 
 /* One tick. */
 void guarded_tick(struct guarded *s, const struct guarded_cfg *cfg, const struct exh_scene_in *in,
-                  struct exh_drive_out *out, struct guarded_signals *sig);
+    struct exh_drive_out *out, struct guarded_signals *sig);
 
 /* State through a cursor. */
 void guarded_bytes(struct exh_bytes *c, struct guarded *s);

@@ -51,13 +51,10 @@ static void board_read(int tick, struct exh_drive_in *in)
     in->din = board_inputs();
 }
 
-static void board_write(const struct exh_drive_out *out)
-{
-    dac_raw = out->dac_raw[0];
-}
+static void board_write(const struct exh_drive_out *out) { dac_raw = out->dac_raw[0]; }
 
-void exh_assert_failed(const char *file,
-                       int line) /* the library's one hook: outputs safe, then stop */
+void exh_assert_failed(
+    const char *file, int line) /* the library's one hook: outputs safe, then stop */
 {
     dac_raw = 32768;
     printf("%s:%d: stopped\n", file, line);
@@ -66,27 +63,19 @@ void exh_assert_failed(const char *file,
 
 /* --- controller --- */
 
-static const struct exh_quad_par quad_par = {EXH_Q(5, 1000000, EXH_Q_STEP),
-                                             EXH_Q(10, 1, EXH_Q_VEL)};
+static const struct exh_quad_par quad_par = {
+    EXH_Q(5, 1000000, EXH_Q_STEP), EXH_Q(10, 1, EXH_Q_VEL)};
 static const struct exh_velocity_par vel_par = {4};
 static const struct exh_contact_par wall = {EXH_Q(800, 1, EXH_Q_K), EXH_Q(2, 1, EXH_Q_B), 0, 0, 0};
 static const int32_t wall_m_q30 = EXH_Q(2, 100, EXH_Q_POS);
-static const struct exh_drive_par drive_par = {
-    EXH_Q(10, 1, EXH_Q_FORCE),
-    1000,
-    1000, /* N, N/s */
-    EXH_Q(33, 10, EXH_Q_CUR),
-    EXH_Q(33, 10, EXH_Q_CUR),
-    2700, /* A, ms */
-    32768,
-    12184,
-    EXH_Q(324900, 176, EXH_Q_DAC), /* zero, span, codes/A */
-    0,
-    EXH_Q(5164, 10000000, EXH_Q_MON)}; /* zero, A/code */
+static const struct exh_drive_par drive_par = {EXH_Q(10, 1, EXH_Q_FORCE), 1000, 1000, /* N, N/s */
+    EXH_Q(33, 10, EXH_Q_CUR), EXH_Q(33, 10, EXH_Q_CUR), 2700,                         /* A, ms */
+    32768, 12184, EXH_Q(324900, 176, EXH_Q_DAC), /* zero, span, codes/A */
+    0, EXH_Q(5164, 10000000, EXH_Q_MON)};        /* zero, A/code */
 static const struct exh_tracking_par track_par = {EXH_Q(1, 4, EXH_Q_CUR), 20};
 static const struct exh_safety_par safety_par = {1, EXH_Q(1, 1, EXH_Q_FORCE), 50, 500, 15};
-static struct exh_knot knot[2] = {{0, 0, {0, 0}},
-                                  {EXH_Q(22, 1, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 0}}};
+static struct exh_knot knot[2] = {
+    {0, 0, {0, 0}}, {EXH_Q(22, 1, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 0}}};
 
 static struct exh_quad_cfg quad_cfg;
 static struct exh_velocity_window_cfg vel_cfg;
@@ -103,14 +92,13 @@ static struct exh_safety safety;
 static uint8_t vouched = EXH_UNCALIBRATED | EXH_UNPOLARISED;
 
 /* Encoder, velocity, no motion monitor, tracking, drive. */
-static const struct exh_axis axis = {&quad, &quad_cfg, &vel,       &vel_cfg, NULL,
-                                     NULL,  &track,    &track_cfg, &drive,   &drive_cfg};
+static const struct exh_axis axis = {
+    &quad, &quad_cfg, &vel, &vel_cfg, NULL, NULL, &track, &track_cfg, &drive, &drive_cfg};
 
 static int setup(void)
 {
-    static const struct exh_axis_setup parts = {&quad_cfg,  &quad_par, &vel_cfg,   &vel_par,
-                                                NULL,       NULL,      &track_cfg, &track_par,
-                                                &drive_cfg, &drive_par};
+    static const struct exh_axis_setup parts = {&quad_cfg, &quad_par, &vel_cfg, &vel_par, NULL,
+        NULL, &track_cfg, &track_par, &drive_cfg, &drive_par};
     const struct exh_period T = {1, RATE_Hz};
     const struct exh_table force_to_cur = {knot, 2}, no_table = {0, 0};
     int err = exh_table_setup(knot, 2);
@@ -157,7 +145,7 @@ int main(void)
         crc = exh_crc32(crc, code, sizeof code);
     }
     printf("exhand %d.%d.%d: state %d, %ld mN at most, codes %08lx\n", EXH_VERSION_MAJOR,
-           EXH_VERSION_MINOR, EXH_VERSION_PATCH, (int)safety.state,
-           (long)(((int64_t)most_N_q20 * 1000) >> 20), (unsigned long)crc);
+        EXH_VERSION_MINOR, EXH_VERSION_PATCH, (int)safety.state,
+        (long)(((int64_t)most_N_q20 * 1000) >> 20), (unsigned long)crc);
     return 0;
 }

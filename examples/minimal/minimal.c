@@ -4,21 +4,21 @@
 
 #include "exhand/exhand.h"
 
-static const struct exh_quad_par quad_par = {EXH_Q(6632, 100000000, EXH_Q_STEP),
-                                             EXH_Q(10, 1, EXH_Q_VEL)};
+static const struct exh_quad_par quad_par = {
+    EXH_Q(6632, 100000000, EXH_Q_STEP), EXH_Q(10, 1, EXH_Q_VEL)};
 static const struct exh_velocity_par vel_par = {1};
-static const struct exh_contact_par contact_par = {.k_Npm_q10 = EXH_Q(2000, 1, EXH_Q_K),
-                                                   .b_Nspm_q20 = EXH_Q(10, 1, EXH_Q_B)};
+static const struct exh_contact_par contact_par = {
+    .k_Npm_q10 = EXH_Q(2000, 1, EXH_Q_K), .b_Nspm_q20 = EXH_Q(10, 1, EXH_Q_B)};
 static const struct exh_drive_par drive_par = {.f_max_N_q20 = EXH_Q(5, 1, EXH_Q_FORCE),
-                                               .slew_up_Nps = 1000,
-                                               .slew_down_Nps = 1000,
-                                               .i_peak_A_q26 = EXH_Q(33, 10, EXH_Q_CUR),
-                                               .i_cont_A_q26 = EXH_Q(33, 10, EXH_Q_CUR),
-                                               .peak_ms = 2700,
-                                               .dac_zero_raw = 32768,
-                                               .dac_span_raw = 12184,
-                                               .dac_rawpA_q16 = EXH_Q(324900, 176, EXH_Q_DAC),
-                                               .mon_A_q40 = EXH_Q(5164, 10000000, EXH_Q_MON)};
+    .slew_up_Nps = 1000,
+    .slew_down_Nps = 1000,
+    .i_peak_A_q26 = EXH_Q(33, 10, EXH_Q_CUR),
+    .i_cont_A_q26 = EXH_Q(33, 10, EXH_Q_CUR),
+    .peak_ms = 2700,
+    .dac_zero_raw = 32768,
+    .dac_span_raw = 12184,
+    .dac_rawpA_q16 = EXH_Q(324900, 176, EXH_Q_DAC),
+    .mon_A_q40 = EXH_Q(5164, 10000000, EXH_Q_MON)};
 static const struct exh_tracking_par track_par = {EXH_Q(1, 4, EXH_Q_CUR), 20};
 static const struct exh_safety_par safety_par = {1, EXH_Q(1, 1, EXH_Q_FORCE), 50, 500, 15};
 /* Its parameters are constants. */
@@ -33,8 +33,8 @@ static struct exh_velocity_window_cfg vel_cfg;
 static struct exh_drive_cfg drive_cfg;
 static struct exh_tracking_cfg track_cfg;
 static struct exh_safety_cfg safety_cfg;
-static struct exh_knot knot[2] = {{0, 0, {0, 0}},
-                                  {EXH_Q(22, 1, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 0}}};
+static struct exh_knot knot[2] = {
+    {0, 0, {0, 0}}, {EXH_Q(22, 1, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 0}}};
 #endif
 static struct state {
     struct exh_quad quad;
@@ -55,13 +55,13 @@ static int setup(struct exh_scene_board board)
 static int setup(struct exh_scene_board board)
 {
     static const struct exh_axis_setup parts = {.quad = &quad_cfg,
-                                                .quad_par = &quad_par,
-                                                .velocity = &vel_cfg,
-                                                .velocity_par = &vel_par,
-                                                .track = &track_cfg,
-                                                .track_par = &track_par,
-                                                .drive = &drive_cfg,
-                                                .drive_par = &drive_par};
+        .quad_par = &quad_par,
+        .velocity = &vel_cfg,
+        .velocity_par = &vel_par,
+        .track = &track_cfg,
+        .track_par = &track_par,
+        .drive = &drive_cfg,
+        .drive_par = &drive_par};
     const struct exh_table to_cur = {knot, 2}, no_table = {0, 0};
     int err = exh_table_setup(knot, 2);
     s = (struct state){0};
@@ -72,13 +72,13 @@ static int setup(struct exh_scene_board board)
 #endif
 
 static const struct exh_axis axis = {.quad = &s.quad,
-                                     .quad_cfg = &quad_cfg,
-                                     .velocity = &s.vel,
-                                     .velocity_cfg = &vel_cfg,
-                                     .track = &s.track,
-                                     .track_cfg = &track_cfg,
-                                     .drive = &s.drive,
-                                     .drive_cfg = &drive_cfg};
+    .quad_cfg = &quad_cfg,
+    .velocity = &s.vel,
+    .velocity_cfg = &vel_cfg,
+    .track = &s.track,
+    .track_cfg = &track_cfg,
+    .drive = &s.drive,
+    .drive_cfg = &drive_cfg};
 
 static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 {
@@ -96,8 +96,8 @@ static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 }
 
 const struct exh_scene exh_scene_minimal = {.name = "minimal",
-                                            .rate_Hz = 1000,
-                                            .fingers = 1,
-                                            .safety = &s.safety,
-                                            .setup = setup,
-                                            .tick = tick};
+    .rate_Hz = 1000,
+    .fingers = 1,
+    .safety = &s.safety,
+    .setup = setup,
+    .tick = tick};

@@ -123,8 +123,8 @@ static unsigned ad_mask(unsigned board)
     return mask;
 }
 
-static void note(struct exh_box_report *r, unsigned card, uint16_t base, int err,
-                 const struct exh_card_fault *f)
+static void note(
+    struct exh_box_report *r, unsigned card, uint16_t base, int err, const struct exh_card_fault *f)
 {
     if (err < 0) { (void)fail(card, base, err, f); }
     if (r == NULL) { return; }
@@ -176,10 +176,7 @@ static void glove_start(void)
     box.scan_read = box.counts.reads;
 }
 
-static int in_parts(void)
-{
-    return box.cfg.glove == EXH_BOX_LAST && box.cfg.mm32xat.slice > 0;
-}
+static int in_parts(void) { return box.cfg.glove == EXH_BOX_LAST && box.cfg.mm32xat.slice > 0; }
 
 /* What the first tick hands over is begun here: it has as little to wait for as the others. A scan
  * that is taken in parts is begun when it is first asked for. */
@@ -207,8 +204,8 @@ int exh_box_open(const struct exh_box_config *config, struct exh_box_report *rep
         return fail(EXH_BOX_CARDS, 0, -EXH_E_RANGE, &f);
     }
     for (unsigned i = 0; i < box.boards; i++) {
-        const int err = exh_s526_open(&box.s526[i], config->s526_base[i], ad_mask(i),
-                                      box.lines_off[i], &config->s526, &f);
+        const int err = exh_s526_open(
+            &box.s526[i], config->s526_base[i], ad_mask(i), box.lines_off[i], &config->s526, &f);
         note(report, i, config->s526_base[i], err, &f);
         if (report) { report->s526[i] = box.s526[i].id; }
     }
@@ -230,10 +227,7 @@ static void counts_in(struct exh_drive_in *in)
     }
 }
 
-static uint32_t level(const uint8_t *pins, struct place p)
-{
-    return pins[p.card] >> p.at & 1u;
-}
+static uint32_t level(const uint8_t *pins, struct place p) { return pins[p.card] >> p.at & 1u; }
 
 static uint32_t din(const uint8_t *pins)
 {
@@ -437,10 +431,7 @@ int exh_box_read_glove(struct exh_glove_in *in)
 
 /* --- what happened --- */
 
-const struct exh_box_error *exh_box_error(void)
-{
-    return &box.error;
-}
+const struct exh_box_error *exh_box_error(void) { return &box.error; }
 
 void exh_box_counts(struct exh_box_counts *counts)
 {

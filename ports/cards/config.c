@@ -21,10 +21,7 @@ static int overlap(uint16_t a, uint16_t b, unsigned size_b)
     return a < b + size_b && b < a + 0x40u;
 }
 
-static int base_ok(uint16_t base)
-{
-    return (base & 0x3Fu) == 0 && base >= 0x100;
-}
+static int base_ok(uint16_t base) { return (base & 0x3Fu) == 0 && base >= 0x100; }
 
 static int glove_base_ok(uint16_t base)
 {

@@ -4,10 +4,14 @@
 #include "exhand/error.h"
 
 static const char *const phase_text[EXH_CARD_PHASES] = {
-    [EXH_CARD_CONFIG] = "configuration", [EXH_CARD_DETECT] = "detect",
-    [EXH_CARD_SELFTEST] = "self-test",   [EXH_CARD_EEPROM] = "EEPROM",
-    [EXH_CARD_CALIBRATE] = "calibrate",  [EXH_CARD_INPUT] = "inputs",
-    [EXH_CARD_MONITOR] = "monitors",     [EXH_CARD_SCAN] = "glove scan",
+    [EXH_CARD_CONFIG] = "configuration",
+    [EXH_CARD_DETECT] = "detect",
+    [EXH_CARD_SELFTEST] = "self-test",
+    [EXH_CARD_EEPROM] = "EEPROM",
+    [EXH_CARD_CALIBRATE] = "calibrate",
+    [EXH_CARD_INPUT] = "inputs",
+    [EXH_CARD_MONITOR] = "monitors",
+    [EXH_CARD_SCAN] = "glove scan",
 };
 
 static const char *const what_text[EXH_CARD_WHATS] = {
@@ -36,8 +40,8 @@ static const char *const what_text[EXH_CARD_WHATS] = {
     [EXH_CARD_SCAN_LOST] = "scans with too few or too many samples",
 };
 
-int exh_card_fault(struct exh_card_fault *f, unsigned what, unsigned at, int32_t got, int32_t lo,
-                   int32_t hi)
+int exh_card_fault(
+    struct exh_card_fault *f, unsigned what, unsigned at, int32_t got, int32_t lo, int32_t hi)
 {
     f->what = (uint8_t)what;
     f->at = (uint8_t)at;

@@ -53,8 +53,8 @@ struct exh_card_fault {
 };
 
 /* The fault, in the phase it has. 0 is not among what it returns: -EXH_E_IO. */
-int exh_card_fault(struct exh_card_fault *f, unsigned what, unsigned at, int32_t got, int32_t lo,
-                   int32_t hi);
+int exh_card_fault(
+    struct exh_card_fault *f, unsigned what, unsigned at, int32_t got, int32_t lo, int32_t hi);
 
 /* "detect", "no answer, all ones", …; never NULL. */
 const char *exh_card_phase_text(unsigned phase);

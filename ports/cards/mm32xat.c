@@ -62,14 +62,17 @@ struct reading {
 
 /* After a reset and the settings below. */
 static const struct reading detected[] = {
-    {MM_LOW, 0x00},      {MM_HIGH, EXH_MM32XAT_CHANNELS - 1},
-    {MM_FIFO, MM_EMPTY}, {MM_MISC, MM_SINGLE_ENDED},
-    {MM_CLOCK, 0x00},    {MM_RANGE, 0x0C},
+    {MM_LOW, 0x00},
+    {MM_HIGH, EXH_MM32XAT_CHANNELS - 1},
+    {MM_FIFO, MM_EMPTY},
+    {MM_MISC, MM_SINGLE_ENDED},
+    {MM_CLOCK, 0x00},
+    {MM_RANGE, 0x0C},
 };
 #define DETECTED (sizeof detected / sizeof detected[0])
 
-static int compare(const struct exh_mm32xat *m, const struct reading *list, size_t n,
-                   struct exh_card_fault *f)
+static int compare(
+    const struct exh_mm32xat *m, const struct reading *list, size_t n, struct exh_card_fault *f)
 {
     for (size_t i = 0; i < n; i++) {
         const uint8_t got = in(m, list[i].offset), want = list[i].want;
@@ -266,7 +269,7 @@ static int self_test(struct exh_mm32xat *m, struct exh_card_fault *f)
 }
 
 int exh_mm32xat_open(struct exh_mm32xat *m, uint16_t base, const struct exh_mm32xat_par *par,
-                     struct exh_card_fault *f)
+    struct exh_card_fault *f)
 {
     int err;
     m->base = base;

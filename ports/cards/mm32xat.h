@@ -45,7 +45,7 @@ struct exh_mm32xat {
 /* Finds and tests the card at base. 0, -EXH_E_ABSENT (no card, another card) or -EXH_E_IO
  * with *f. */
 int exh_mm32xat_open(struct exh_mm32xat *m, uint16_t base, const struct exh_mm32xat_par *par,
-                     struct exh_card_fault *f);
+    struct exh_card_fault *f);
 
 /* Starts a scan (1 access). */
 void exh_mm32xat_start(struct exh_mm32xat *m);

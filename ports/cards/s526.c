@@ -11,7 +11,7 @@
 #define DA_UNSEEN 3
 
 int s526_wait(const struct exh_s526 *s, unsigned flags, uint32_t limit_us, unsigned what,
-              unsigned at, uint16_t *isr, struct exh_card_fault *f)
+    unsigned at, uint16_t *isr, struct exh_card_fault *f)
 {
     struct exh_wait w = exh_wait_us(limit_us);
     do {
@@ -62,10 +62,9 @@ static int quad(struct exh_s526 *s, unsigned axis, struct exh_card_fault *f)
     s526_out(s, at, S526_ECAP);
     s->quad[axis]++;
     f->phase = EXH_CARD_INPUT;
-    return s->quad[axis] <= s->par.quad_limit
-               ? 0
-               : exh_card_fault(f, EXH_CARD_QUADRATURE, axis, (int32_t)s->quad[axis], 0,
-                                s->par.quad_limit);
+    return s->quad[axis] <= s->par.quad_limit ? 0
+                                              : exh_card_fault(f, EXH_CARD_QUADRATURE, axis,
+                                                    (int32_t)s->quad[axis], 0, s->par.quad_limit);
 }
 
 int exh_s526_check(struct exh_s526 *s, unsigned axes, struct exh_card_fault *f)
@@ -129,8 +128,8 @@ void exh_s526_ad_start(struct exh_s526 *s)
     }
     s->ad_first = 0;
     s526_out(s, S526_ADC,
-             (s->par.settle ? S526_AD_SETTLE : 0u) | s->ad_now * (unsigned)S526_AD_CONVERT0 |
-                 lowest(s->ad_now) << 1 | S526_AD_START);
+        (s->par.settle ? S526_AD_SETTLE : 0u) | s->ad_now * (unsigned)S526_AD_CONVERT0 |
+            lowest(s->ad_now) << 1 | S526_AD_START);
 }
 
 /* An update since the last look must have ended by now; the flags say so in the same read. */
@@ -226,6 +225,6 @@ uint16_t exh_s526_da_code(const struct exh_s526_da *da, uint16_t nominal)
 int16_t exh_s526_ad_code(const struct exh_s526_ad *ad, int16_t code)
 {
     const int64_t from_zero_q14 = (int64_t)code * (1 << 14) - ad->zero_raw_q14;
-    return (int16_t)exh_clamp(exh_shr_round(from_zero_q14 * ad->gain_q30, 14 + 30), INT16_MIN,
-                              INT16_MAX);
+    return (int16_t)exh_clamp(
+        exh_shr_round(from_zero_q14 * ad->gain_q30, 14 + 30), INT16_MIN, INT16_MAX);
 }

@@ -94,7 +94,7 @@ int exh_s526_is_there(uint16_t base, uint16_t *got);
  * ad_mask: channels of a scan; lines_off: levels of pins 4..7 when off. 0, -EXH_E_ABSENT
  * (no card, another card) or -EXH_E_IO with *f. */
 int exh_s526_open(struct exh_s526 *s, uint16_t base, unsigned ad_mask, unsigned lines_off,
-                  const struct exh_s526_par *par, struct exh_card_fault *f);
+    const struct exh_s526_par *par, struct exh_card_fault *f);
 
 /* --- of a tick; the number of accesses in brackets --- */
 

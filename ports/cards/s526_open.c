@@ -114,8 +114,8 @@ static int self_test(struct exh_s526 *s, struct exh_card_fault *f)
 
 /* --- EEPROM --- */
 
-static int ee_word(const struct exh_s526 *s, unsigned address, uint16_t *word,
-                   struct exh_card_fault *f)
+static int ee_word(
+    const struct exh_s526 *s, unsigned address, uint16_t *word, struct exh_card_fault *f)
 {
     uint16_t isr;
     int err;
@@ -147,7 +147,7 @@ int exh_s526_double(const uint16_t word[4], unsigned frac, int64_t *value)
 
 /* A double of the EEPROM, in q32; *garbage: no number. */
 static int ee_double(const struct exh_s526 *s, unsigned address, int64_t *q32, int *garbage,
-                     struct exh_card_fault *f)
+    struct exh_card_fault *f)
 {
     uint16_t word[4] = {0, 0, 0, 0};
     int err = 0;
@@ -168,7 +168,7 @@ static int32_t told(int64_t q32, int32_t parts)
 
 /* Outside lo..hi: the fault, unless nominal values may stand in; then 1. */
 static int check(const struct exh_s526 *s, unsigned what, unsigned at, int64_t q32, int32_t parts,
-                 int32_t lo, int32_t hi, struct exh_card_fault *f)
+    int32_t lo, int32_t hi, struct exh_card_fault *f)
 {
     const int32_t got = told(q32, parts);
     if (got >= lo && got <= hi) { return 0; }
@@ -188,7 +188,7 @@ static int da_from_eeprom(struct exh_s526 *s, unsigned k, struct exh_card_fault 
     err = check(s, EXH_CARD_DA_GAIN, k, a_q32, 1000, DA_GAIN_LO * 1000, DA_GAIN_HI * 1000, f);
     if (err == 0) {
         err = check(s, EXH_CARD_DA_OFFSET, k, b_q32, 1000, (EXH_S526_DA_ZERO - DA_ZERO_OFF) * 1000,
-                    (EXH_S526_DA_ZERO + DA_ZERO_OFF) * 1000, f);
+            (EXH_S526_DA_ZERO + DA_ZERO_OFF) * 1000, f);
     }
     if (err > 0) { s->id.nominal |= (uint8_t)(1u << k); }
     if (err != 0) { return err < 0 ? err : 0; }
@@ -231,15 +231,15 @@ static void add(struct sum *c, int16_t code)
     c->hi = code > c->hi ? code : c->hi;
 }
 
-static int references(const struct exh_s526 *s, struct sum *c0, struct sum *c10,
-                      struct exh_card_fault *f)
+static int references(
+    const struct exh_s526 *s, struct sum *c0, struct sum *c10, struct exh_card_fault *f)
 {
     for (int run = 0; run < REF_RUNS; run++) {
         uint16_t isr;
         int err;
         s526_out(s, S526_ADC,
-                 S526_AD_SETTLE | S526_AD_CONVERT0 << S526_AD_0V | S526_AD_CONVERT0 << S526_AD_10V |
-                     S526_AD_START);
+            S526_AD_SETTLE | S526_AD_CONVERT0 << S526_AD_0V | S526_AD_CONVERT0 << S526_AD_10V |
+                S526_AD_START);
         err = s526_wait(s, S526_AD_DONE, s->par.ad_wait_us, EXH_CARD_AD_TIMEOUT, 0, &isr, f);
         s526_out(s, S526_ISR, S526_AD_DONE);
         if (err < 0) { return err; }
@@ -253,7 +253,7 @@ static int references(const struct exh_s526 *s, struct sum *c0, struct sum *c10,
 
 /* Reference r within its range and quiet? */
 static int believe(const struct exh_s526 *s, const struct sum *c, unsigned what, unsigned at,
-                   int32_t lo, int32_t hi, struct exh_card_fault *f)
+    int32_t lo, int32_t hi, struct exh_card_fault *f)
 {
     if (c->sum < lo * REF_RUNS || c->sum > hi * REF_RUNS) {
         return exh_card_fault(f, what, at, c->sum, lo * REF_RUNS, hi * REF_RUNS);
@@ -280,7 +280,7 @@ static int calibrate(struct exh_s526 *s, struct exh_card_fault *f)
     if (err < 0) { return err; }
     /* Vref / 10 V * 32768 / (c10 - c0), these the means of ten. */
     gain_q30 = (int64_t)exh_udiv64((uint64_t)exh_shr_round(s->id.vref_V_q32, 8) << (15 + 30 - 24),
-                                   (uint64_t)(c10.sum - c0.sum), NULL);
+        (uint64_t)(c10.sum - c0.sum), NULL);
     ppm = exh_shr_round((gain_q30 - GAIN_1) * 1000000, 30);
     if (ppm < -AD_GAIN_PPM || ppm > AD_GAIN_PPM) {
         return exh_card_fault(f, EXH_CARD_AD_GAIN, 0, (int32_t)ppm, -AD_GAIN_PPM, AD_GAIN_PPM);
@@ -301,7 +301,7 @@ static int calibrate(struct exh_s526 *s, struct exh_card_fault *f)
 }
 
 int exh_s526_open(struct exh_s526 *s, uint16_t base, unsigned ad_mask, unsigned lines_off,
-                  const struct exh_s526_par *par, struct exh_card_fault *f)
+    const struct exh_s526_par *par, struct exh_card_fault *f)
 {
     int err;
     s->base = base;

@@ -72,6 +72,6 @@ static inline unsigned s526_counter(unsigned axis, unsigned offset)
 
 /* Waits for flags of ISR. 0, or the fault: what, or no answer. */
 int s526_wait(const struct exh_s526 *s, unsigned flags, uint32_t limit_us, unsigned what,
-              unsigned at, uint16_t *isr, struct exh_card_fault *f);
+    unsigned at, uint16_t *isr, struct exh_card_fault *f);
 
 #endif

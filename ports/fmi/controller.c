@@ -48,46 +48,39 @@ static int32_t enc_bits;
 
 static const struct unit_var own_var[OWN] = {
     [PERIOD_NUM] = {UNIT_INT32, UNIT_FIXED, "period_num", "",
-                    "period of the loop and of a step, numerator, s", 1, 2147483647, 1},
+        "period of the loop and of a step, numerator, s", 1, 2147483647, 1},
     [PERIOD_DEN] = {UNIT_INT32, UNIT_FIXED, "period_den", "", "and denominator; 1/20000..1 s", 1,
-                    2147483647, 2000},
+        2147483647, 2000},
     [ENC_BITS] = {UNIT_INT32, UNIT_FIXED, "enc_bits", "", "width of the encoders' counters", 8, 32,
-                  24},
+        24},
     [MON] = {UNIT_INT32, UNIT_INPUT, "mon_raw", "", "current monitor, code", -32768, 32767, 0},
     [SUPPLY] = {UNIT_INT32, UNIT_INPUT, "supply_raw", "", "supply monitor, code", -32768, 32767, 0},
     [DIN] = {UNIT_INT32, UNIT_INPUT, "din", "",
-             "digital inputs, bits: 1 e-stop loop, 2 dead-man, 4 watchdog, 8 cards, 256 drive; 1 "
-             "is healthy",
-             0, 65535, 271},
+        "digital inputs, bits: 1 e-stop loop, 2 dead-man, 4 watchdog, 8 cards, 256 drive; 1 "
+        "is healthy",
+        0, 65535, 271},
     [MISSED] = {UNIT_INT32, UNIT_INPUT, "missed", "", "ticks missed before this one", 0, 2147483647,
-                0},
-    [COMMAND] =
-        {UNIT_INT32, UNIT_INPUT, "command", "",
-         "at this tick: 0 none, 1 run, 2 off, 3 clear; -1: run at the first tick, then none", -1, 3,
-         -1},
+        0},
+    [COMMAND] = {UNIT_INT32, UNIT_INPUT, "command", "",
+        "at this tick: 0 none, 1 run, 2 off, 3 clear; -1: run at the first tick, then none", -1, 3,
+        -1},
     [ENC] = {UNIT_INT32, UNIT_INPUT, "enc_raw", "",
-             "encoder counter; of 32 bits as two's complement", 1, 0, 0},
+        "encoder counter; of 32 bits as two's complement", 1, 0, 0},
     [DAC] = {UNIT_INT32, UNIT_OUTPUT, "dac_raw", "", "D/A code, offset binary", 0, 65535, 0},
     [ENABLE] = {UNIT_INT32, UNIT_OUTPUT, "enable", "", "drive enabled", 0, 1, 0},
     [ALIVE] = {UNIT_INT32, UNIT_OUTPUT, "alive", "", "the watchdog's kick: changes each tick", 0,
-               255, 0},
+        255, 0},
 };
 static int32_t command;
 
-static uint32_t params(void)
-{
-    return exh_signal_count(scene->params->table);
-}
+static uint32_t params(void) { return exh_signal_count(scene->params->table); }
 
 static double scaled(const struct exh_signal *row, int32_t raw)
 {
     return (double)raw / (double)(INT64_C(1) << row->frac);
 }
 
-uint32_t unit_vars(void)
-{
-    return OWN + params() + exh_signal_count(scene->signals);
-}
+uint32_t unit_vars(void) { return OWN + params() + exh_signal_count(scene->signals); }
 
 /* Which signal is variable i; NULL: own or a parameter. */
 static const struct exh_signal *signal_of(uint32_t i, int32_t *raw)
@@ -113,8 +106,8 @@ void unit_var(uint32_t i, struct unit_var *v)
     v->role = row->when == EXH_WHEN_OUTPUT  ? UNIT_OUTPUT
               : row->when == EXH_WHEN_SETUP ? UNIT_FIXED
                                             : UNIT_TUNABLE;
-    (void)snprintf(v->name, sizeof v->name, instance ? "%s_%u" : "%s", row->name,
-                   (unsigned)instance);
+    (void)snprintf(
+        v->name, sizeof v->name, instance ? "%s_%u" : "%s", row->name, (unsigned)instance);
     v->min = scaled(row, row->min);
     v->max = scaled(row, row->max);
     v->start = scaled(row, row->dflt);
@@ -126,16 +119,15 @@ void unit_var(uint32_t i, struct unit_var *v)
 
 double unit_get(uint32_t i)
 {
-    const double own[OWN] = {
-        T.num,          T.den,     enc_bits, in.drive.mon_raw[0],          in.drive.supply_raw,
-        in.drive.din,   in.missed, command,  (int32_t)in.drive.enc_raw[0], out.dac_raw[0],
+    const double own[OWN] = {T.num, T.den, enc_bits, in.drive.mon_raw[0], in.drive.supply_raw,
+        in.drive.din, in.missed, command, (int32_t)in.drive.enc_raw[0], out.dac_raw[0],
         out.enable & 1, out.alive};
     int32_t raw = 0;
     const struct exh_signal *row = signal_of(i, &raw);
     if (i < OWN) { return own[i]; }
     if (row) { return scaled(row, raw); }
-    return scaled(exh_signal_at(scene->params->table, i - OWN, NULL),
-                  scene->params->staged[i - OWN]);
+    return scaled(
+        exh_signal_at(scene->params->table, i - OWN, NULL), scene->params->staged[i - OWN]);
 }
 
 static int set_own(uint32_t i, double value)
@@ -204,10 +196,7 @@ int unit_start(const char **which)
     return err;
 }
 
-struct exh_period unit_period(void)
-{
-    return T;
-}
+struct exh_period unit_period(void) { return T; }
 
 int unit_step(void)
 {

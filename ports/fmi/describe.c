@@ -10,8 +10,8 @@
 
 static const char *const type_name[] = {"Int32", "Float64"};
 static const char *const role_text[] = {"causality=\"parameter\" variability=\"fixed\"",
-                                        "causality=\"parameter\" variability=\"tunable\"",
-                                        "causality=\"input\"", "causality=\"output\""};
+    "causality=\"parameter\" variability=\"tunable\"", "causality=\"input\"",
+    "causality=\"output\""};
 
 static void text(const char *s)
 {
@@ -48,7 +48,7 @@ static void units(void)
 static void variable(uint32_t i, const struct unit_var *v)
 {
     printf("    <%s name=\"%s\" valueReference=\"%lu\" %s", type_name[v->type], v->name,
-           (unsigned long)i, role_text[v->role]);
+        (unsigned long)i, role_text[v->role]);
     if (v->type == UNIT_INT32 && v->role > UNIT_TUNABLE) { printf(" variability=\"discrete\""); }
     if (v->type == UNIT_FLOAT64 && v->role == UNIT_OUTPUT) { printf(" variability=\"discrete\""); }
     if (v->role != UNIT_OUTPUT) { printf(" start=\"%.17g\"", v->start); }
@@ -92,7 +92,7 @@ static void model(void)
            "<ModelVariables>\n"
            "    <Float64 name=\"time\" valueReference=\"%lu\" causality=\"independent\" "
            "variability=\"continuous\"/>\n",
-           (double)T.num / T.den, (unsigned long)unit_vars());
+        (double)T.num / T.den, (unsigned long)unit_vars());
     for (uint32_t i = 0; i < unit_vars(); i++) {
         unit_var(i, &v);
         variable(i, &v);
@@ -103,7 +103,7 @@ static void model(void)
             unit_var(i, &v);
             if (v.role == UNIT_OUTPUT) {
                 printf("    <%s valueReference=\"%lu\"/>\n", pass ? "InitialUnknown" : "Output",
-                       (unsigned long)i);
+                    (unsigned long)i);
             }
         }
     }
@@ -115,12 +115,12 @@ static void build(int n, char **source)
     printf("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiBuildDescription fmiVersion=\"3.0\">\n"
            "  <BuildConfiguration modelIdentifier=\"%s\">\n    <SourceFileSet language=\"C99\" "
            "compilerOptions=\"-ffp-contract=off\">\n",
-           unit_name);
+        unit_name);
     for (int i = 0; i < n; i++) { printf("      <SourceFile name=\"%s\"/>\n", source[i]); }
     printf("      <PreprocessorDefinition name=\"FMI_TOKEN\" value=\"0x%08lx\"/>\n"
            "      <IncludeDirectory name=\".\"/>\n    </SourceFileSet>\n  "
            "</BuildConfiguration>\n</fmiBuildDescription>\n",
-           (unsigned long)token());
+        (unsigned long)token());
 }
 
 int main(int argc, char **argv)

@@ -61,34 +61,31 @@ enum own {
 
 static const struct unit_var own_var[OWN] = {
     [PERIOD_NUM] = {UNIT_INT32, UNIT_FIXED, "period_num", "", "period of a step, numerator, s", 1,
-                    2147483647, 1},
+        2147483647, 1},
     [PERIOD_DEN] = {UNIT_INT32, UNIT_FIXED, "period_den", "", "and denominator; 1/20000..1 s", 1,
-                    2147483647, 2000},
+        2147483647, 2000},
     [SEED] = {UNIT_INT32, UNIT_FIXED, "seed", "", "of all chance", 0, 2147483647, 1},
     [FALLS] = {UNIT_INT32, UNIT_FIXED, "falls", "", "falls, then done", 1, 1000000, 1},
     [WAITS] = {UNIT_INT32, UNIT_FIXED, "waits", "",
-               "1: the first fall is held until state says run or limit", 0, 1, 1},
+        "1: the first fall is held until state says run or limit", 0, 1, 1},
     [DAC] = {UNIT_INT32, UNIT_INPUT, "dac_raw", "", "D/A code, offset binary", 0, 65535, 32768},
     [ENABLE] = {UNIT_INT32, UNIT_INPUT, "enable", "", "drive enabled", 0, 1, 0},
     [STATE] = {UNIT_INT32, UNIT_INPUT, "state", "", "of the box, for whoever holds the mass", 0, 5,
-               0},
+        0},
     [ENC] = {UNIT_INT32, UNIT_OUTPUT, "enc_raw", "", "encoder counter, 24 bits", 1, 0, 0},
     [MON] = {UNIT_INT32, UNIT_OUTPUT, "mon_raw", "", "current monitor, code", 1, 0, 0},
     [SUPPLY] = {UNIT_INT32, UNIT_OUTPUT, "supply_raw", "", "supply monitor, code", 1, 0, 0},
     [DIN] = {UNIT_INT32, UNIT_OUTPUT, "din", "", "digital inputs, bits: all healthy", 1, 0, 0},
     [FALL] = {UNIT_INT32, UNIT_OUTPUT, "fall", "",
-              "the fall under observation; 0: the mass is held or lifted", 1, 0, 0},
+        "the fall under observation; 0: the mass is held or lifted", 1, 0, 0},
     [DONE] = {UNIT_INT32, UNIT_OUTPUT, "done", "", "1: all falls are over", 1, 0, 0},
     [X] = {UNIT_FLOAT64, UNIT_OUTPUT, "x", "m", "mass, down positive, 0 is the virtual contact", 1,
-           0, 0},
+        0, 0},
     [Q] = {UNIT_FLOAT64, UNIT_OUTPUT, "q", "m", "string at the motor", 1, 0, 0},
     [CURRENT] = {UNIT_FLOAT64, UNIT_OUTPUT, "current", "a", "motor current", 1, 0, 0},
 };
 
-uint32_t unit_vars(void)
-{
-    return OWN + (uint32_t)sim_device_rows;
-}
+uint32_t unit_vars(void) { return OWN + (uint32_t)sim_device_rows; }
 
 void unit_var(uint32_t i, struct unit_var *v)
 {
@@ -99,49 +96,33 @@ void unit_var(uint32_t i, struct unit_var *v)
     }
     row = &sim_device_row[i - OWN];
     *v = (struct unit_var){.type = UNIT_FLOAT64,
-                           .role = UNIT_FIXED,
-                           .unit = row->unit,
-                           .help = row->help,
-                           .min = row->min,
-                           .max = row->max,
-                           .start = row->value};
+        .role = UNIT_FIXED,
+        .unit = row->unit,
+        .help = row->help,
+        .min = row->min,
+        .max = row->max,
+        .start = row->value};
     (void)strncpy(v->name, row->name, sizeof v->name - 1);
 }
 
-static double *device_value(uint32_t row)
-{
-    return (double *)(void *)&u.device + row;
-}
+static double *device_value(uint32_t row) { return (double *)(void *)&u.device + row; }
 
 double unit_get(uint32_t i)
 {
     const int32_t done = u.mass.fall.phase == FALL_DONE;
-    const double own[OWN] = {u.T.num,
-                             u.T.den,
-                             u.seed,
-                             u.falls,
-                             u.waits,
-                             u.dac_raw,
-                             u.enable,
-                             u.state,
-                             u.enc_raw,
-                             u.mon_raw,
-                             u.supply_raw,
-                             EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS |
-                                 EXH_DIN_DRIVE0,
-                             u.mass.fall.phase == FALL_FREE ? u.mass.fall.number : 0,
-                             done,
-                             u.mass.plant.x_m,
-                             u.mass.plant.q_m,
-                             u.mass.plant.cur_A};
+    const double own[OWN] = {u.T.num, u.T.den, u.seed, u.falls, u.waits, u.dac_raw, u.enable,
+        u.state, u.enc_raw, u.mon_raw, u.supply_raw,
+        EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS | EXH_DIN_DRIVE0,
+        u.mass.fall.phase == FALL_FREE ? u.mass.fall.number : 0, done, u.mass.plant.x_m,
+        u.mass.plant.q_m, u.mass.plant.cur_A};
     return i < OWN ? own[i] : *device_value(i - OWN);
 }
 
 int unit_set(uint32_t i, double value)
 {
     struct unit_var v;
-    int32_t *const own[] = {NULL,     NULL,       &u.seed,   &u.falls,
-                            &u.waits, &u.dac_raw, &u.enable, &u.state};
+    int32_t *const own[] = {
+        NULL, NULL, &u.seed, &u.falls, &u.waits, &u.dac_raw, &u.enable, &u.state};
     unit_var(i, &v);
     if (v.role == UNIT_OUTPUT || (v.role == UNIT_FIXED && u.started)) { return -EXH_E_STATE; }
     if (!(value >= v.min && value <= v.max)) { return -EXH_E_RANGE; }
@@ -189,10 +170,7 @@ int unit_start(const char **which)
     return 0;
 }
 
-struct exh_period unit_period(void)
-{
-    return u.T;
-}
+struct exh_period unit_period(void) { return u.T; }
 
 /* The code begins its way now, and arrives when its delay is over. */
 static void put(void)

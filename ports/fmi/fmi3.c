@@ -32,13 +32,10 @@ static fmi3Status fail(const char *format, ...)
 
 /* --- life --- */
 
-const char *fmi3GetVersion(void)
-{
-    return fmi3Version;
-}
+const char *fmi3GetVersion(void) { return fmi3Version; }
 
-fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn, size_t nCategories,
-                               const fmi3String categories[])
+fmi3Status fmi3SetDebugLogging(
+    fmi3Instance instance, fmi3Boolean loggingOn, size_t nCategories, const fmi3String categories[])
 {
     (void)instance, (void)loggingOn, (void)nCategories, (void)categories;
     return fmi3OK;
@@ -51,9 +48,8 @@ static void reset(void)
     unit_reset();
 }
 
-fmi3Instance fmi3InstantiateCoSimulation(
-    fmi3String instanceName, fmi3String instantiationToken, fmi3String resourcePath,
-    fmi3Boolean visible, fmi3Boolean loggingOn, fmi3Boolean eventModeUsed,
+fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String instantiationToken,
+    fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn, fmi3Boolean eventModeUsed,
     fmi3Boolean earlyReturnAllowed, const fmi3ValueReference requiredIntermediateVariables[],
     size_t nRequiredIntermediateVariables, fmi3InstanceEnvironment instanceEnvironment,
     fmi3LogMessageCallback logMessage, fmi3IntermediateUpdateCallback intermediateUpdate)
@@ -67,7 +63,7 @@ fmi3Instance fmi3InstantiateCoSimulation(
     (void)snprintf(token, sizeof token, "%s-%08lx", unit_name, (unsigned long)FMI_TOKEN);
     if (instantiationToken == NULL || strcmp(instantiationToken, token) != 0) {
         (void)fail("instantiationToken: %s: this binary is of %s: build it from its own sources",
-                   instantiationToken ? instantiationToken : "none", token);
+            instantiationToken ? instantiationToken : "none", token);
         return NULL;
     }
     if (fmu.used || eventModeUsed || nRequiredIntermediateVariables) {
@@ -86,8 +82,7 @@ void fmi3FreeInstance(fmi3Instance instance)
 }
 
 fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean toleranceDefined,
-                                       fmi3Float64 tolerance, fmi3Float64 startTime,
-                                       fmi3Boolean stopTimeDefined, fmi3Float64 stopTime)
+    fmi3Float64 tolerance, fmi3Float64 startTime, fmi3Boolean stopTimeDefined, fmi3Float64 stopTime)
 {
     (void)instance, (void)toleranceDefined, (void)tolerance, (void)stopTimeDefined, (void)stopTime;
     fmu.initialising = 1;
@@ -103,7 +98,7 @@ fmi3Status fmi3ExitInitializationMode(fmi3Instance instance)
     fmu.initialising = 0;
     fmu.running = err == 0;
     return err < 0 ? fail("%s, period %lu/%lu s: refused, %d", which,
-                          (unsigned long)unit_period().num, (unsigned long)unit_period().den, err)
+                         (unsigned long)unit_period().num, (unsigned long)unit_period().den, err)
                    : fmi3OK;
 }
 
@@ -142,7 +137,7 @@ static fmi3Status set(fmi3ValueReference vr, enum unit_type type, double value)
     if (i < 0) { return fmi3Error; }
     if (err == -EXH_E_RANGE) {
         return fail("%s: %.17g (%.9g..%.9g %s): give one in that range", v.name, value, v.min,
-                    v.max, v.unit);
+            v.max, v.unit);
     }
     if (err < 0 && v.role == UNIT_OUTPUT) {
         return fail("%s: an output: it cannot be set", v.name);
@@ -169,7 +164,7 @@ static fmi3Status get(fmi3ValueReference vr, enum unit_type type, double *value)
 
 #define VALUES(T, TYPE) \
     fmi3Status fmi3Get##T(fmi3Instance instance, const fmi3ValueReference vr[], size_t n, \
-                          fmi3##T values[], size_t nValues) \
+        fmi3##T values[], size_t nValues) \
     { \
         (void)instance; \
         for (size_t k = 0; k < n && k < nValues; k++) { \
@@ -180,7 +175,7 @@ static fmi3Status get(fmi3ValueReference vr, enum unit_type type, double *value)
         return n == nValues ? fmi3OK : fail("%zu values for %zu variables", nValues, n); \
     } \
     fmi3Status fmi3Set##T(fmi3Instance instance, const fmi3ValueReference vr[], size_t n, \
-                          const fmi3##T values[], size_t nValues) \
+        const fmi3##T values[], size_t nValues) \
     { \
         (void)instance; \
         for (size_t k = 0; k < n && k < nValues; k++) { \
@@ -195,10 +190,9 @@ VALUES(Float64, UNIT_FLOAT64)
 
 /* Whole periods only: a step of several is as many ticks with the same inputs. */
 fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoint,
-                      fmi3Float64 communicationStepSize,
-                      fmi3Boolean noSetFMUStatePriorToCurrentPoint,
-                      fmi3Boolean *eventHandlingNeeded, fmi3Boolean *terminateSimulation,
-                      fmi3Boolean *earlyReturn, fmi3Float64 *lastSuccessfulTime)
+    fmi3Float64 communicationStepSize, fmi3Boolean noSetFMUStatePriorToCurrentPoint,
+    fmi3Boolean *eventHandlingNeeded, fmi3Boolean *terminateSimulation, fmi3Boolean *earlyReturn,
+    fmi3Float64 *lastSuccessfulTime)
 {
     const struct exh_period T = unit_period();
     const double periods = communicationStepSize * (double)T.den / (double)T.num;
@@ -209,7 +203,7 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoi
     if (n == 0 || periods - (double)n > 1e-3 || (double)n - periods > 1e-3) {
         return fail("communicationStepSize: %.17g s (whole periods of %lu/%lu s): give period_num "
                     "and period_den, or another step",
-                    communicationStepSize, (unsigned long)T.num, (unsigned long)T.den);
+            communicationStepSize, (unsigned long)T.num, (unsigned long)T.den);
     }
     for (uint64_t k = 0; k < n; k++) {
         const int err = unit_step();
@@ -285,8 +279,8 @@ fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState state,
     return fmi3OK;
 }
 
-fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState state,
-                                 fmi3Byte serializedState[], size_t size)
+fmi3Status fmi3SerializeFMUState(
+    fmi3Instance instance, fmi3FMUState state, fmi3Byte serializedState[], size_t size)
 {
     const struct kept *k = state;
     (void)instance;
@@ -297,8 +291,8 @@ fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState state,
     return fmi3OK;
 }
 
-fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte serializedState[],
-                                   size_t size, fmi3FMUState *state)
+fmi3Status fmi3DeserializeFMUState(
+    fmi3Instance instance, const fmi3Byte serializedState[], size_t size, fmi3FMUState *state)
 {
     struct kept *k;
     (void)instance;

@@ -40,10 +40,7 @@ static uint32_t seen, run, missed_in_all, enabled;
 static uint32_t scene_start, scene_min = UINT32_MAX, scene_max; /* cycles between read and write */
 static uint8_t exit_status = EXIT_FAILED;
 
-void mps2_systick(void)
-{
-    ticks++;
-}
+void mps2_systick(void) { ticks++; }
 
 int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
 {
@@ -94,10 +91,7 @@ int exh_board_write_drive(const struct exh_drive_out *out)
     return mps2_box_write_drive(out);
 }
 
-void exh_board_safe(void)
-{
-    mps2_box_safe();
-}
+void exh_board_safe(void) { mps2_box_safe(); }
 
 static void report(void)
 {
@@ -153,10 +147,7 @@ int exh_board_read_glove(struct exh_glove_in *in)
     return err;
 }
 
-uint32_t exh_board_cycles(void)
-{
-    return ~TIMER_VALUE;
-}
+uint32_t exh_board_cycles(void) { return ~TIMER_VALUE; }
 
 /* No place to keep records and no network: nothing is taken, nothing comes. */
 int exh_board_log(const void *rec, size_t len_B)

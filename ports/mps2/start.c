@@ -69,7 +69,6 @@ struct vectors {
     void (*handler[15])(void);
 };
 extern const struct vectors mps2_vectors;
-__attribute__((section(".vectors"), used))
-const struct vectors mps2_vectors = {__stack_top,
-                                     {mps2_reset, fault, fault, fault, fault, fault, fault, fault,
-                                      fault, fault, fault, fault, fault, fault, mps2_systick}};
+__attribute__((section(".vectors"), used)) const struct vectors mps2_vectors = {
+    __stack_top, {mps2_reset, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault,
+                     fault, fault, fault, mps2_systick}};

@@ -31,15 +31,9 @@ static struct {
 
 static struct exh_drive_out last; /* the last frame of the loop */
 
-void pc104_board_for(const struct exh_scene *sc)
-{
-    run.scene = sc;
-}
+void pc104_board_for(const struct exh_scene *sc) { run.scene = sc; }
 
-uint32_t pc104_tick(void)
-{
-    return run.run;
-}
+uint32_t pc104_tick(void) { return run.run; }
 
 int pc104_board_clock(void)
 {
@@ -134,10 +128,7 @@ int exh_board_read_drive(struct exh_drive_in *in)
     return read_done(err);
 }
 
-int exh_board_read_glove(struct exh_glove_in *in)
-{
-    return read_done(exh_box_read_glove(in));
-}
+int exh_board_read_glove(struct exh_glove_in *in) { return read_done(exh_box_read_glove(in)); }
 
 int exh_board_write_drive(const struct exh_drive_out *out)
 {
@@ -150,10 +141,7 @@ int exh_board_write_drive(const struct exh_drive_out *out)
     return exh_box_write_drive(out);
 }
 
-void exh_board_safe(void)
-{
-    exh_box_safe();
-}
+void exh_board_safe(void) { exh_box_safe(); }
 
 static void report(void)
 {
@@ -202,10 +190,7 @@ void exh_board_halt(const char *why)
 
 /* --- only where the scene calls them --- */
 
-int exh_board_log(const void *rec, size_t len_B)
-{
-    return pc104_log_take(rec, len_B);
-}
+int exh_board_log(const void *rec, size_t len_B) { return pc104_log_take(rec, len_B); }
 
 uint32_t exh_board_cycles(void)
 {

@@ -71,8 +71,8 @@ static int next(unsigned *at, const char **name, const char **value)
     return 1;
 }
 
-static int table_option(const struct exh_signal_table *t, int32_t *to, const char *name,
-                        const char *value)
+static int table_option(
+    const struct exh_signal_table *t, int32_t *to, const char *name, const char *value)
 {
     for (uint32_t i = 0; i < exh_signal_count(t); i++) {
         const struct exh_signal *row = exh_signal_at(t, i, NULL);
@@ -98,8 +98,8 @@ void pc104_options(const struct exh_scene *sc)
     defaults(&pc104_box_table, (int32_t *)&pc104_box_par);
     while (next(&at, &name, &value)) {
         if (value && (table_option(&pc104_option_table, (int32_t *)&pc104_par, name, value) ||
-                      table_option(&pc104_box_table, (int32_t *)&pc104_box_par, name, value) ||
-                      pc104_link_option(name, value) || pc104_scene_option(sc, name, value))) {
+                         table_option(&pc104_box_table, (int32_t *)&pc104_box_par, name, value) ||
+                         pc104_link_option(name, value) || pc104_scene_option(sc, name, value))) {
             pc104_say("set ");
             pc104_say(name);
             pc104_say(" ");

@@ -46,15 +46,9 @@ void pc104_dump_start(const struct exh_scene *sc, struct exh_scene_board board)
 }
 
 /* It holds a keyframe before every record of a dry tick, so the dearest tick is among them. */
-void pc104_dump_dry(void)
-{
-    exh_blackbox_clear();
-}
+void pc104_dump_dry(void) { exh_blackbox_clear(); }
 
-void pc104_dump_before(uint32_t tick, struct exh_scene_in *in)
-{
-    exh_blackbox_before(tick, in);
-}
+void pc104_dump_before(uint32_t tick, struct exh_scene_in *in) { exh_blackbox_before(tick, in); }
 
 /* --- out --- */
 

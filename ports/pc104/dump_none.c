@@ -16,9 +16,7 @@ void pc104_dump_start(const struct exh_scene *sc, struct exh_scene_board board)
     (void)board;
 }
 
-void pc104_dump_dry(void)
-{
-}
+void pc104_dump_dry(void) {}
 
 void pc104_dump_before(uint32_t tick, struct exh_scene_in *in)
 {
@@ -33,16 +31,8 @@ void pc104_dump_after(uint32_t tick, const struct exh_scene_in *in, const struct
     (void)out;
 }
 
-int pc104_dump_idle(void)
-{
-    return 0;
-}
+int pc104_dump_idle(void) { return 0; }
 
-void pc104_dump_pause(void)
-{
-}
+void pc104_dump_pause(void) {}
 
-void pc104_dump_flush(int halted)
-{
-    (void)halted;
-}
+void pc104_dump_flush(int halted) { (void)halted; }

@@ -22,8 +22,8 @@ void pc104_fpu_open(void)
     uint32_t eax = 1, ebx, ecx, edx, cr;
     __asm__ volatile("cpuid" : "+a"(eax), "=b"(ebx), "=c"(ecx), "=d"(edx));
     if ((edx & EDX_FPU) == 0 || (edx & EDX_SSE2) == 0) {
-        pc104_halt(PC104_EXIT_OPTION,
-                   "this scene reckons in floats, and this processor has no SSE2");
+        pc104_halt(
+            PC104_EXIT_OPTION, "this scene reckons in floats, and this processor has no SSE2");
     }
     __asm__ volatile("movl %%cr0, %0" : "=r"(cr));
     cr = (cr & ~(CR0_EM | CR0_TS)) | CR0_MP | CR0_NE;

@@ -2,6 +2,4 @@
 /* A scene of integers: no FPU, MMX or SSE register is ever touched. */
 #include "pc104.h"
 
-void pc104_fpu_open(void)
-{
-}
+void pc104_fpu_open(void) {}

@@ -100,12 +100,6 @@ int pc104_guard_device(uint32_t address)
     return 0;
 }
 
-int pc104_guard_hit(uint32_t address)
-{
-    return address - (uint32_t)__stack_guard < PAGE_B;
-}
+int pc104_guard_hit(uint32_t address) { return address - (uint32_t)__stack_guard < PAGE_B; }
 
-uint32_t pc104_guard_eip(void)
-{
-    return main_task.eip;
-}
+uint32_t pc104_guard_eip(void) { return main_task.eip; }

@@ -24,20 +24,11 @@ enum { CAP = 0x00, PERIOD_FS = 0x04, CONF = 0x10, COUNTER = 0xF0, T0_CONF = 0x10
 #define COMPARE_COUNTS 11932u /* of the 8254: 10 ms */
 #define COMPARE_TRIES  8u     /* an emulator's host may take a moment away in between */
 
-static uint32_t get(unsigned reg)
-{
-    return *(volatile uint32_t *)(BASE + reg);
-}
+static uint32_t get(unsigned reg) { return *(volatile uint32_t *)(BASE + reg); }
 
-static void put(unsigned reg, uint32_t value)
-{
-    *(volatile uint32_t *)(BASE + reg) = value;
-}
+static void put(unsigned reg, uint32_t value) { *(volatile uint32_t *)(BASE + reg) = value; }
 
-uint32_t pc104_hpet_now(void)
-{
-    return get(COUNTER);
-}
+uint32_t pc104_hpet_now(void) { return get(COUNTER); }
 
 /* Stands still, or an empty bus: must be found before currents flow. */
 static int counts(void)

@@ -115,8 +115,8 @@ static void wait_for_peer(void)
     do {
         pc104_link_poll();
     } while (!net.known && exh_wait_more(&answer));
-    pc104_say(net.known ? "link: the peer answers\n"
-                        : "link: the peer does not answer yet: goes on\n");
+    pc104_say(
+        net.known ? "link: the peer answers\n" : "link: the peer does not answer yet: goes on\n");
 }
 
 void pc104_link_open(const struct exh_scene *sc)
@@ -135,9 +135,9 @@ void pc104_link_open(const struct exh_scene *sc)
     }
     {
         struct net_cfg cfg = {.ip = par.ip,
-                              .peer_ip = par.peer,
-                              .port = (uint16_t)par.port,
-                              .longest_B = EXH_SCENE_PACKET_B};
+            .peer_ip = par.peer,
+            .port = (uint16_t)par.port,
+            .longest_B = EXH_SCENE_PACKET_B};
         memcpy(cfg.mac, mac, sizeof cfg.mac);
         net_open(&net, &cfg);
     }
@@ -228,10 +228,7 @@ int exh_board_link_send(const void *buf, size_t len_B)
     return 0;
 }
 
-int pc104_link_up(void)
-{
-    return open;
-}
+int pc104_link_up(void) { return open; }
 
 unsigned pc104_link_log(const uint8_t *byte, unsigned n, int now)
 {
@@ -250,10 +247,7 @@ unsigned pc104_link_log(const uint8_t *byte, unsigned n, int now)
     return n;
 }
 
-void pc104_link_log_new(void)
-{
-    stream_open(exh_board_cycles());
-}
+void pc104_link_log_new(void) { stream_open(exh_board_cycles()); }
 
 /* --- what it costs --- */
 

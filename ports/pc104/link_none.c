@@ -9,27 +9,15 @@ int pc104_link_option(const char *name, const char *value)
     return 0;
 }
 
-void pc104_link_open(const struct exh_scene *sc)
-{
-    (void)sc;
-}
+void pc104_link_open(const struct exh_scene *sc) { (void)sc; }
 
-int pc104_link_up(void)
-{
-    return 0;
-}
+int pc104_link_up(void) { return 0; }
 
-void pc104_link_poll(void)
-{
-}
+void pc104_link_poll(void) {}
 
-void pc104_link_dry(void)
-{
-}
+void pc104_link_dry(void) {}
 
-void pc104_link_report(void)
-{
-}
+void pc104_link_report(void) {}
 
 /* Nobody is there. Each port has these of its own: it is copied and read without the others. */
 int exh_board_link_send(const void *buf, size_t len_B)

@@ -38,14 +38,14 @@ static const struct exh_signal rows[] = {
 };
 static const struct exh_signal bin_rows[] = {
     {0xA105, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "tick_bin", "",
-     "ticks of each sixteenth of a period, then longer"},
+        "ticks of each sixteenth of a period, then longer"},
 };
 static const struct exh_signal count_rows[] = {
     {0xA106, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "tick_missed", "", "ticks skipped"},
     {0xA107, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "irq_spurious", "",
-     "interrupts nobody asked for"},
+        "interrupts nobody asked for"},
     {0xA108, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "tick_late", "",
-     "ticks due while the one before still ran"},
+        "ticks due while the one before still ran"},
 };
 static const struct exh_signal_group groups[] = {
     {rows, 4, 1}, {bin_rows, 1, BINS + 1}, {count_rows, 3, 1}};
@@ -66,10 +66,7 @@ static int32_t ns(uint64_t counts)
     return n > INT32_MAX ? INT32_MAX : (int32_t)n;
 }
 
-static int32_t capped(uint32_t n)
-{
-    return n > INT32_MAX ? INT32_MAX : (int32_t)n;
-}
+static int32_t capped(uint32_t n) { return n > INT32_MAX ? INT32_MAX : (int32_t)n; }
 
 const int32_t *pc104_load_signals(void)
 {
@@ -95,10 +92,7 @@ static uint32_t hang_ticks(void)
 }
 
 /* Outputs are safe: what is said and handed over now may take as long as it wants. */
-void pc104_load_stop(void)
-{
-    pc104_hang_ticks = 0;
-}
+void pc104_load_stop(void) { pc104_hang_ticks = 0; }
 
 void pc104_load_begin(void)
 {
@@ -126,10 +120,7 @@ void pc104_load_end(void)
     spent.bin[bin < BINS ? bin : BINS]++;
 }
 
-static uint32_t add_sat(uint32_t a, uint32_t b)
-{
-    return b > UINT32_MAX - a ? UINT32_MAX : a + b;
-}
+static uint32_t add_sat(uint32_t a, uint32_t b) { return b > UINT32_MAX - a ? UINT32_MAX : a + b; }
 
 void pc104_load_missed(uint32_t tick, uint32_t missed, uint32_t late)
 {

@@ -146,16 +146,16 @@ void pc104_modbus_open(const struct exh_scene *sc)
     if (!par.asked_for) { return; }
     map(sc);
     if ((params && exh_signal_count(params->table) > VALUES) || exh_regs_setup(&regs) < 0) {
-        pc104_halt(PC104_EXIT_OPTION,
-                   "option modbus: the scene's tables are larger than this port's map");
+        pc104_halt(
+            PC104_EXIT_OPTION, "option modbus: the scene's tables are larger than this port's map");
     }
     if (safety && exh_trace_setup(&trace, frame, EXH_TRACE_FRAMES, regs.signals_n) == 0) {
         regs.trace = &trace;
     }
     (void)exh_modbus_rtu_setup(&line, (uint32_t)par.address, (uint32_t)par.baud);
     most = most_of(1, rate_Hz);
-    if (!is_there() || !pc104_uart_set(UART_COM2, (uint16_t)exh_udiv64(UART_BASE_BAUD,
-                                                                       (uint32_t)par.baud, NULL))) {
+    if (!is_there() || !pc104_uart_set(UART_COM2,
+                           (uint16_t)exh_udiv64(UART_BASE_BAUD, (uint32_t)par.baud, NULL))) {
         pc104_say("modbus: no 16550 with a FIFO at COM2: goes on without\n");
         return;
     }
@@ -194,7 +194,7 @@ void pc104_modbus_start(struct exh_scene_board board)
     tick_us = (uint32_t)exh_udiv64(UINT64_C(1000000) * board.T.num, board.T.den, NULL);
     /* 99 % of what the line takes */
     tick_B_q16 = (uint32_t)exh_udiv64((UINT64_C(99) << 16) * (uint32_t)par.baud * board.T.num,
-                                      UINT64_C(1000) * board.T.den, NULL);
+        UINT64_C(1000) * board.T.den, NULL);
     pc104_out8(COM2(UART_FIFO), UART_FIFO_EMPTY); /* what came before is no request */
 }
 

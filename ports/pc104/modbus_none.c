@@ -9,25 +9,13 @@ int pc104_modbus_option(const char *name, const char *value)
     return 0;
 }
 
-void pc104_modbus_open(const struct exh_scene *sc)
-{
-    (void)sc;
-}
+void pc104_modbus_open(const struct exh_scene *sc) { (void)sc; }
 
-void pc104_modbus_start(struct exh_scene_board board)
-{
-    (void)board;
-}
+void pc104_modbus_start(struct exh_scene_board board) { (void)board; }
 
-void pc104_modbus_poll(const struct exh_scene_in *in)
-{
-    (void)in;
-}
+void pc104_modbus_poll(const struct exh_scene_in *in) { (void)in; }
 
-uint8_t pc104_modbus_command(void)
-{
-    return EXH_CMD_NONE;
-}
+uint8_t pc104_modbus_command(void) { return EXH_CMD_NONE; }
 
 int pc104_modbus_dry(unsigned part)
 {
@@ -35,6 +23,4 @@ int pc104_modbus_dry(unsigned part)
     return 0;
 }
 
-void pc104_modbus_report(void)
-{
-}
+void pc104_modbus_report(void) {}

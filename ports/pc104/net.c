@@ -23,19 +23,13 @@ enum { I_SUM = 24, I_FROM = 26, I_TO = 30, U_FROM = 34, U_TO = 36, U_LENGTH = 38
 #define SLOW_US  1000000u
 #define QUICK    20u /* so many times */
 
-static const uint8_t arp_head[] = {0, 1, 8,
-                                   0, 6, 4}; /* Ethernet, IPv4, lengths of their addresses */
+static const uint8_t arp_head[] = {
+    0, 1, 8, 0, 6, 4}; /* Ethernet, IPv4, lengths of their addresses */
 static const uint8_t all[NET_MAC_B] = {255, 255, 255, 255, 255, 255};
 
-static uint16_t get16(const uint8_t *at)
-{
-    return (uint16_t)((unsigned)at[0] << 8 | at[1]);
-}
+static uint16_t get16(const uint8_t *at) { return (uint16_t)((unsigned)at[0] << 8 | at[1]); }
 
-static uint32_t get32(const uint8_t *at)
-{
-    return (uint32_t)get16(at) << 16 | get16(at + 2);
-}
+static uint32_t get32(const uint8_t *at) { return (uint32_t)get16(at) << 16 | get16(at + 2); }
 
 static void put16(uint8_t *at, unsigned v)
 {
@@ -101,10 +95,7 @@ static enum net_take drop(struct net *n, enum net_drop why)
     return NET_NOTHING;
 }
 
-static int is(const uint8_t *a, const uint8_t *b, size_t len_B)
-{
-    return memcmp(a, b, len_B) == 0;
-}
+static int is(const uint8_t *a, const uint8_t *b, size_t len_B) { return memcmp(a, b, len_B) == 0; }
 
 /* An address of one card: neither a group's nor none. */
 static int one_card(const uint8_t *mac)
@@ -181,7 +172,7 @@ static enum net_drop why_not_udp(const struct net *n, const uint8_t *f)
 }
 
 static enum net_take take_ip(struct net *n, const uint8_t *f, size_t len_B, uint32_t now_us,
-                             const uint8_t **at, size_t *payload_B)
+    const uint8_t **at, size_t *payload_B)
 {
     enum net_drop why;
     if (!is(f + TO, n->cfg.mac, NET_MAC_B)) { return drop(n, NET_OTHERS); }
@@ -198,7 +189,7 @@ static enum net_take take_ip(struct net *n, const uint8_t *f, size_t len_B, uint
 }
 
 enum net_take net_take(struct net *n, const uint8_t *frame, size_t len_B, uint32_t now_us,
-                       const uint8_t **at, size_t *payload_B)
+    const uint8_t **at, size_t *payload_B)
 {
     unsigned type;
     *at = NULL;
@@ -217,8 +208,8 @@ enum net_take net_take(struct net *n, const uint8_t *frame, size_t len_B, uint32
 
 /* --- out --- */
 
-static size_t put_arp(const struct net *n, uint8_t *to, unsigned op, const uint8_t *mac,
-                      uint32_t ip)
+static size_t put_arp(
+    const struct net *n, uint8_t *to, unsigned op, const uint8_t *mac, uint32_t ip)
 {
     memset(to, 0, NET_ARP_B);
     memcpy(to + TO, op == ARP_ASK ? all : mac, NET_MAC_B);
@@ -281,10 +272,9 @@ size_t net_datagram(struct net *n, uint8_t *to, uint16_t port, const void *paylo
 
 const char *net_drop_text(enum net_drop cause)
 {
-    static const char *const text[NET_DROPS] = {
-        "short",       "long", "others",     "type",   "arp",       "arp_others", "arp_conflict",
-        "arp_unasked", "ip",   "ip_options", "ip_sum", "ip_others", "fragment",   "protocol",
-        "stranger",    "udp",  "port",       "empty",  "too_long",  "udp_sum"};
+    static const char *const text[NET_DROPS] = {"short", "long", "others", "type", "arp",
+        "arp_others", "arp_conflict", "arp_unasked", "ip", "ip_options", "ip_sum", "ip_others",
+        "fragment", "protocol", "stranger", "udp", "port", "empty", "too_long", "udp_sum"};
     return cause < NET_DROPS ? text[cause] : "?";
 }
 

@@ -77,7 +77,7 @@ enum net_take { NET_NOTHING, NET_ANSWER, NET_DATAGRAM };
 /* One frame as it came, without its CRC. NET_ANSWER: net_answer() makes what is to be sent back;
  * NET_DATAGRAM: *at, of *len_B bytes, lies in the frame. Reads frame[0 .. len_B - 1] alone. */
 enum net_take net_take(struct net *n, const uint8_t *frame, size_t len_B, uint32_t now_us,
-                       const uint8_t **at, size_t *payload_B);
+    const uint8_t **at, size_t *payload_B);
 
 /* Frames to be sent; to[] holds NET_FRAME_B. Bytes, or 0: nothing to send. */
 size_t net_answer(const struct net *n, uint8_t *to);

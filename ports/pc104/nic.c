@@ -100,15 +100,9 @@ static unsigned in_at, in_back, out_at; /* in_back: the first that is not the ca
 static uint8_t torn;                    /* the rest of a frame in pieces is to come */
 static struct pc104_nic_counts counts;
 
-static uint32_t get(unsigned reg)
-{
-    return *(volatile uint32_t *)(base + reg);
-}
+static uint32_t get(unsigned reg) { return *(volatile uint32_t *)(base + reg); }
 
-static void put(unsigned reg, uint32_t value)
-{
-    *(volatile uint32_t *)(base + reg) = value;
-}
+static void put(unsigned reg, uint32_t value) { *(volatile uint32_t *)(base + reg) = value; }
 
 /* Until (reg & mask) == want: 1, or 0 after so long. */
 static int becomes(unsigned reg, uint32_t mask, uint32_t want, uint32_t us)
@@ -221,8 +215,8 @@ static int reset(void)
     put(CTRL, get(CTRL) | CTRL_NO_MASTER);
     if (!becomes(STATUS, STATUS_MASTER, 0, 100000)) { return fails("does not let go of the bus"); }
     put(EXTCNF_CTRL, get(EXTCNF_CTRL) | MDIO_OURS);
-    (void)becomes(EXTCNF_CTRL, MDIO_OURS, MDIO_OURS,
-                  10000); /* firmware of its own, if it has any */
+    (void)becomes(
+        EXTCNF_CTRL, MDIO_OURS, MDIO_OURS, 10000); /* firmware of its own, if it has any */
     put(CTRL, get(CTRL) | CTRL_RESET);
     pause_us(1000);
     if (!becomes(CTRL, CTRL_RESET, 0, 10000)) { return fails("does not come back from its reset"); }

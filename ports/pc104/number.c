@@ -9,10 +9,7 @@
 #define DIGITS_MAX   18
 #define EXPONENT_MAX 18
 
-static int is_digit(char c)
-{
-    return c >= '0' && c <= '9';
-}
+static int is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /* A decimal number: digits * 10^exponent. 0, or -EXH_E_UNKNOWN. */
 static int parse(const char *text, uint64_t *digits, int *exponent)

@@ -15,12 +15,12 @@ static const struct exh_signal rows[] = {
     {0xA003, 0, EXH_WHEN_SETUP, 0, 2, 0, "timer", "", "which makes the ticks"},
     {0xA004, 0, EXH_WHEN_SETUP, 0, 3, 0, "log", "", "where records go"},
     {0xA005, 0, EXH_WHEN_SETUP, 0, TICKS_MAX, 100, "overload_max", "",
-     "late ticks tolerated in all"},
+        "late ticks tolerated in all"},
     {0xA006, 0, EXH_WHEN_SETUP, 0, TICKS_MAX, 64, "grace", "",
-     "first ticks, in which they do not count"},
+        "first ticks, in which they do not count"},
     {0xA007, 0, EXH_WHEN_SETUP, 2, 10000, 20, "hang", "", "periods after which a tick is hung"},
     {0xA008, 0, EXH_WHEN_SETUP, 0, 1000000, 0, "budget", "us",
-     "stated cost of a tick; 0: measured"},
+        "stated cost of a tick; 0: measured"},
     {0xA009, 0, EXH_WHEN_SETUP, 0, 1000, 25, "headroom", "percent", "left free above that cost"},
     {0xA00A, 0, EXH_WHEN_SETUP, 0, 15, 0, "provoke", "", "a failure to be seen ending safe"},
     {0xA00B, 0, EXH_WHEN_SETUP, 0, TICKS_MAX, 100, "provoke_at", "", "in this tick"},
@@ -31,7 +31,7 @@ static const struct exh_signal rows[] = {
 static const struct exh_signal_group groups[] = {{rows, sizeof rows / sizeof rows[0], 1}};
 const struct exh_signal_table pc104_option_table = {groups, 1};
 EXH_STATIC_ASSERT(pc104_par_matches_rows,
-                  sizeof(struct pc104_par) == sizeof(int32_t) * (sizeof rows / sizeof rows[0]));
+    sizeof(struct pc104_par) == sizeof(int32_t) * (sizeof rows / sizeof rows[0]));
 
 /* Values that are words, in the order of their enums. */
 static const struct {
@@ -41,9 +41,8 @@ static const struct {
     {"log", {"off", "serial", "debug", "udp"}},
     {"dump", {"off", "serial", "debug", "udp"}},
     {"idle", {"halt", "spin"}},
-    {"provoke",
-     {"none", "divide", "opcode", "null", "write", "stack", "nmi", "spurious", "hang", "slow",
-      "timer", "assert", "mask", "idle", "twice", "reset"}},
+    {"provoke", {"none", "divide", "opcode", "null", "write", "stack", "nmi", "spurious", "hang",
+                    "slow", "timer", "assert", "mask", "idle", "twice", "reset"}},
 };
 
 /* Of a program that takes no options: nothing is too much. */

@@ -114,15 +114,15 @@ int pc104_fifo_wait(struct pc104_fifo *f, int32_t where);         /* 1: all is o
 uint32_t pc104_fifo_flush(struct pc104_fifo *f, int32_t where);
 
 /* --- scene_full.c, or scene_rom.c for a scene of constants without log --- */
-int pc104_scene_option(const struct exh_scene *sc, const char *name,
-                       const char *value); /* 0: not one of its */
+int pc104_scene_option(
+    const struct exh_scene *sc, const char *name, const char *value); /* 0: not one of its */
 void pc104_scene_ready(const struct exh_scene *sc);
 void pc104_scene_dry(const struct exh_scene *sc, uint32_t tick, const struct exh_scene_in *in,
-                     const struct exh_drive_out *out);
+    const struct exh_drive_out *out);
 void pc104_scene_start(const struct exh_scene *sc, struct exh_scene_board board);
 void pc104_scene_before(uint32_t tick, struct exh_scene_in *in);
-void pc104_scene_after(uint32_t tick, const struct exh_scene_in *in,
-                       const struct exh_drive_out *out);
+void pc104_scene_after(
+    uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out);
 void pc104_scene_end(void);
 int pc104_idle(void);       /* something to do while waiting: 0 if nothing is left */
 void pc104_log_flush(void); /* what waits goes out, or is given up */
@@ -133,8 +133,8 @@ int pc104_dump_open(void); /* 1: it was asked for; halts where it cannot be */
 void pc104_dump_start(const struct exh_scene *sc, struct exh_scene_board board);
 void pc104_dump_dry(void); /* the next record of a dry tick has a keyframe behind it */
 void pc104_dump_before(uint32_t tick, struct exh_scene_in *in);
-void pc104_dump_after(uint32_t tick, const struct exh_scene_in *in,
-                      const struct exh_drive_out *out);
+void pc104_dump_after(
+    uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out);
 int pc104_dump_idle(void);         /* as pc104_idle() */
 void pc104_dump_pause(void);       /* words follow: what is half out of a record goes first */
 void pc104_dump_flush(int halted); /* all of it, behind the last words */
@@ -201,8 +201,8 @@ int pc104_guard_hit(uint32_t address);
 uint32_t pc104_guard_eip(void); /* where the double fault came from */
 
 /* --- link.c: the network card, what comes and goes over it; link_none.c: there is none --- */
-int pc104_link_option(const char *name,
-                      const char *value); /* 0: not one of its; halts on bad ones */
+int pc104_link_option(
+    const char *name, const char *value); /* 0: not one of its; halts on bad ones */
 void pc104_link_open(
     const struct exh_scene *sc); /* finds the card, if one was asked for; says so */
 void pc104_link_poll(void);      /* what came since the last tick: bounded work */

@@ -4,22 +4,10 @@
 
 #include "cards/io.h"
 
-uint8_t exh_io_in8(uint16_t port)
-{
-    return pc104_in8(port);
-}
+uint8_t exh_io_in8(uint16_t port) { return pc104_in8(port); }
 
-void exh_io_out8(uint16_t port, uint8_t value)
-{
-    pc104_out8(port, value);
-}
+void exh_io_out8(uint16_t port, uint8_t value) { pc104_out8(port, value); }
 
-uint16_t exh_io_in16(uint16_t port)
-{
-    return pc104_in16(port);
-}
+uint16_t exh_io_in16(uint16_t port) { return pc104_in16(port); }
 
-void exh_io_out16(uint16_t port, uint16_t value)
-{
-    pc104_out16(port, value);
-}
+void exh_io_out16(uint16_t port, uint16_t value) { pc104_out16(port, value); }

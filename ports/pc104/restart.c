@@ -13,10 +13,7 @@
 #define HAS_SIZES 1u
 enum { RUNS = 0x52554E53, NOT_RUNS = ~RUNS };
 
-static volatile uint32_t *mark(void)
-{
-    return (volatile uint32_t *)MARK_AT;
-}
+static volatile uint32_t *mark(void) { return (volatile uint32_t *)MARK_AT; }
 
 /* Is there so much memory? The loader says. */
 static int is_there(void)
@@ -54,7 +51,4 @@ void pc104_restart_end(void)
     if (kept && !fired) { mark()[0] = mark()[1] = 0; }
 }
 
-int pc104_restart_fired(void)
-{
-    return fired;
-}
+int pc104_restart_fired(void) { return fired; }

@@ -32,10 +32,7 @@ int pc104_log_take(const void *rec, size_t len_B)
     return pc104_fifo_put(&fifo, byte, (uint32_t)len_B);
 }
 
-int pc104_idle(void)
-{
-    return pc104_fifo_out(&fifo, pc104_par.log, 0) | pc104_dump_idle();
-}
+int pc104_idle(void) { return pc104_fifo_out(&fifo, pc104_par.log, 0) | pc104_dump_idle(); }
 
 int pc104_scene_option(const struct exh_scene *sc, const char *name, const char *value)
 {
@@ -86,7 +83,7 @@ static void apply_dry(struct exh_params *p)
  * thing that Modbus may do. What it has staged is applied in the next tick, in which there is no
  * request; what a link has staged, in any. Nobody else stages while the loop runs. */
 void pc104_scene_dry(const struct exh_scene *sc, uint32_t tick, const struct exh_scene_in *in,
-                     const struct exh_drive_out *out)
+    const struct exh_drive_out *out)
 {
     const uint32_t every = EXH_LOG_KEYFRAME_TICKS / 16u;
     if (tick == 0) { boxed = (uint8_t)pc104_dump_open(); }
@@ -121,8 +118,8 @@ void pc104_scene_before(uint32_t tick, struct exh_scene_in *in)
     }
 }
 
-void pc104_scene_after(uint32_t tick, const struct exh_scene_in *in,
-                       const struct exh_drive_out *out)
+void pc104_scene_after(
+    uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
     last_tick = tick;
     if (boxed) {

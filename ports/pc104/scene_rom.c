@@ -10,13 +10,10 @@ int pc104_scene_option(const struct exh_scene *sc, const char *name, const char 
     return 0;
 }
 
-void pc104_scene_ready(const struct exh_scene *sc)
-{
-    (void)sc;
-}
+void pc104_scene_ready(const struct exh_scene *sc) { (void)sc; }
 
 void pc104_scene_dry(const struct exh_scene *sc, uint32_t tick, const struct exh_scene_in *in,
-                     const struct exh_drive_out *out)
+    const struct exh_drive_out *out)
 {
     (void)sc;
     (void)tick;
@@ -39,22 +36,17 @@ void pc104_scene_before(uint32_t tick, struct exh_scene_in *in)
     (void)in;
 }
 
-void pc104_scene_after(uint32_t tick, const struct exh_scene_in *in,
-                       const struct exh_drive_out *out)
+void pc104_scene_after(
+    uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
     (void)tick;
     (void)in;
     (void)out;
 }
 
-void pc104_scene_end(void)
-{
-}
+void pc104_scene_end(void) {}
 
-int pc104_idle(void)
-{
-    return 0;
-}
+int pc104_idle(void) { return 0; }
 
 int pc104_log_take(const void *rec, size_t len_B)
 {
@@ -63,11 +55,6 @@ int pc104_log_take(const void *rec, size_t len_B)
     return 0;
 }
 
-void pc104_log_flush(void)
-{
-}
+void pc104_log_flush(void) {}
 
-void pc104_dump_flush(int halted)
-{
-    (void)halted;
-}
+void pc104_dump_flush(int halted) { (void)halted; }

@@ -31,15 +31,9 @@ enum {
 
 static uint32_t patience; /* counts; 0: there is no second clock */
 
-static uint32_t get(unsigned reg)
-{
-    return *(volatile uint32_t *)(BASE + reg);
-}
+static uint32_t get(unsigned reg) { return *(volatile uint32_t *)(BASE + reg); }
 
-static void put(unsigned reg, uint32_t value)
-{
-    *(volatile uint32_t *)(BASE + reg) = value;
-}
+static void put(unsigned reg, uint32_t value) { *(volatile uint32_t *)(BASE + reg) = value; }
 
 static int is_there(void)
 {

@@ -244,15 +244,9 @@ int pc104_timer_wait(int (*idle)(void), uint32_t *missed, uint32_t *late)
 
 /* --- time --- */
 
-uint32_t pc104_timer_counts(void)
-{
-    return counts;
-}
+uint32_t pc104_timer_counts(void) { return counts; }
 
-uint32_t pc104_timer_Hz(void)
-{
-    return timer.Hz;
-}
+uint32_t pc104_timer_Hz(void) { return timer.Hz; }
 
 /* The 8254 may have begun a period whose interrupt is yet to come: time stands until then. */
 uint32_t pc104_timer_now(void)
@@ -290,7 +284,4 @@ void pc104_timer_kill(void)
     }
 }
 
-void pc104_timer_hang(void)
-{
-    hangs = 1;
-}
+void pc104_timer_hang(void) { hangs = 1; }

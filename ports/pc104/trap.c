@@ -77,26 +77,10 @@ static void stop_first(void)
 
 static const char *name_of(uint32_t vector)
 {
-    static const char *const name[] = {"divide error",
-                                       "debug",
-                                       "NMI",
-                                       "breakpoint",
-                                       "overflow",
-                                       "bound",
-                                       "invalid opcode",
-                                       "no FPU",
-                                       "double fault",
-                                       "FPU segment",
-                                       "invalid TSS",
-                                       "segment not present",
-                                       "stack segment",
-                                       "general protection",
-                                       "page fault",
-                                       "reserved",
-                                       "FPU error",
-                                       "alignment",
-                                       "machine check",
-                                       "SIMD error"};
+    static const char *const name[] = {"divide error", "debug", "NMI", "breakpoint", "overflow",
+        "bound", "invalid opcode", "no FPU", "double fault", "FPU segment", "invalid TSS",
+        "segment not present", "stack segment", "general protection", "page fault", "reserved",
+        "FPU error", "alignment", "machine check", "SIMD error"};
     return vector < sizeof name / sizeof name[0] ? name[vector] : "unexpected interrupt";
 }
 
@@ -143,7 +127,7 @@ void pc104_double_fault(void)
 {
     stop_first();
     say_where(pc104_guard_hit(fault_address()) ? "stack overflow" : name_of(DOUBLE_FAULT),
-              DOUBLE_FAULT, 0, pc104_guard_eip());
+        DOUBLE_FAULT, 0, pc104_guard_eip());
     pc104_halt(PC104_EXIT_FAULT, "processor exception");
 }
 

@@ -19,10 +19,7 @@ int pc104_uart_set(uint16_t base, uint16_t divisor)
     return (pc104_in8((uint16_t)(base + UART_FIFO)) & 0xC0u) == 0xC0u;
 }
 
-void pc104_uart_open(void)
-{
-    has_fifo = (uint8_t)pc104_uart_set(UART_COM1, 1);
-}
+void pc104_uart_open(void) { has_fifo = (uint8_t)pc104_uart_set(UART_COM1, 1); }
 
 void pc104_uart_put(char c)
 {

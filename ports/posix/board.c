@@ -78,20 +78,11 @@ void posix_configure(const struct posix_config *c)
     sim.configured = 1;
 }
 
-void posix_stop(void)
-{
-    stop = 1;
-}
+void posix_stop(void) { stop = 1; }
 
-void posix_interrupt(void)
-{
-    interrupted = 1;
-}
+void posix_interrupt(void) { interrupted = 1; }
 
-int posix_interrupted(void)
-{
-    return interrupted;
-}
+int posix_interrupted(void) { return interrupted; }
 
 int posix_fall(void)
 {
@@ -103,15 +94,9 @@ const struct sim_finger *posix_finger(unsigned i)
     return sim.exo.fingers >> i & 1 ? &sim.exo.finger[i] : NULL;
 }
 
-double posix_time_s(void)
-{
-    return sim.now_s;
-}
+double posix_time_s(void) { return sim.now_s; }
 
-const struct plant *posix_plant(void)
-{
-    return &sim.mass.plant;
-}
+const struct plant *posix_plant(void) { return &sim.mass.plant; }
 
 static double tick_time_s(uint64_t tick)
 {
@@ -125,8 +110,8 @@ static void start_mass(void)
     if (c->bench) {
         sim_mass_bench(&sim.mass, &c->device, c->seed, c->wrong);
     } else {
-        sim_mass_fall(&sim.mass, &c->device, c->seed, c->falls,
-                      (double)sim.T.num / (double)sim.T.den);
+        sim_mass_fall(
+            &sim.mass, &c->device, c->seed, c->falls, (double)sim.T.num / (double)sim.T.den);
     }
     sim.mass.fall.waits = c->wait;
     if (c->from_here) { sim_mass_put(&sim.mass, c->from_x_m, c->from_q_m); }
@@ -197,25 +182,16 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
     return err;
 }
 
-void posix_ready(void)
-{
-    fall_ready(&sim.mass.fall, sim.now_s);
-}
+void posix_ready(void) { fall_ready(&sim.mass.fall, sim.now_s); }
 
-void posix_hold(void)
-{
-    fall_catch(&sim.mass.fall, sim.now_s);
-}
+void posix_hold(void) { fall_catch(&sim.mass.fall, sim.now_s); }
 
 void posix_bench(enum bench_place place, double mass_kg)
 {
     bench_prepare(&sim.mass.bench, &sim.mass.plant, &sim.mass.rng, place, mass_kg);
 }
 
-int posix_bench_ready(void)
-{
-    return bench_ready(&sim.mass.bench);
-}
+int posix_bench_ready(void) { return bench_ready(&sim.mass.bench); }
 
 /* Nothing but a fall and the box, in virtual time. */
 static int plain(void)
@@ -324,10 +300,7 @@ static int done(void)
     return sim.exo.fingers ? sim_exo_done(&sim.exo) : sim.mass.fall.phase == FALL_DONE;
 }
 
-static int time_is_up(void)
-{
-    return sim.cfg.max_ticks && sim.tick >= sim.cfg.max_ticks;
-}
+static int time_is_up(void) { return sim.cfg.max_ticks && sim.tick >= sim.cfg.max_ticks; }
 
 /* Ticks that go by unseen; the outputs stay as they are. */
 static uint32_t pass(uint32_t ticks)
@@ -354,10 +327,7 @@ int exh_board_wait(void)
     return stop || interrupted || done() ? -1 : (int)missed;
 }
 
-static double magnitude(double v)
-{
-    return v < 0 ? -v : v;
-}
+static double magnitude(double v) { return v < 0 ? -v : v; }
 
 /* What the motors take in all. */
 static double load_A(void)
@@ -478,9 +448,9 @@ static int16_t coarse(int16_t code)
 {
     const double step = 2 * 29491.2 / 254;
     const double sample = (double)sim_floor((code + 29491.2) / step + 0.5);
-    return (int16_t)sim_floor((sample < 0     ? 0
-                               : sample > 254 ? 254
-                                              : sample) *
+    return (int16_t)sim_floor((sample < 0        ? 0
+                                  : sample > 254 ? 254
+                                                 : sample) *
                                   step -
                               29491.2 + 0.5);
 }
@@ -529,25 +499,16 @@ int exh_board_read_glove(struct exh_glove_in *in)
     return 0;
 }
 
-void posix_hand(int pose)
-{
-    sim_operator_go(&sim.hand, pose);
-}
+void posix_hand(int pose) { sim_operator_go(&sim.hand, pose); }
 
 int posix_hand_ready(void)
 {
     return sim_operator_at_rest(&sim.hand, sim.now_s - 5e-3 /* behind the low-pass too */);
 }
 
-void posix_glove_stop(void)
-{
-    sim.frame_s = 1e30;
-}
+void posix_glove_stop(void) { sim.frame_s = 1e30; }
 
-struct sim_glove *posix_glove(void)
-{
-    return &sim.glove;
-}
+struct sim_glove *posix_glove(void) { return &sim.glove; }
 
 uint32_t exh_board_cycles(void)
 {
@@ -569,7 +530,4 @@ int exh_board_link_send(const void *buf, size_t len_B)
     return n < 0 ? -EXH_E_IO : n;
 }
 
-int exh_board_link_recv(void *buf, size_t cap_B)
-{
-    return line_recv(sim.now_s, buf, cap_B);
-}
+int exh_board_link_recv(void *buf, size_t cap_B) { return line_recv(sim.now_s, buf, cap_B); }

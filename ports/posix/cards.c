@@ -19,33 +19,18 @@ static struct {
     struct posix_cards_watch watch;
 } cards;
 
-const struct posix_cards_watch *posix_cards_watch(void)
-{
-    return &cards.watch;
-}
+const struct posix_cards_watch *posix_cards_watch(void) { return &cards.watch; }
 
-struct emu_box *posix_cards_box(void)
-{
-    return &cards.box;
-}
+struct emu_box *posix_cards_box(void) { return &cards.box; }
 
 /* --- wiring (docs/CARDS.md), seen from the device --- */
 
-static unsigned card_of(unsigned finger)
-{
-    return finger < EMU_AXES ? EMU_S526_A : EMU_S526_B;
-}
+static unsigned card_of(unsigned finger) { return finger < EMU_AXES ? EMU_S526_A : EMU_S526_B; }
 
-static unsigned axis_of(unsigned finger)
-{
-    return finger % EMU_AXES;
-}
+static unsigned axis_of(unsigned finger) { return finger % EMU_AXES; }
 
 /* Where e-stop, dead-man, the watchdog's contact and supply are. */
-static unsigned common(void)
-{
-    return cards.fingers > 1 ? EMU_S526_B : EMU_S526_A;
-}
+static unsigned common(void) { return cards.fingers > 1 ? EMU_S526_B : EMU_S526_A; }
 
 static void show_drive(const struct exh_drive_in *in)
 {

@@ -115,7 +115,7 @@ int16_t cyberglove_raw(uint8_t sample)
 
 const char *cyberglove_cause_text(unsigned cause)
 {
-    static const char *const text[CYBERGLOVE_CAUSES] = {"zero sample", "18 samples", "wrong length",
-                                                        "other form",  "unplugged",  "too fast"};
+    static const char *const text[CYBERGLOVE_CAUSES] = {
+        "zero sample", "18 samples", "wrong length", "other form", "unplugged", "too fast"};
     return cause < CYBERGLOVE_CAUSES ? text[cause] : "unknown";
 }

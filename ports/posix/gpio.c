@@ -75,15 +75,15 @@ static void say_no_chip(char *said, int error)
     if (error == ENOENT) {
         list_chips(chips, sizeof chips);
         snprintf(said, GPIO_SAID_B,
-                 "%s: there is no such chip (%s%s): take one that gpiodetect lists", path,
-                 chips[0] ? "there are: " : "there is none", chips);
+            "%s: there is no such chip (%s%s): take one that gpiodetect lists", path,
+            chips[0] ? "there are: " : "there is none", chips);
     } else if (error == EACCES || error == EPERM) {
         snprintf(said, GPIO_SAID_B,
-                 "%s: not allowed (%s): join the group that `ls -l %s` shows, or add a udev rule",
-                 path, strerror(error), path);
+            "%s: not allowed (%s): join the group that `ls -l %s` shows, or add a udev rule", path,
+            strerror(error), path);
     } else {
         snprintf(said, GPIO_SAID_B, "%s: not a GPIO chip (%s): take one that gpiodetect lists",
-                 path, strerror(error));
+            path, strerror(error));
     }
 }
 
@@ -93,25 +93,23 @@ static void say_problem(char *said, const struct gpio_problem *p)
     const char *name = name_of(p->line);
     switch (p->why) {
     case GPIO_NO_LIBRARY:
-        snprintf(
-            said, GPIO_SAID_B,
+        snprintf(said, GPIO_SAID_B,
             "this program was built without libgpiod: install libgpiod-dev and build it again");
         break;
     case GPIO_NO_CHIP: say_no_chip(said, p->error); break;
     case GPIO_NO_LINE:
         snprintf(said, GPIO_SAID_B, "%s=%u: %s has lines 0..%u: choose one of them", name, p->line,
-                 path, p->lines - 1);
+            path, p->lines - 1);
         break;
     case GPIO_BUSY:
         snprintf(said, GPIO_SAID_B,
-                 "%s=%u: line %u of %s is held by \"%s\": end that program, or take another line",
-                 name, p->line, p->line, path, p->who);
+            "%s=%u: line %u of %s is held by \"%s\": end that program, or take another line", name,
+            p->line, p->line, path, p->who);
         break;
     case GPIO_FINE:
     case GPIO_REFUSED:
     default:
-        snprintf(
-            said, GPIO_SAID_B,
+        snprintf(said, GPIO_SAID_B,
             "%s: the kernel does not give these lines (%s): see `gpioinfo` and the kernel's log",
             path, strerror(p->error));
         break;
@@ -197,10 +195,7 @@ void gpio_close(void)
     gpio_lines_close();
 }
 
-int gpio_has(enum gpio_channel channel)
-{
-    return is_open && gpio.spec.contacts[channel] != 0;
-}
+int gpio_has(enum gpio_channel channel) { return is_open && gpio.spec.contacts[channel] != 0; }
 
 /* --- a tick --- */
 
@@ -218,10 +213,7 @@ void gpio_start(struct exh_period T)
 
 static void (*take_line)(const char *line);
 
-void gpio_say(void (*say)(const char *line))
-{
-    take_line = say;
-}
+void gpio_say(void (*say)(const char *line)) { take_line = say; }
 
 static void tell(const char *line)
 {
@@ -238,19 +230,16 @@ static int fail(const char *what)
     char line[LINE_B];
     if (!gpio.failed) {
         snprintf(line, sizeof line, "exhand: %s: %s (%s): %s, the run ends", gpio.spec.path, what,
-                 why,
-                 put_low() == 0 ? "outputs go low"
-                                : "outputs CAN'T BE SET LOW, switch them off by hand");
+            why,
+            put_low() == 0 ? "outputs go low"
+                           : "outputs CAN'T BE SET LOW, switch them off by hand");
         tell(line);
     }
     gpio.failed = 1;
     return -EXH_E_IO;
 }
 
-static uint32_t one_more(uint32_t n)
-{
-    return n < UINT32_MAX ? n + 1 : n;
-}
+static uint32_t one_more(uint32_t n) { return n < UINT32_MAX ? n + 1 : n; }
 
 static void count_differ(unsigned i)
 {
@@ -278,8 +267,7 @@ static void say_stuck(unsigned i, const int *level)
 {
     const unsigned *at = gpio.spec.contact[i];
     char line[LINE_B];
-    snprintf(
-        line, sizeof line,
+    snprintf(line, sizeof line,
         "exhand: %s: its contacts disagree for more than %lu ticks (line %u closed, line %u "
         "open): it is taken for open until both have been: look for a welded contact, a broken "
         "or a shorted wire",

@@ -6,7 +6,7 @@
 #include <string.h>
 
 int gpio_lines_open(const char *path, const unsigned *in, unsigned ins, const unsigned *out,
-                    unsigned outs, struct gpio_problem *p)
+    unsigned outs, struct gpio_problem *p)
 {
     memset(p, 0, sizeof *p);
     if (gpio_lines_library[0] == '\0') {

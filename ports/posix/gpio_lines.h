@@ -31,14 +31,14 @@ extern const char gpio_lines_library[]; /* "libgpiod 1"; "" without */
 /* Requests in[0..ins-1] as inputs, pulled down where the chip can, and out[0..outs-1] as outputs,
  * low from the first. Each count 0..GPIO_LINES_MAX. 0, or -1 and nothing is held: *p says why. */
 int gpio_lines_open(const char *path, const unsigned *in, unsigned ins, const unsigned *out,
-                    unsigned outs, struct gpio_problem *p);
+    unsigned outs, struct gpio_problem *p);
 void gpio_lines_close(void);
 
 /* What each version has of it. The chip alone: 0, or -1 with errno. Then its lines: 0, or -1 with
  * *p said, and what is held by then is left to gpio_lines_close(). */
 int gpio_chip_open(const char *path);
-int gpio_chip_request(const unsigned *in, unsigned ins, const unsigned *out, unsigned outs,
-                      struct gpio_problem *p);
+int gpio_chip_request(
+    const unsigned *in, unsigned ins, const unsigned *out, unsigned outs, struct gpio_problem *p);
 /* This line is somebody's; who: NULL, or a name. */
 static inline void gpio_lines_busy(struct gpio_problem *p, unsigned line, const char *who)
 {

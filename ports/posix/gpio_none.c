@@ -13,16 +13,14 @@ int gpio_chip_open(const char *path)
     return -1;
 }
 
-int gpio_chip_request(const unsigned *in, unsigned ins, const unsigned *out, unsigned outs,
-                      struct gpio_problem *p)
+int gpio_chip_request(
+    const unsigned *in, unsigned ins, const unsigned *out, unsigned outs, struct gpio_problem *p)
 {
     (void)in, (void)ins, (void)out, (void)outs, (void)p;
     return -1;
 }
 
-void gpio_lines_close(void)
-{
-}
+void gpio_lines_close(void) {}
 
 int gpio_lines_get(int *level)
 {

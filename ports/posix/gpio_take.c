@@ -7,8 +7,8 @@
 
 #define EXAMPLE "e.g. gpiochip0:estop=4,deadman=5,enable=6,alive=7"
 
-static const char *const field[GPIO_CHANNELS + GPIO_OUTPUTS] = {"estop", "deadman", "enable",
-                                                                "alive"};
+static const char *const field[GPIO_CHANNELS + GPIO_OUTPUTS] = {
+    "estop", "deadman", "enable", "alive"};
 
 static int bad(char *said, const char *what, size_t len, const char *why)
 {
@@ -57,7 +57,7 @@ static int user(const struct gpio_spec *s, unsigned line)
 
 /* A line of a field, "4", into its place. */
 static int take_line(struct gpio_spec *s, int i, const char *text, size_t len, const char *whole,
-                     size_t whole_len, char *said)
+    size_t whole_len, char *said)
 {
     const int v = number(text, len);
     char why[96];
@@ -67,7 +67,7 @@ static int take_line(struct gpio_spec *s, int i, const char *text, size_t len, c
     }
     if (user(s, (unsigned)v) >= 0) {
         snprintf(why, sizeof why, "line %d is %s's already: every line once", v,
-                 field[user(s, (unsigned)v)]);
+            field[user(s, (unsigned)v)]);
         return bad(said, whole, whole_len, why);
     }
     if (i < GPIO_CHANNELS) {
@@ -81,7 +81,7 @@ static int take_line(struct gpio_spec *s, int i, const char *text, size_t len, c
 
 /* "4", or of a contact "4+8". */
 static int take_lines(struct gpio_spec *s, int i, const char *text, size_t len, const char *whole,
-                      size_t whole_len, char *said)
+    size_t whole_len, char *said)
 {
     const char *plus = memchr(text, '+', len);
     const size_t first = plus ? (size_t)(plus - text) : len;
@@ -109,8 +109,8 @@ static int take_field(struct gpio_spec *s, const char *text, size_t len, char *s
         }
         return take_lines(s, i, is + 1, len - name - 1, text, len, said);
     }
-    return bad(said, text, len,
-               len ? "there are estop, deadman, enable and alive" : "an empty field");
+    return bad(
+        said, text, len, len ? "there are estop, deadman, enable and alive" : "an empty field");
 }
 
 int gpio_take(struct gpio_spec *s, const char *text, char said[GPIO_SAID_B])

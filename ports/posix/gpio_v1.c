@@ -21,16 +21,16 @@ static int busy(struct gpiod_line_bulk *bulk, struct gpio_problem *p)
 {
     for (unsigned i = 0; i < bulk->num_lines; i++) {
         if (gpiod_line_update(bulk->lines[i]) == 0 && gpiod_line_is_used(bulk->lines[i])) {
-            gpio_lines_busy(p, gpiod_line_offset(bulk->lines[i]),
-                            gpiod_line_consumer(bulk->lines[i]));
+            gpio_lines_busy(
+                p, gpiod_line_offset(bulk->lines[i]), gpiod_line_consumer(bulk->lines[i]));
             return 1;
         }
     }
     return 0;
 }
 
-static int find(const unsigned *line, unsigned n, struct gpiod_line_bulk *bulk,
-                struct gpio_problem *p)
+static int find(
+    const unsigned *line, unsigned n, struct gpiod_line_bulk *bulk, struct gpio_problem *p)
 {
     gpiod_line_bulk_init(bulk);
     for (unsigned i = 0; i < n; i++) {
@@ -61,7 +61,7 @@ static int request_in(struct gpio_problem *p)
 {
     struct gpiod_line_bulk *bulk = &held.in;
     if (request(bulk, GPIOD_LINE_REQUEST_DIRECTION_INPUT, GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_DOWN,
-                p) == 0) {
+            p) == 0) {
         return 0;
     }
     return p->error == EINVAL ? request(bulk, GPIOD_LINE_REQUEST_DIRECTION_INPUT, 0, p) : -1;
@@ -74,8 +74,8 @@ int gpio_chip_open(const char *path)
     return held.chip ? 0 : -1;
 }
 
-int gpio_chip_request(const unsigned *in, unsigned ins, const unsigned *out, unsigned outs,
-                      struct gpio_problem *p)
+int gpio_chip_request(
+    const unsigned *in, unsigned ins, const unsigned *out, unsigned outs, struct gpio_problem *p)
 {
     p->lines = gpiod_chip_num_lines(held.chip);
     if (find(in, ins, &held.in, p) < 0 || find(out, outs, &held.out, p) < 0) { return -1; }
@@ -94,10 +94,7 @@ void gpio_lines_close(void)
     memset(&held, 0, sizeof held);
 }
 
-int gpio_lines_get(int *level)
-{
-    return held.ins ? gpiod_line_get_value_bulk(&held.in, level) : 0;
-}
+int gpio_lines_get(int *level) { return held.ins ? gpiod_line_get_value_bulk(&held.in, level) : 0; }
 
 int gpio_lines_put(const int *level)
 {

@@ -75,8 +75,8 @@ static int ask(struct asked *a, const unsigned *line, unsigned n, int output)
     return gpiod_line_config_add_line_settings(a->lines, line, n, a->settings);
 }
 
-static struct gpiod_line_request *request(const unsigned *line, unsigned n, int output,
-                                          struct gpio_problem *p)
+static struct gpiod_line_request *request(
+    const unsigned *line, unsigned n, int output, struct gpio_problem *p)
 {
     struct gpiod_line_request *r = NULL;
     struct asked a = {NULL, NULL, NULL};
@@ -97,8 +97,8 @@ int gpio_chip_open(const char *path)
     return held.chip ? 0 : -1;
 }
 
-int gpio_chip_request(const unsigned *in, unsigned ins, const unsigned *out, unsigned outs,
-                      struct gpio_problem *p)
+int gpio_chip_request(
+    const unsigned *in, unsigned ins, const unsigned *out, unsigned outs, struct gpio_problem *p)
 {
     if (count(p) < 0) {
         p->why = GPIO_NO_CHIP;

@@ -45,7 +45,7 @@ int line_start(const struct posix_line *cfg, uint64_t seed)
     if (!cfg->on) { return 0; }
     for (unsigned k = 0; k < SIM_LINK_WAYS; k++) {
         sim_link_start(&line.link.way[k], &cfg->way[k], cfg->trace[k],
-                       seed ^ UINT64_C(0xD1B54A32D192ED03) * (k + 1));
+            seed ^ UINT64_C(0xD1B54A32D192ED03) * (k + 1));
     }
     if (cfg->udp_local != NULL) {
         if (udp_open(&line.udp, cfg->udp_local, cfg->udp_peer) < 0) { return -1; }
@@ -54,10 +54,7 @@ int line_start(const struct posix_line *cfg, uint64_t seed)
     return 0;
 }
 
-struct sim_link *posix_link(void)
-{
-    return &line.link;
-}
+struct sim_link *posix_link(void) { return &line.link; }
 
 /* Answers go to whoever sent the newest good packet; a flood of others turns them nowhere. */
 static void learn(const void *buf, size_t len_B)

@@ -24,8 +24,8 @@ static struct timespec due(uint64_t tick)
 {
     const uint64_t num = tick * clock_is.T.num, den = clock_is.T.den;
     const uint64_t ns = num % den * NS_PER_S / den + (uint64_t)clock_is.from.tv_nsec;
-    return (struct timespec){clock_is.from.tv_sec + (time_t)(num / den + ns / NS_PER_S),
-                             (long)(ns % NS_PER_S)};
+    return (struct timespec){
+        clock_is.from.tv_sec + (time_t)(num / den + ns / NS_PER_S), (long)(ns % NS_PER_S)};
 }
 
 /* The last tick that is due now. */

@@ -25,29 +25,29 @@ struct posix_config {
     int falls;           /* then the board says stop */
     struct exh_period T; /* num 0: 1 / rate */
     FILE *log;           /* records go here; NULL: taken and forgotten */
-    int (*log_put)(const void *rec,
-                   size_t len_B); /* not NULL: takes them instead, 1, or loses one, 0 */
-    int pace;                     /* 1: follow the wall clock; ticks that go by are missed */
-    double slack_s;               /* but a tick so late is made up for */
-    uint32_t max_ticks;           /* 0: no limit */
-    int bench;                    /* 1: a bench for calibration instead of falls; it goes
-                                   * on until posix_stop() */
-    unsigned wrong;               /* enum bench_wrong: what is wrong with the bench */
-    int wait;                     /* 1: the first fall is held until posix_ready() */
-    int from_here;                /* 1: the first fall begins at from_x_m, from_q_m */
-    double from_x_m, from_q_m;    /* mass and string, 0 = virtual contact */
-    struct sim_exo_par exo;       /* fingers not 0: fingers in an exoskeleton instead of falls
-                                   * and bench; when all their scripts have ended the
-                                   * board says stop */
-    unsigned drives;              /* bit i: drive of finger i is there and ready, besides those
-                                   * of fingers in use */
-    struct posix_cards cards;     /* how: all codes go through drivers and emulated cards */
-    struct posix_line line;       /* on: the link leads somewhere */
-    int gpio;                     /* 1: contacts and outputs of gpio.h, which is open; with pace */
-    double let_go_s;              /* the dead-man switch opens then; 0: never */
-    double enc_jitter_cnt;        /* peak to peak, uniform: 1 makes a resting encoder change
-                                   * between two counts */
-    int glove;                    /* 1: there is a glove, and a hand in it */
+    int (*log_put)(
+        const void *rec, size_t len_B); /* not NULL: takes them instead, 1, or loses one, 0 */
+    int pace;                           /* 1: follow the wall clock; ticks that go by are missed */
+    double slack_s;                     /* but a tick so late is made up for */
+    uint32_t max_ticks;                 /* 0: no limit */
+    int bench;                          /* 1: a bench for calibration instead of falls; it goes
+                                         * on until posix_stop() */
+    unsigned wrong;                     /* enum bench_wrong: what is wrong with the bench */
+    int wait;                           /* 1: the first fall is held until posix_ready() */
+    int from_here;                      /* 1: the first fall begins at from_x_m, from_q_m */
+    double from_x_m, from_q_m;          /* mass and string, 0 = virtual contact */
+    struct sim_exo_par exo;             /* fingers not 0: fingers in an exoskeleton instead of falls
+                                         * and bench; when all their scripts have ended the
+                                         * board says stop */
+    unsigned drives;          /* bit i: drive of finger i is there and ready, besides those
+                               * of fingers in use */
+    struct posix_cards cards; /* how: all codes go through drivers and emulated cards */
+    struct posix_line line;   /* on: the link leads somewhere */
+    int gpio;                 /* 1: contacts and outputs of gpio.h, which is open; with pace */
+    double let_go_s;          /* the dead-man switch opens then; 0: never */
+    double enc_jitter_cnt;    /* peak to peak, uniform: 1 makes a resting encoder change
+                               * between two counts */
+    int glove;                /* 1: there is a glove, and a hand in it */
     struct sim_glove_par glove_par;
     int stock; /* 1: simulated as a stock glove's: samples of 8 bits, 1 .. 255 at -9 .. 9 V, a
                 * frame late */

@@ -30,10 +30,7 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
 /* Fill in: sleep until the timer's next tick. Count ticks where they happen (an
  * interrupt or a hardware counter), so that late arrival is seen and returned. The
  * first call starts the clock: time spent in set-up is not a missed tick. */
-int exh_board_wait(void)
-{
-    return -EXH_E_ABSENT;
-}
+int exh_board_wait(void) { return -EXH_E_ABSENT; }
 
 /* Fill in: latch all axes with as few accesses as the cards allow, then read. Raw
  * codes only, no scaling. A digital input that does not exist must not read
@@ -57,9 +54,7 @@ int exh_board_write_drive(const struct exh_drive_out *out)
 /* Fill in: the D/A code of zero current on every axis, all enables off. Called
  * from anywhere, also before exh_board_init() and from a fault handler: no waiting
  * without a bound, no state needed. */
-void exh_board_safe(void)
-{
-}
+void exh_board_safe(void) {}
 
 /* Fill in: say why on whatever there is (serial line, lamp code), then stop so that
  * only a reset helps. The outputs are safe before the first word. */
@@ -82,10 +77,7 @@ int exh_board_read_glove(struct exh_glove_in *in)
 
 /* Fill in: a free-running counter; it may wrap, it must not stop. If it begins anew with each
  * start, a scene with a link needs another `session` at each (docs/WIRE.md). */
-uint32_t exh_board_cycles(void)
-{
-    return 0;
-}
+uint32_t exh_board_cycles(void) { return 0; }
 
 /* Fill in: take the whole record or nothing, now: a slow sink must not cost a tick. */
 int exh_board_log(const void *rec, size_t len_B)

@@ -43,8 +43,8 @@ static void add(struct input *in, unsigned right, const uint8_t *packet, size_t 
     in->n += 3 + n;
 }
 
-static void add_packet(struct input *in, struct exh_wire_tx *tx, unsigned right,
-                       struct exh_wire_packet p)
+static void add_packet(
+    struct input *in, struct exh_wire_tx *tx, unsigned right, struct exh_wire_packet p)
 {
     uint8_t buf[EXH_WIRE_MAX_B];
     const int32_t n = exh_wire_encode(tx, &p, 1000, buf, sizeof buf);
@@ -76,8 +76,8 @@ static struct exh_wire_packet packet_of(uint8_t type)
 /* One per type behind a HELLO, and what a link does: twice, late, anew, short, nothing. */
 static void make_files(void)
 {
-    static const char *const name[] = {"hello", "state",     "planes", "param",
-                                       "ack",   "trace-ask", "trace"};
+    static const char *const name[] = {
+        "hello", "state", "planes", "param", "ack", "trace-ask", "trace"};
     for (uint8_t t = EXH_WIRE_HELLO; t <= EXH_WIRE_TRACE; t++) {
         for (unsigned right = 0; right < 2; right++) {
             struct input *in = &files[files_n++];
@@ -136,8 +136,8 @@ static void make_files(void)
         for (unsigned i = 0; i < 3; i++) {
             static const uint32_t seq[] = {100 + EXH_WIRE_AHEAD, 101 + 2 * EXH_WIRE_AHEAD, 101};
             tx.seq = seq[i];
-            add_packet(in, &tx, i == 2 ? 64 : 0,
-                       packet_of(i == 2 ? EXH_WIRE_HELLO : EXH_WIRE_PARAM));
+            add_packet(
+                in, &tx, i == 2 ? 64 : 0, packet_of(i == 2 ? EXH_WIRE_HELLO : EXH_WIRE_PARAM));
         }
     }
     {
@@ -178,8 +178,8 @@ static int write_or_check(const char *dir, int check)
             bad |= fwrite(files[i].byte, 1, files[i].n, f) != files[i].n;
         } else if (fread(got, 1, sizeof got, f) != files[i].n ||
                    memcmp(got, files[i].byte, files[i].n) != 0) {
-            fprintf(stderr, "%s/%s: not what the code makes: make fuzz-corpus\n", dir,
-                    files[i].name);
+            fprintf(
+                stderr, "%s/%s: not what the code makes: make fuzz-corpus\n", dir, files[i].name);
             bad = 1;
         }
         fclose(f);
@@ -199,10 +199,7 @@ static uint64_t u64(void)
     return z ^ z >> 31;
 }
 
-static size_t below(size_t n)
-{
-    return n ? (size_t)(u64() % n) : 0;
-}
+static size_t below(size_t n) { return n ? (size_t)(u64() % n) : 0; }
 
 static void mutate(struct input *in)
 {
@@ -272,10 +269,7 @@ static int read_dir(const char *dir)
     return files_n;
 }
 
-static void run(void)
-{
-    LLVMFuzzerTestOneInput(running.byte, running.n);
-}
+static void run(void) { LLVMFuzzerTestOneInput(running.byte, running.n); }
 
 static int fuzz(long seconds, uint64_t seed, const char *dir)
 {
@@ -297,7 +291,7 @@ static int fuzz(long seconds, uint64_t seed, const char *dir)
         run();
     }
     printf("%d inputs, %lu mutants from seed %llu: nothing found\n", files_n, n,
-           (unsigned long long)seed);
+        (unsigned long long)seed);
     return 0;
 }
 

@@ -74,15 +74,15 @@ static void start(void)
     exh_params_setup(&b.p, &par_table, b.active, b.wanted);
     b.p.locked = 1;
     b.r = (struct exh_regs){.name = "fuzz",
-                            .signals = &out_table,
-                            .signal = b.signal,
-                            .params = &par_table,
-                            .active = b.active,
-                            .wanted = b.wanted,
-                            .staged = b.staged,
-                            .touched = b.touched,
-                            .may = EXH_REGS_MAY,
-                            .locked = 1};
+        .signals = &out_table,
+        .signal = b.signal,
+        .params = &par_table,
+        .active = b.active,
+        .wanted = b.wanted,
+        .staged = b.staged,
+        .touched = b.touched,
+        .may = EXH_REGS_MAY,
+        .locked = 1};
     for (int i = 0; i < SIGNALS; i++) { b.signal[i] = i * 0x01234567; }
     b.staged[PARAMS] = 0x5A5A;
     b.touched[EXH_REGS_WORDS(PARAMS)] = 0x5A5A;
@@ -144,14 +144,14 @@ static void put_right(unsigned right, uint8_t *q, uint32_t *len_B)
 }
 
 /* The answer ends where it says, and nothing is behind it. */
-static void must_answer(const struct box *was, const uint8_t *q, uint32_t len_B, const uint8_t *a,
-                        int n)
+static void must_answer(
+    const struct box *was, const uint8_t *q, uint32_t len_B, const uint8_t *a, int n)
 {
     MUST(n >= 0 && n <= EXH_MODBUS_PDU_B && (n == 0) == (len_B == 0));
     if (n == 0) { return; }
     if (a[0] & 0x80u) {
-        MUST(n == 2 && a[0] == (q[0] | 0x80u) &&
-             (a[1] == 1 || a[1] == 2 || a[1] == 3 || a[1] == 6));
+        MUST(
+            n == 2 && a[0] == (q[0] | 0x80u) && (a[1] == 1 || a[1] == 2 || a[1] == 3 || a[1] == 6));
         MUST(memcmp(was, &b, sizeof b) == 0);
     } else {
         MUST(a[0] == q[0] && n >= 3);
@@ -265,7 +265,7 @@ static void failed(int sig)
         fclose(f);
     }
     fprintf(stderr, "modbus: seed %llu; its input is in fuzz-modbus-failed\n",
-            (unsigned long long)made_of);
+        (unsigned long long)made_of);
     signal(sig, SIG_DFL);
     raise(sig);
 }
@@ -310,7 +310,7 @@ int main(int argc, char **argv)
         (void)LLVMFuzzerTestOneInput(input, input_n);
     }
     printf("modbus: %llu inputs from seed %llu: nothing found\n", (unsigned long long)n,
-           (unsigned long long)seed);
+        (unsigned long long)seed);
     return 0;
 }
 #endif

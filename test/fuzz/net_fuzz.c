@@ -210,7 +210,7 @@ static int fuzz(long seconds, uint64_t seed)
         (void)LLVMFuzzerTestOneInput(input, input_n);
     }
     printf("net: %llu inputs from seed %llu: nothing found\n", (unsigned long long)n,
-           (unsigned long long)seed);
+        (unsigned long long)seed);
     return 0;
 }
 

@@ -37,8 +37,8 @@
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static const struct exh_material_par material[2] = {{1 << 24, 1 << 24, 1 << 22}, {1, 1, 1}};
-static const struct exh_precontact_par par = {-5368709, 1073741, 1 << 24, 0, 0,
-                                              100,      5368709, 100,     50};
+static const struct exh_precontact_par par = {
+    -5368709, 1073741, 1 << 24, 0, 0, 100, 5368709, 100, 50};
 
 /* All that a packet may reach. */
 struct box {
@@ -72,10 +72,7 @@ static void must_be_unchanged(const struct box *was, const struct box *now)
     MUST(memcmp(&is, was, sizeof is) == 0);
 }
 
-static int was_frozen(const struct exh_precontact *s)
-{
-    return s->phase == EXH_PRECONTACT_FROZEN;
-}
+static int was_frozen(const struct exh_precontact *s) { return s->phase == EXH_PRECONTACT_FROZEN; }
 
 static void planes_came(struct box *b, const struct exh_precontact_cfg *cfg)
 {
@@ -131,8 +128,8 @@ static void same_bytes(const struct box *b, const uint8_t *packet, size_t len)
 }
 
 /* It is next and not too far ahead, or a HELLO that may begin. */
-static void heard(const struct exh_wire_rx *was, const struct exh_wire_rx *is, uint32_t seq,
-                  int type)
+static void heard(
+    const struct exh_wire_rx *was, const struct exh_wire_rx *is, uint32_t seq, int type)
 {
     const uint32_t ahead = is->seq - was->seq;
     const int same = is->session == was->session;
@@ -192,7 +189,7 @@ static void asked(const struct exh_wire_trace_request *a)
 }
 
 static void datagram(struct box *b, const struct exh_precontact_cfg *cfg, struct exh_params *params,
-                     const uint8_t *packet, size_t len)
+    const uint8_t *packet, size_t len)
 {
     const struct box was = *b;
     const int r = exh_wire_decode(&b->rx, &b->last, packet, len);

@@ -148,7 +148,7 @@ void golden_bytes(struct golden *g, uint32_t rate_Hz)
 
 /* Writes a record; its size, 0 if it did not fit. */
 static uint32_t write(uint8_t *buf, uint32_t cap, uint8_t type, uint32_t seq, uint32_t tick,
-                      uint8_t *payload, uint32_t n)
+    uint8_t *payload, uint32_t n)
 {
     struct exh_bytes c = exh_bytes_writer(buf, cap);
     exh_record_begin(&c, type, seq, tick);

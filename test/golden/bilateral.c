@@ -53,16 +53,10 @@ static int32_t any_size(struct golden_rng *r, int32_t most)
     return (int32_t)(any >> golden_draw(r, 0, 12));
 }
 
-static uint32_t any_u32(struct golden_rng *r)
-{
-    return (uint32_t)(golden_u64(r) & UINT32_MAX);
-}
+static uint32_t any_u32(struct golden_rng *r) { return (uint32_t)(golden_u64(r) & UINT32_MAX); }
 
 /* The scene names a board: nobody asks it here. */
-uint32_t exh_board_cycles(void)
-{
-    return 0;
-}
+uint32_t exh_board_cycles(void) { return 0; }
 
 int exh_board_read_glove(struct exh_glove_in *in)
 {
@@ -121,10 +115,7 @@ static void any_finger(unsigned f, struct golden_rng *r, uint32_t rate_Hz)
     p->precontact[f].tip_age_max_ms = any_ms(r, 1, 12, rate_Hz);
 }
 
-static int any_crossed(unsigned i)
-{
-    return i == 3 || i == 10 || i == 14 || i == 18;
-}
+static int any_crossed(unsigned i) { return i == 3 || i == 10 || i == 14 || i == 18; }
 
 static void any_sensor(struct glove_sensor_par *s, unsigned i, struct golden_rng *r)
 {
@@ -193,16 +184,10 @@ static void set_up(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
 /* --- the world --- */
 
 /* Twice a run no planes come, and no sensor is believed. */
-static int away(uint32_t k)
-{
-    return k % 128 >= 104 && k % 128 < 124;
-}
+static int away(uint32_t k) { return k % 128 >= 104 && k % 128 < 124; }
 
 /* So seldom that a trace comes to wait for a packet's worth of frames, and no longer. */
-static int asks(uint32_t k)
-{
-    return k % 128 < 24;
-}
+static int asks(uint32_t k) { return k % 128 < 24; }
 
 static void arrive(const struct datagram *d)
 {
@@ -481,7 +466,7 @@ void golden_bilateral(struct golden *g, uint32_t rate_Hz)
     struct golden_rng r = golden_rng("bilateral", rate_Hz, 0);
     for (uint32_t i = 0; i < 4; i++) {
         golden_wave(&codes[i], "bilateral", rate_Hz, 20 + i, -32768, 32767,
-                    INT32_C(1) << golden_draw(&r, 4, 9));
+            INT32_C(1) << golden_draw(&r, 4, 9));
     }
     while (g->tick < GOLDEN_TICKS) {
         const uint32_t k = g->tick;
@@ -491,7 +476,7 @@ void golden_bilateral(struct golden *g, uint32_t rate_Hz)
             for (uint32_t f = 0; f < FINGERS; f++) {
                 const int32_t jump = rig.cfg.finger[f].quad.jump_cnt;
                 golden_wave(&moves[f], "bilateral", rate_Hz, 1 + f + (k > 0 ? 8 : 0), -jump, jump,
-                            jump < 1024 ? 1 : jump >> 10);
+                    jump < 1024 ? 1 : jump >> 10);
             }
         }
         any_mail(&r, rate_Hz, k);

@@ -60,8 +60,8 @@ static void put_fits(struct golden *g, struct golden_rng *r, const struct exh_ca
     golden_put(g, c->points);
     for (which = 0; which < 2; which++) {
         CHECK_EQ_I64(exh_calib_fit(&fit[which], c->point, c->points,
-                                   which == 0 ? EXH_CALIB_CURRENT : EXH_CALIB_MONITOR),
-                     0);
+                         which == 0 ? EXH_CALIB_CURRENT : EXH_CALIB_MONITOR),
+            0);
         golden_put(g, fit[which].kf_NpA_q20);
         golden_put(g, fit[which].gain.mant);
         golden_put(g, fit[which].gain.shift);
@@ -69,7 +69,7 @@ static void put_fits(struct golden *g, struct golden_rng *r, const struct exh_ca
     at = golden_draw(r, 0, c->points - 1);
     which = golden_draw(r, 0, 1);
     golden_put(g, exh_calib_residual_N_q20(&fit[which], &c->point[at],
-                                           which == 0 ? EXH_CALIB_CURRENT : EXH_CALIB_MONITOR));
+                      which == 0 ? EXH_CALIB_CURRENT : EXH_CALIB_MONITOR));
 }
 
 /* Saves, spoils now and then, loads. */
@@ -94,8 +94,8 @@ static void put_check(struct golden *g, struct golden_rng *r, const struct exh_c
     const int64_t other = golden_draw(r, 0, 9);
     const uint32_t by = (uint32_t)golden_draw(r, 1, 500);
     struct exh_calib_error bad = {0, 0};
-    struct exh_calib_target h = {c->device_id,    c->finger,    c->day,         c->dac_rawpA_q16,
-                                 c->dac_zero_raw, c->mon_A_q40, c->mon_zero_raw};
+    struct exh_calib_target h = {c->device_id, c->finger, c->day, c->dac_rawpA_q16, c->dac_zero_raw,
+        c->mon_A_q40, c->mon_zero_raw};
     int err;
     if (other == 0) { h.device_id ^= by; }
     if (other == 1) { h.finger += by; }

@@ -30,8 +30,8 @@ static int32_t just_reached(int64_t now, int64_t before)
 }
 
 /* Where q_lim is beside q: somewhere near, at the edges of contact, or as it was. */
-static int64_t offset(struct golden_rng *r, const struct exh_contact_par *par, uint32_t k,
-                      int64_t before)
+static int64_t offset(
+    struct golden_rng *r, const struct exh_contact_par *par, uint32_t k, int64_t before)
 {
     const int64_t where = golden_draw(r, 0, 7);
     if (k % 32 == 0 || where > 5) { return golden_draw(r, -(INT32_C(1) << 24), INT32_C(1) << 24); }
@@ -48,10 +48,10 @@ void golden_contact(struct golden *g, uint32_t rate_Hz)
     struct exh_contact_par par = {.k_Npm_q10 = 0};
     struct exh_contact_in in = {.lim_m_q30 = 0};
     int64_t off = 0;
-    golden_wave(&q, "contact", rate_Hz, 1, INT32_MIN, INT32_MAX,
-                INT32_C(1) << golden_draw(&r, 8, 24));
-    golden_wave(&v, "contact", rate_Hz, 2, INT32_MIN, INT32_MAX,
-                INT32_C(1) << golden_draw(&r, 8, 28));
+    golden_wave(
+        &q, "contact", rate_Hz, 1, INT32_MIN, INT32_MAX, INT32_C(1) << golden_draw(&r, 8, 24));
+    golden_wave(
+        &v, "contact", rate_Hz, 2, INT32_MIN, INT32_MAX, INT32_C(1) << golden_draw(&r, 8, 28));
     while (g->tick < GOLDEN_TICKS) {
         struct exh_force_ledger f;
         int touching;

@@ -71,8 +71,8 @@ void golden_table(struct golden *g, uint32_t rate_Hz)
 
 /* --- drive --- */
 
-static struct exh_table rising(struct golden_rng *r, struct exh_knot *knot, int32_t x, int32_t y,
-                               int32_t dx, int32_t dy)
+static struct exh_table rising(
+    struct golden_rng *r, struct exh_knot *knot, int32_t x, int32_t y, int32_t dx, int32_t dy)
 {
     const unsigned n = (unsigned)golden_draw(r, 2, 6);
     for (unsigned i = 0; i < n; i++) {
@@ -136,8 +136,8 @@ static void axis_setup(struct axis *a, struct golden_rng *r, uint32_t rate_Hz, u
     x = (int32_t)golden_draw(r, -(INT32_C(1) << 29), 0);
     y = (int32_t)golden_draw(r, -(INT32_C(1) << 27), 0);
     CHECK_EQ_I64(exh_drive_setup(&a->cfg, &a->par, golden_period(rate_Hz, k), to_cur,
-                                 rising(r, a->to_force, x, y, INT32_C(1) << 28, INT32_C(1) << 25)),
-                 0);
+                     rising(r, a->to_force, x, y, INT32_C(1) << 28, INT32_C(1) << 25)),
+        0);
 }
 
 static struct exh_permit any_permit(struct golden_rng *r, uint32_t k, struct exh_gain fall)
@@ -146,7 +146,7 @@ static struct exh_permit any_permit(struct golden_rng *r, uint32_t k, struct exh
     struct exh_permit p = {k < 4 || (k >= 70 && k < 76) ? 0
                            : k == 130                   ? 3
                                                         : 1,
-                           INT32_C(1) << 30, 0, 1, fall};
+        INT32_C(1) << 30, 0, 1, fall};
     int64_t any;
     if (k >= 100 && k < 110) { p.mode = EXH_PERMIT_RELEASE; }
     if (k >= 160 && (any = golden_draw(r, 0, 31)) < 5) { p.mode = mode[any]; }
@@ -166,9 +166,9 @@ void golden_drive(struct golden *g, uint32_t rate_Hz)
     struct golden_rng r = golden_rng("drive", rate_Hz, 0);
     struct exh_gain fall = {0, 1};
     golden_wave(&spring, "drive", rate_Hz, 1, -(INT32_C(1) << 26), INT32_C(1) << 27,
-                INT32_C(1) << golden_draw(&r, 10, 22));
+        INT32_C(1) << golden_draw(&r, 10, 22));
     golden_wave(&damper, "drive", rate_Hz, 2, -(INT32_C(1) << 25), INT32_C(1) << 25,
-                INT32_C(1) << golden_draw(&r, 10, 22));
+        INT32_C(1) << golden_draw(&r, 10, 22));
     while (g->tick < GOLDEN_TICKS) {
         const uint32_t k = g->tick;
         struct exh_permit permit;

@@ -22,8 +22,8 @@ static int32_t any_size(struct golden_rng *r, int32_t most)
     return (int32_t)(any >> golden_draw(r, 0, 12));
 }
 
-static void any_par(struct drop_par *p, struct golden_rail *rail, struct golden_rng *r,
-                    uint32_t rate_Hz)
+static void any_par(
+    struct drop_par *p, struct golden_rail *rail, struct golden_rng *r, uint32_t rate_Hz)
 {
     p->quad.step_m_q42 = golden_step(r);
     p->quad.speed_max_mps_q27 = (int32_t)golden_draw(r, 13421773, INT32_MAX);
@@ -86,7 +86,7 @@ static void any_in(struct exh_scene_in *in, struct golden_rng *r, uint32_t k, st
 }
 
 static void put_out(struct golden *g, const struct guarded_signals *all, int guarded,
-                    const struct exh_drive_out *out)
+    const struct exh_drive_out *out)
 {
     const struct drop_signals *sig = &all->drop;
     golden_put(g, sig->q_m_q30);
@@ -144,7 +144,7 @@ static void play(struct golden *g, uint32_t rate_Hz, const char *name, int guard
             d.guarded = guarded;
             scene_setup(&d, &r, rate_Hz, k);
             golden_wave(&moves, name, rate_Hz, 1 + (k > 0), -most_cnt(&d), most_cnt(&d),
-                        most_cnt(&d) < 1024 ? 1 : most_cnt(&d) >> 10);
+                most_cnt(&d) < 1024 ? 1 : most_cnt(&d) >> 10);
             raw = (uint32_t)(golden_u64(&r) & UINT32_MAX);
             in.drive.din = HEALTHY;
             sig.drop.i_des_A_q26 = 0;
@@ -175,12 +175,6 @@ static void play(struct golden *g, uint32_t rate_Hz, const char *name, int guard
     }
 }
 
-void golden_drop(struct golden *g, uint32_t rate_Hz)
-{
-    play(g, rate_Hz, "drop", 0);
-}
+void golden_drop(struct golden *g, uint32_t rate_Hz) { play(g, rate_Hz, "drop", 0); }
 
-void golden_guarded(struct golden *g, uint32_t rate_Hz)
-{
-    play(g, rate_Hz, "guarded", 1);
-}
+void golden_guarded(struct golden *g, uint32_t rate_Hz) { play(g, rate_Hz, "guarded", 1); }

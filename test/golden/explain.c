@@ -23,7 +23,7 @@ struct golden_rates golden_rates(void)
     n = sscanf(text, "%u..%u:%u", &lo, &hi, &step);
     if (n == 1) { hi = lo; }
     CHECK(n > 0 && lo >= 1 && lo <= hi && hi <= GOLDEN_BEYOND && step >= 1,
-          "EXH_RATES=%s is no lo..hi or lo..hi:step of 1..%u", text, GOLDEN_BEYOND);
+        "EXH_RATES=%s is no lo..hi or lo..hi:step of 1..%u", text, GOLDEN_BEYOND);
     r.lo = lo;
     r.hi = hi;
     r.step = step;
@@ -91,20 +91,20 @@ static void state_text(const struct golden *g, int whole, char *text)
     }
 }
 
-static void say(struct reader *r, const struct golden *g, const char *column, const char *want,
-                const char *got)
+static void say(
+    struct reader *r, const struct golden *g, const char *column, const char *want, const char *got)
 {
     unsigned at = 0;
     while (want[at] != '\0' && want[at] == got[at]) { at++; }
     if (check_same_text(column, "state") && r->whole) {
         (void)snprintf(r->said, sizeof r->said,
-                       "%s at %" PRIu32 " Hz, tick %" PRIu32
-                       ": state differs from byte %u on\n    expected %.200s\n    got      %.200s",
-                       r->name, r->rate_Hz, g->tick, at / 2, want, got);
+            "%s at %" PRIu32 " Hz, tick %" PRIu32
+            ": state differs from byte %u on\n    expected %.200s\n    got      %.200s",
+            r->name, r->rate_Hz, g->tick, at / 2, want, got);
     } else {
         (void)snprintf(r->said, sizeof r->said,
-                       "%s at %" PRIu32 " Hz, tick %" PRIu32 ": %.60s: expected %.60s, got %.60s",
-                       r->name, r->rate_Hz, g->tick, column, want, got);
+            "%s at %" PRIu32 " Hz, tick %" PRIu32 ": %.60s: expected %.60s, got %.60s", r->name,
+            r->rate_Hz, g->tick, column, want, got);
     }
 }
 
@@ -161,7 +161,7 @@ const char *golden_explain(const char *name, golden_run *run, uint32_t rate_Hz)
     char command[200];
     int all = 0;
     (void)snprintf(command, sizeof command, "python3 " DIR "golden.py --module %s --rate %" PRIu32,
-                   name, rate_Hz);
+        name, rate_Hz);
     r = (struct reader){.f = popen(command, "r"), .name = name, .rate_Hz = rate_Hz, .whole = 1};
     if (r.f != NULL) {
         all = beside(&r, run);
@@ -172,9 +172,9 @@ const char *golden_explain(const char *name, golden_run *run, uint32_t rate_Hz)
         (void)snprintf(r.said, sizeof r.said, NO_TRACE "%s", command);
     } else if (r.said[0] == '\0') {
         (void)snprintf(r.said, sizeof r.said,
-                       "%s at %" PRIu32 " Hz is as the generator says, its digest is an old one: "
-                       "make golden",
-                       name, rate_Hz);
+            "%s at %" PRIu32 " Hz is as the generator says, its digest is an old one: "
+            "make golden",
+            name, rate_Hz);
     }
     return r.said;
 }
@@ -213,7 +213,7 @@ static int from_generator(const char *name, uint32_t first, uint32_t digest[GOLD
     int found;
     FILE *f;
     (void)snprintf(command, sizeof command,
-                   "python3 " DIR "golden.py --module %s --hundred %" PRIu32, name, first);
+        "python3 " DIR "golden.py --module %s --hundred %" PRIu32, name, first);
     f = popen(command, "r");
     if (f == NULL) { return 0; }
     found = hundred_in(f, digest);
@@ -221,8 +221,8 @@ static int from_generator(const char *name, uint32_t first, uint32_t digest[GOLD
     return found;
 }
 
-int golden_singles(const char *name, uint32_t first, uint32_t crc, int ask,
-                   uint32_t digest[GOLDEN_HUNDRED])
+int golden_singles(
+    const char *name, uint32_t first, uint32_t crc, int ask, uint32_t digest[GOLDEN_HUNDRED])
 {
     uint32_t all = 0;
     if (first <= GOLDEN_RATES && from_table(name, first, digest)) {
@@ -232,10 +232,7 @@ int golden_singles(const char *name, uint32_t first, uint32_t crc, int ask,
     return ask && from_generator(name, first, digest);
 }
 
-int golden_files(void)
-{
-    return 1;
-}
+int golden_files(void) { return 1; }
 
 void golden_write(const char *name, uint32_t first, const uint32_t digest[GOLDEN_HUNDRED])
 {
@@ -287,22 +284,16 @@ struct golden_rates golden_rates(void)
     r.hi = number(&text);
     r.step = number(&text);
     CHECK(*text == '\0' && r.lo >= 1 && r.lo <= r.hi && r.hi <= GOLDEN_RATES && r.step >= 1,
-          "EXH_RATES");
+        "EXH_RATES");
     return r;
 }
 
-int golden_cells(void)
-{
-    return 1;
-}
+int golden_cells(void) { return 1; }
 
-int golden_quiet(void)
-{
-    return 0;
-}
+int golden_quiet(void) { return 0; }
 
-int golden_singles(const char *name, uint32_t first, uint32_t crc, int ask,
-                   uint32_t digest[GOLDEN_HUNDRED])
+int golden_singles(
+    const char *name, uint32_t first, uint32_t crc, int ask, uint32_t digest[GOLDEN_HUNDRED])
 {
     (void)name;
     (void)first;
@@ -312,10 +303,7 @@ int golden_singles(const char *name, uint32_t first, uint32_t crc, int ask,
     return 0;
 }
 
-int golden_files(void)
-{
-    return 0;
-}
+int golden_files(void) { return 0; }
 
 void golden_write(const char *name, uint32_t first, const uint32_t digest[GOLDEN_HUNDRED])
 {

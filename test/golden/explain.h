@@ -18,8 +18,8 @@ int golden_cells(void);
 
 /* The digest of each rate of the hundred that begins at `first`, from the table EXH_DIGESTS, if
  * they have this CRC; else from the generator, if `ask`. 0 where neither has them. */
-int golden_singles(const char *name, uint32_t first, uint32_t crc, int ask,
-                   uint32_t digest[GOLDEN_HUNDRED]);
+int golden_singles(
+    const char *name, uint32_t first, uint32_t crc, int ask, uint32_t digest[GOLDEN_HUNDRED]);
 
 /* 1 if there are files, so that nobody else compares. */
 int golden_files(void);

@@ -52,7 +52,7 @@ void golden_filter(struct golden *g, uint32_t rate_Hz)
     int err = 0;
     for (uint32_t i = 0; i < CHANNELS; i++) {
         golden_wave(&w[i], "filter", rate_Hz, 1 + i, INT32_MIN, INT32_MAX,
-                    INT32_C(1) << golden_draw(&r, 8, 28));
+            INT32_C(1) << golden_draw(&r, 8, 28));
     }
     while (g->tick < GOLDEN_TICKS) {
         const uint32_t k = g->tick;
@@ -86,8 +86,8 @@ void golden_quantizer(struct golden *g, uint32_t rate_Hz)
     struct exh_quantizer_cfg cfg = {0, 0};
     struct exh_quantizer s = {0, 0};
     int err = 0;
-    golden_wave(&w, "quantizer", rate_Hz, 1, INT32_MIN, INT32_MAX,
-                INT32_C(1) << golden_draw(&r, 4, 30));
+    golden_wave(
+        &w, "quantizer", rate_Hz, 1, INT32_MIN, INT32_MAX, INT32_C(1) << golden_draw(&r, 4, 30));
     while (g->tick < GOLDEN_TICKS) {
         int32_t x = w.at[g->tick];
         if (g->tick == GOLDEN_AGAIN) { s = (struct exh_quantizer){0, 0}; }

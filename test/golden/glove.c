@@ -4,10 +4,7 @@
 
 #include "exhand/glove.h"
 
-static int is_crossed(int i)
-{
-    return i == 3 || i == 10 || i == 14 || i == 18;
-}
+static int is_crossed(int i) { return i == 3 || i == 10 || i == 14 || i == 18; }
 
 static void any_sensor(struct golden_rng *r, int i, int present, struct exh_glove_sensor *s)
 {
@@ -95,8 +92,8 @@ static int32_t bad_code(const struct worn *g, int i, uint32_t k)
     }
 }
 
-static void any_frame(const struct worn *g, const struct golden_wave *w, uint32_t k,
-                      struct exh_glove_in *in)
+static void any_frame(
+    const struct worn *g, const struct golden_wave *w, uint32_t k, struct exh_glove_in *in)
 {
     for (int i = 0; i < EXH_GLOVE_SENSORS; i++) {
         const struct exh_glove_sensor *s = &g->cal.sensor[i];
@@ -131,8 +128,8 @@ static void frames(struct golden *g, const char *name, uint32_t rate_Hz, uint32_
     static struct worn worn;
     struct golden_rng r = golden_rng(name, rate_Hz, 0);
     for (uint32_t i = 0; i < 4; i++) {
-        golden_wave(&w[i], name, rate_Hz, 1 + i, -32768, 32767,
-                    INT32_C(1) << golden_draw(&r, 0, 11));
+        golden_wave(
+            &w[i], name, rate_Hz, 1 + i, -32768, 32767, INT32_C(1) << golden_draw(&r, 0, 11));
     }
     while (g->tick < GOLDEN_TICKS) {
         struct exh_glove_in in = {.age_ticks = 0};
@@ -154,10 +151,7 @@ static void frames(struct golden *g, const char *name, uint32_t rate_Hz, uint32_
     }
 }
 
-void golden_glove(struct golden *g, uint32_t rate_Hz)
-{
-    frames(g, "glove", rate_Hz, 1);
-}
+void golden_glove(struct golden *g, uint32_t rate_Hz) { frames(g, "glove", rate_Hz, 1); }
 
 /* Every ratio of frames to ticks that a scene's row `every` takes, 1..1000. */
 void golden_glove_every(struct golden *g, uint32_t rate_Hz)

@@ -32,7 +32,7 @@ static void put_check(struct golden *g, struct golden_rng *r, const struct exh_g
     if (other == 2) { day += by; }
     if (other == 3) { day -= by < day ? by : day; }
     err = exh_glove_cal_check(cal, other == 0 ? cal->user_id ^ by : cal->user_id,
-                              other == 1 ? cal->glove_id + by : cal->glove_id, day, &bad);
+        other == 1 ? cal->glove_id + by : cal->glove_id, day, &bad);
     golden_put(g, err);
     golden_put(g, err == 0 ? 0 : bad.what);
 }

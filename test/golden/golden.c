@@ -99,7 +99,7 @@ int64_t golden_corner(struct golden_rng *r)
 }
 
 static int64_t wave_next(uint32_t k, int64_t x, int64_t *slope, struct golden_rng *r, int64_t lo,
-                         int64_t hi, int64_t small)
+    int64_t hi, int64_t small)
 {
     const int64_t mid = (lo + hi) >> 1;
     if (k < 8) { return mid; } /* rest */
@@ -126,7 +126,7 @@ static int64_t wave_next(uint32_t k, int64_t x, int64_t *slope, struct golden_rn
 }
 
 void golden_wave(struct golden_wave *w, const char *module, uint32_t rate_Hz, uint32_t stream,
-                 int32_t lo, int32_t hi, int32_t small)
+    int32_t lo, int32_t hi, int32_t small)
 {
     struct golden_rng r = golden_rng(module, rate_Hz, stream);
     int64_t x = 0;

@@ -88,7 +88,7 @@ struct golden_wave {
     int32_t at[GOLDEN_TICKS];
 };
 void golden_wave(struct golden_wave *w, const char *module, uint32_t rate_Hz, uint32_t stream,
-                 int32_t lo, int32_t hi, int32_t small);
+    int32_t lo, int32_t hi, int32_t small);
 
 /* The loop's period from tick k on. */
 struct exh_period golden_period(uint32_t rate_Hz, uint32_t k);
@@ -110,15 +110,15 @@ struct golden_rail {
 /* Limits that are two codes, the upper as it may fall; once in seldom + 1 none. The supply is good.
  */
 void golden_supply_par(struct exh_supply_par *p, struct golden_rail *rail, struct golden_rng *r,
-                       uint32_t rate_Hz, int64_t seldom);
+    uint32_t rate_Hz, int64_t seldom);
 
 /* Tick k's code: now and then for some ticks none, too high, or any; twice a run too high for
  * longer than it may be. */
 int16_t golden_rail(struct golden_rail *rail, struct golden_rng *r, uint32_t k);
 
 /* A scene's monitor: mostly the code of what was coded, now and then for a while any. */
-int16_t golden_monitor(unsigned *astray, const struct exh_drive_par *p, struct golden_rng *r,
-                       int32_t coded_A_q26);
+int16_t golden_monitor(
+    unsigned *astray, const struct exh_drive_par *p, struct golden_rng *r, int32_t coded_A_q26);
 
 /* The sensors of some calibration of a glove. */
 void golden_glove_sensors(struct exh_glove_cal *cal, struct golden_rng *r);

@@ -53,8 +53,8 @@ static void differs(struct tally *t, uint32_t rate)
 }
 
 /* Rates one by one: a whole hundred whose CRC differs, or a part of one. */
-static void one_by_one(struct tally *t, const struct hundred *h, const char *name, uint32_t first,
-                       uint32_t want)
+static void one_by_one(
+    struct tally *t, const struct hundred *h, const char *name, uint32_t first, uint32_t want)
 {
     static uint32_t digest[GOLDEN_HUNDRED];
     const uint32_t before = t->differ;
@@ -71,21 +71,21 @@ static void one_by_one(struct tally *t, const struct hundred *h, const char *nam
     }
 }
 
-static void tell(const struct tally *t, const char *name, golden_run *run,
-                 const struct golden_rates *of)
+static void tell(
+    const struct tally *t, const char *name, golden_run *run, const struct golden_rates *of)
 {
     if (golden_cells() && t->ran > 0) {
         check_note("cells: %s %" PRIu32 "..%" PRIu32 ":%" PRIu32 " %" PRIu32 " %08" PRIx32, name,
-                   of->lo, of->hi, of->step, t->ran, t->crc);
+            of->lo, of->hi, of->step, t->ran, t->crc);
         check_note("hundreds: %s %" PRIu32 " %08" PRIx32, name, t->hundreds, t->crc_hundreds);
     }
     if (t->differ > 0 && !golden_quiet()) { check_note("%s", golden_explain(name, run, t->first)); }
     CHECK(t->differ == 0,
-          "%s: %s%" PRIu32 " of %" PRIu32 " rates differ, the first is %" PRIu32 " Hz", name,
-          t->rough ? "up to " : "", t->differ, t->ran, t->first);
+        "%s: %s%" PRIu32 " of %" PRIu32 " rates differ, the first is %" PRIu32 " Hz", name,
+        t->rough ? "up to " : "", t->differ, t->ran, t->first);
     CHECK(t->unknown == 0 || !golden_files(),
-          "%s: no digests of %" PRIu32 " single rates: make golden-rates, or python3", name,
-          t->unknown);
+        "%s: no digests of %" PRIu32 " single rates: make golden-rates, or python3", name,
+        t->unknown);
 }
 
 /* crc[i] is of the digests at 100 i + 1 … 100 i + 100 Hz. */
@@ -153,16 +153,13 @@ TEST(first_tick_that_differs_is_told)
         return;
     }
     CHECK(begins(said, "velocity_window at 91 Hz, tick 130: vel_mps_q27: expected "),
-          "from the generator: %s", said);
+        "from the generator: %s", said);
     said = golden_explain("velocity_window", golden_velocity_window, 90);
     CHECK(begins(said, "velocity_window at 90 Hz is as"), "of a run that is right: %s", said);
 }
 
 #define MODULE(name) \
-    TEST(name) \
-    { \
-        all_rates(#name, golden_##name, digest_##name); \
-    } \
+    TEST(name) { all_rates(#name, golden_##name, digest_##name); } \
     typedef int module_##name
 
 MODULE(fix);
@@ -208,7 +205,7 @@ MODULE(guarded);
 MODULE(bilateral);
 
 TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, record, ring, signal, slots, quad,
-          quad_ab, velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table,
-          drive, track, watch, guard, supply, passivity, safety, calibrate, probe, home, weigh,
-          filter, quantizer, gains, glove, glove_every, glove_cal, angle, hand, precontact, wire,
-          mirror, modbus, modbus_rtu, drop, guarded, bilateral);
+    quad_ab, velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table, drive,
+    track, watch, guard, supply, passivity, safety, calibrate, probe, home, weigh, filter,
+    quantizer, gains, glove, glove_every, glove_cal, angle, hand, precontact, wire, mirror, modbus,
+    modbus_rtu, drop, guarded, bilateral);

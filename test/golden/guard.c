@@ -78,7 +78,7 @@ void golden_guard(struct golden *g, uint32_t rate_Hz)
 /* --- supply --- */
 
 void golden_supply_par(struct exh_supply_par *p, struct golden_rail *rail, struct golden_rng *r,
-                       uint32_t rate_Hz, int64_t seldom)
+    uint32_t rate_Hz, int64_t seldom)
 {
     const int64_t scale = golden_draw(r, 100000, 1500000);
     const int64_t low = golden_draw(r, 1, 20000), high = golden_draw(r, low + 1, 32000);
@@ -103,7 +103,7 @@ int16_t golden_rail(struct golden_rail *rail, struct golden_rng *r, uint32_t k)
 
 /* Limits that may be none, and what set-up says of them. */
 static int any_limits(struct exh_supply_cfg *cfg, struct golden_rail *rail, struct golden_rng *r,
-                      uint32_t rate_Hz, uint32_t k)
+    uint32_t rate_Hz, uint32_t k)
 {
     struct exh_supply_par p;
     int err;

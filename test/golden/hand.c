@@ -52,8 +52,7 @@ static void any_bones(struct golden_rng *r, struct exh_hand_bones *b)
     t = golden_any_turn(r);
     u = golden_any_turn(r);
     const int64_t rot[3][3] = {{t.c * u.d, -t.s * u.c, t.s * u.s},
-                               {t.s * u.d, t.c * u.c, -t.c * u.s},
-                               {0, u.s * t.d, u.c * t.d}};
+        {t.s * u.d, t.c * u.c, -t.c * u.s}, {0, u.s * t.d, u.c * t.d}};
     for (int i = 0; i < 9; i++) {
         b->rot_q30[i / 3][i % 3] = golden_q30(rot[i / 3][i % 3], t.d * u.d);
     }
@@ -102,7 +101,7 @@ void golden_hand(struct golden *g, uint32_t rate_Hz)
     struct golden_rng r = golden_rng("hand", rate_Hz, 0);
     for (uint32_t i = 0; i < 4; i++) {
         golden_wave(&w[i], "hand", rate_Hz, 1 + i, INT32_MIN, INT32_MAX,
-                    INT32_C(1) << golden_draw(&r, 16, 28));
+            INT32_C(1) << golden_draw(&r, 16, 28));
     }
     while (g->tick < GOLDEN_TICKS) {
         const unsigned f = g->tick % EXH_FINGERS;

@@ -69,8 +69,8 @@ static uint32_t any_frame(const struct exh_modbus_rtu *u, struct golden_rng *r, 
 }
 
 /* Bytes with a pause among them, or a damaged one; what the line says of the pause. */
-static int bytes_come(struct exh_modbus_rtu *u, struct golden_rng *r, const uint8_t *frame,
-                      uint32_t len_B)
+static int bytes_come(
+    struct exh_modbus_rtu *u, struct golden_rng *r, const uint8_t *frame, uint32_t len_B)
 {
     const uint32_t at = (uint32_t)golden_draw(r, 0, len_B);
     const int64_t how = golden_draw(r, 0, 15);
@@ -140,8 +140,8 @@ static uint32_t any_bits(struct golden_rng *r, unsigned frac)
     return (exh_float_from_raw(how == 5   ? INT32_MIN
                                : how == 6 ? INT32_MAX
                                           : exh_from_u32(any),
-                               frac) +
-            (uint32_t)near) &
+                frac) +
+               (uint32_t)near) &
            0xFFFFFFFFu;
 }
 

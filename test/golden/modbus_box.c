@@ -23,7 +23,7 @@ static const struct exh_signal par_rows[] = {
     {0x7204, 42, EXH_WHEN_LIMIT, -70000, 70000, 1, "limit", "", ""},
     {0x7205, 0, EXH_WHEN_ANY, 0, 1, 0, "bit", "", ""},
     {0x7206, 24, EXH_WHEN_ANY, 16777217, INT32_MAX, 16777219, "odd", "",
-     ""}, /* no binary32 is an end */
+        ""}, /* no binary32 is an end */
 };
 static const struct exh_signal last_rows[] = {
     {0x7301, 126, EXH_WHEN_SETUP, INT32_MIN, INT32_MAX, -1, "last", "", ""},
@@ -45,15 +45,15 @@ void golden_box_setup(struct golden_box *b, struct golden_rng *r, struct exh_per
     for (uint32_t i = 0; i < BOX_SIGNALS; i++) { b->signal[i] = exh_from_u32(i * 0x9E3779B1u); }
     CHECK_EQ_I64(exh_trace_setup(&b->trace, b->frame, BOX_FRAMES, BOX_SIGNALS), 0);
     b->regs = (struct exh_regs){.name = name[golden_draw(r, 0, 3)],
-                                .signals = no_signals ? NULL : &out_table,
-                                .signal = b->signal,
-                                .params = &par_table,
-                                .active = b->active,
-                                .wanted = b->wanted,
-                                .staged = b->staged,
-                                .touched = b->touched,
-                                .T = T,
-                                .trace = no_trace ? NULL : &b->trace};
+        .signals = no_signals ? NULL : &out_table,
+        .signal = b->signal,
+        .params = &par_table,
+        .active = b->active,
+        .wanted = b->wanted,
+        .staged = b->staged,
+        .touched = b->touched,
+        .T = T,
+        .trace = no_trace ? NULL : &b->trace};
     b->regs.may = EXH_REGS_MAY | (uint32_t)golden_draw(r, 0, 63);
     b->regs.fingers = (uint8_t)golden_draw(r, 1, 5);
     CHECK_EQ_I64(exh_regs_setup(&b->regs), 0);
@@ -113,8 +113,8 @@ struct place {
 /* A count at a limit, beside it, or of nothing. */
 static uint32_t edge(struct golden_rng *r)
 {
-    static const uint32_t count[] = {0,   121,  122,  123,  124,  125,
-                                     126, 1968, 1969, 2000, 2001, 65535};
+    static const uint32_t count[] = {
+        0, 121, 122, 123, 124, 125, 126, 1968, 1969, 2000, 2001, 65535};
     return count[golden_draw(r, 0, 11)];
 }
 
@@ -130,14 +130,12 @@ static uint32_t edge_of(struct golden_rng *r, uint32_t function)
 /* A block: where it begins, its registers. */
 static struct place block(struct golden_rng *r, uint32_t function)
 {
-    static const struct place held[16] = {
-        {0x0400, 10},  {0x0400, 10},  {0x0400, 10},  {0x5000, 136}, {0x5000, 136}, {0x5000, 136},
-        {0x5000, 136}, {0x5000, 136}, {0x7000, 136}, {0x7000, 136}, {0x7000, 136}, {0x7000, 136},
-        {0x7000, 136}, {0x7000, 136}, {0x7000, 136}, {0, 65535}};
-    static const struct place shown[16] = {
-        {0x0000, 60},  {0x0000, 60},  {0x0400, 18},  {0x0440, 96},  {0x0440, 96},  {0x1000, 128},
-        {0x1000, 128}, {0x3000, 128}, {0x3000, 128}, {0x5000, 136}, {0x5000, 136}, {0x5000, 136},
-        {0x7000, 136}, {0x7000, 136}, {0x7000, 136}, {0, 65535}};
+    static const struct place held[16] = {{0x0400, 10}, {0x0400, 10}, {0x0400, 10}, {0x5000, 136},
+        {0x5000, 136}, {0x5000, 136}, {0x5000, 136}, {0x5000, 136}, {0x7000, 136}, {0x7000, 136},
+        {0x7000, 136}, {0x7000, 136}, {0x7000, 136}, {0x7000, 136}, {0x7000, 136}, {0, 65535}};
+    static const struct place shown[16] = {{0x0000, 60}, {0x0000, 60}, {0x0400, 18}, {0x0440, 96},
+        {0x0440, 96}, {0x1000, 128}, {0x1000, 128}, {0x3000, 128}, {0x3000, 128}, {0x5000, 136},
+        {0x5000, 136}, {0x5000, 136}, {0x7000, 136}, {0x7000, 136}, {0x7000, 136}, {0, 65535}};
     const int64_t i = golden_draw(r, 0, 15);
     return function == 4 ? shown[i] : held[i];
 }
@@ -174,8 +172,8 @@ static uint32_t value_of_trace(struct golden_rng *r, uint32_t i)
 }
 
 /* Mostly what may be. */
-static uint32_t value_of_param(const struct golden_box *b, struct golden_rng *r, uint32_t i,
-                               int is_float)
+static uint32_t value_of_param(
+    const struct golden_box *b, struct golden_rng *r, uint32_t i, int is_float)
 {
     const struct exh_signal *row = exh_signal_at(&par_table, i, NULL);
     const int64_t how = golden_draw(r, 0, 255);
@@ -208,8 +206,8 @@ static uint32_t put16(uint8_t *to, uint32_t len_B, uint32_t v)
 }
 
 /* What is written to these registers, of at most 130. */
-static uint32_t put_words(const struct golden_box *b, struct golden_rng *r, struct place p,
-                          uint8_t *to, uint32_t len_B)
+static uint32_t put_words(
+    const struct golden_box *b, struct golden_rng *r, struct place p, uint8_t *to, uint32_t len_B)
 {
     uint32_t v = 0;
     for (uint32_t k = 0; k < p.n && k < 130; k++) {
@@ -238,9 +236,9 @@ static uint32_t ask_coil(struct golden_rng *r, uint8_t *to)
     const uint32_t at = (uint32_t)golden_draw(r, 0, 6);
     const int64_t which = golden_draw(r, 0, 5);
     const uint32_t len_B = put16(to, 1,
-                                 which < 2    ? EXH_COIL_APPLY
-                                 : which == 2 ? EXH_COIL_DISCARD
-                                              : at);
+        which < 2    ? EXH_COIL_APPLY
+        : which == 2 ? EXH_COIL_DISCARD
+                     : at);
     const int64_t how = golden_draw(r, 0, 7);
     const uint32_t any = (uint32_t)golden_draw(r, 0, 65535);
     return put16(to, len_B, how == 0 ? 0 : how == 1 ? any : 0xFF00u);
@@ -315,9 +313,8 @@ static uint32_t ask_who(struct golden_rng *r, uint8_t *to)
 
 static uint32_t whole(const struct golden_box *b, struct golden_rng *r, uint8_t *to)
 {
-    static const uint8_t function[32] = {1,  1,  2,  2,  2,  3,  3,  3,  3,  4,  4,
-                                         4,  4,  4,  5,  5,  5,  6,  6,  15, 15, 15,
-                                         16, 16, 16, 16, 16, 22, 22, 23, 23, 43};
+    static const uint8_t function[32] = {1, 1, 2, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 4, 5, 5, 5, 6, 6,
+        15, 15, 15, 16, 16, 16, 16, 16, 22, 22, 23, 23, 43};
     to[0] = function[golden_draw(r, 0, 31)];
     if (golden_draw(r, 0, 31) == 0) { to[0] = (uint8_t)golden_draw(r, 0, 255); }
     switch (to[0]) {

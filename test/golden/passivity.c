@@ -40,11 +40,11 @@ static void any_finger(struct finger *d, struct golden_rng *r, uint32_t rate_Hz,
     scale.T = golden_period(rate_Hz, k);
     speed = (int32_t)golden_draw(r, 13421773, 1342177280);
     CHECK_EQ_I64(exh_drive_setup(&d->drive, &d->drive_par, scale.T,
-                                 (struct exh_table){d->to_cur, 3}, (struct exh_table){NULL, 0}),
-                 0);
-    CHECK_EQ_I64(exh_passivity_setup(&d->cfg, &d->par, &d->drive, (struct exh_table){d->held, 3},
-                                     scale, speed),
-                 0);
+                     (struct exh_table){d->to_cur, 3}, (struct exh_table){NULL, 0}),
+        0);
+    CHECK_EQ_I64(exh_passivity_setup(
+                     &d->cfg, &d->par, &d->drive, (struct exh_table){d->held, 3}, scale, speed),
+        0);
     d->cnt = (int32_t)golden_draw(r, INT32_MIN, INT32_MAX);
     d->par.on = 2;
 }

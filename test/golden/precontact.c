@@ -30,10 +30,7 @@ static int32_t smaller(struct golden_rng *r, int64_t lo, int64_t hi, int64_t shi
     return (int32_t)(any >> golden_draw(r, 0, shift));
 }
 
-static struct exh_vec3 vec(const int32_t *v)
-{
-    return (struct exh_vec3){v[0], v[1], v[2]};
-}
+static struct exh_vec3 vec(const int32_t *v) { return (struct exh_vec3){v[0], v[1], v[2]}; }
 
 /* --- set-up --- */
 
@@ -258,8 +255,8 @@ static void put_rows(struct golden *g, int64_t row[FINGERS][7])
     }
 }
 
-static void one_finger(unsigned f, uint32_t k, int32_t d, int32_t pos, struct golden_rng *r,
-                       int64_t row[7])
+static void one_finger(
+    unsigned f, uint32_t k, int32_t d, int32_t pos, struct golden_rng *r, int64_t row[7])
 {
     const struct exh_precontact_cfg *cfg = &world.cfg[f];
     struct exh_precontact *s = &world.s[f];
@@ -286,7 +283,7 @@ void golden_precontact(struct golden *g, uint32_t rate_Hz)
     struct golden_rng r = golden_rng("precontact", rate_Hz, 0);
     for (uint32_t f = 0; f < FINGERS; f++) {
         golden_wave(&way[f], "precontact", rate_Hz, 1 + f, -214748364, INT32_C(1) << 25,
-                    INT32_C(1) << golden_draw(&r, 16, 23));
+            INT32_C(1) << golden_draw(&r, 16, 23));
         golden_wave(&pos[f], "precontact", rate_Hz, 5 + f, INT32_MIN, INT32_MAX, INT32_C(1) << 24);
     }
     while (g->tick < GOLDEN_TICKS) {

@@ -7,7 +7,7 @@
 
 /* Where the string is after a tick: slack comes in, a mass lifts above a current, or sinks. */
 static int32_t toy(struct golden_rng *r, uint32_t k, int32_t cnt, int32_t cur_A_q26,
-                   int32_t lift_A_q26, int32_t quick)
+    int32_t lift_A_q26, int32_t quick)
 {
     const int32_t way = k % 32 < 6 || cur_A_q26 > lift_A_q26        ? -1
                         : cur_A_q26 < lift_A_q26 / 2 && k % 32 > 20 ? 1
@@ -31,8 +31,8 @@ static void any_scale(struct golden_rng *r, struct any *a, uint32_t rate_Hz, uin
     a->few_ms = (int32_t)(UINT64_C(1000) * a->scale.T.num / a->scale.T.den + 1);
 }
 
-static struct exh_probe_par any_par(struct golden_rng *r, struct any *a, uint32_t rate_Hz,
-                                    uint32_t k)
+static struct exh_probe_par any_par(
+    struct golden_rng *r, struct any *a, uint32_t rate_Hz, uint32_t k)
 {
     struct exh_probe_par p;
     int falls;
@@ -98,8 +98,8 @@ static int32_t shifted(struct golden_rng *r, int32_t most, int32_t places)
     return (int32_t)(any >> golden_draw(r, 0, places));
 }
 
-static struct exh_home_par home_par(struct golden_rng *r, struct any *a, uint32_t rate_Hz,
-                                    uint32_t k)
+static struct exh_home_par home_par(
+    struct golden_rng *r, struct any *a, uint32_t rate_Hz, uint32_t k)
 {
     struct exh_home_par p;
     int64_t v;
@@ -148,8 +148,8 @@ void golden_home(struct golden *g, uint32_t rate_Hz)
 
 /* --- weigh --- */
 
-static struct exh_weigh_par weigh_par(struct golden_rng *r, struct any *a, uint32_t rate_Hz,
-                                      uint32_t k)
+static struct exh_weigh_par weigh_par(
+    struct golden_rng *r, struct any *a, uint32_t rate_Hz, uint32_t k)
 {
     struct exh_weigh_par p;
     int64_t v;

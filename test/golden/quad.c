@@ -6,8 +6,8 @@
 #include "exhand/quad.h"
 
 /* The narrowest counter, of 16, 20, 24, 28 or 32 bits, that set-up takes. */
-static unsigned narrowest(struct exh_quad_cfg *cfg, const struct exh_quad_par *par,
-                          struct exh_period T)
+static unsigned narrowest(
+    struct exh_quad_cfg *cfg, const struct exh_quad_par *par, struct exh_period T)
 {
     unsigned bits = 16;
     while (exh_quad_setup(cfg, par, T, bits) != 0 && bits < 32) { bits += 4; }
@@ -32,7 +32,7 @@ void golden_quad(struct golden *g, uint32_t rate_Hz)
             bits = narrowest(&cfg, &par, golden_period(rate_Hz, k));
             s = (struct exh_quad){.raw = 0};
             golden_wave(&moves, "quad", rate_Hz, 1 + (k > 0), -cfg.jump_cnt, cfg.jump_cnt,
-                        cfg.jump_cnt < 16 ? 1 : cfg.jump_cnt / 16);
+                cfg.jump_cnt < 16 ? 1 : cfg.jump_cnt / 16);
             raw = (uint32_t)(golden_u64(&r) & UINT32_MAX);
         }
         raw += (uint32_t)moves.at[k];

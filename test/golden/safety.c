@@ -15,8 +15,8 @@ struct box {
     struct exh_drive_cfg cfg[EXH_FINGERS];
 };
 
-static int32_t some_ticks(struct golden_rng *r, int64_t lo, int64_t hi, uint32_t rate_Hz,
-                          int32_t most_ms)
+static int32_t some_ticks(
+    struct golden_rng *r, int64_t lo, int64_t hi, uint32_t rate_Hz, int32_t most_ms)
 {
     return exh_clamp(golden_draw(r, lo, hi) * 1000 / rate_Hz, 1, most_ms);
 }
@@ -43,16 +43,16 @@ static void box_setup(struct box *b, struct golden_rng *r, uint32_t rate_Hz, uin
     for (unsigned i = 0; i < b->in.fingers; i++) {
         golden_drive_par(&b->axis[i], r, rate_Hz);
         CHECK_EQ_I64(exh_drive_setup(&b->cfg[i], &b->axis[i], golden_period(rate_Hz, k),
-                                     (struct exh_table){knot, 2}, (struct exh_table){NULL, 0}),
-                     0);
+                         (struct exh_table){knot, 2}, (struct exh_table){NULL, 0}),
+            0);
     }
 }
 
 /* What crosses inward in tick k. */
 static void any_in(struct box *b, struct golden_rng *r, uint32_t k)
 {
-    static const uint8_t command[] = {EXH_CMD_RUN, EXH_CMD_CLEAR, EXH_CMD_RUN,  EXH_CMD_CLEAR,
-                                      4,           EXH_CMD_NONE,  EXH_CMD_NONE, EXH_CMD_NONE};
+    static const uint8_t command[] = {EXH_CMD_RUN, EXH_CMD_CLEAR, EXH_CMD_RUN, EXH_CMD_CLEAR, 4,
+        EXH_CMD_NONE, EXH_CMD_NONE, EXH_CMD_NONE};
     static const uint8_t often[EXH_STATES] = {63, 127, 15, 15, 15, 31}; /* by state: a cause */
     const int release = b->s.state == EXH_STATE_RELEASE;
     struct exh_safety_in *in = &b->in;
@@ -88,7 +88,7 @@ static void put_permit(struct golden *g, const struct exh_permit *p)
 }
 
 static void put_axes(struct golden *g, unsigned n, const struct exh_current_ledger *i,
-                     const uint32_t *limits, const struct exh_drive_out *out)
+    const uint32_t *limits, const struct exh_drive_out *out)
 {
     static const struct exh_current_ledger none;
     for (unsigned f = 0; f < EXH_FINGERS; f++) {
@@ -108,8 +108,8 @@ void golden_safety(struct golden *g, uint32_t rate_Hz)
     struct golden_rng r = golden_rng("safety", rate_Hz, 0);
     const int32_t end = 442918502;
     for (uint32_t f = 0; f < EXH_FINGERS; f++) {
-        golden_wave(&cur[f], "safety", rate_Hz, 1 + f, -end, end,
-                    INT32_C(1) << golden_draw(&r, 10, 26));
+        golden_wave(
+            &cur[f], "safety", rate_Hz, 1 + f, -end, end, INT32_C(1) << golden_draw(&r, 10, 26));
     }
     while (g->tick < GOLDEN_TICKS) {
         struct exh_current_ledger i[EXH_FINGERS];

@@ -99,8 +99,8 @@ void golden_signal(struct golden *g, uint32_t rate_Hz)
             exh_params_setup(&p, &golden_signals, active, staged);
         }
         if (g->tick % 64 == 0) {
-            const struct exh_tune_par par = {(int32_t)golden_draw(&r, 0, 1000) >>
-                                             golden_draw(&r, 0, 10)};
+            const struct exh_tune_par par = {
+                (int32_t)golden_draw(&r, 0, 1000) >> golden_draw(&r, 0, 10)};
             exh_params_slew_setup(&p, &par, golden_period(rate_Hz, g->tick));
         }
         p.locked = g->tick >> 3 & 1;

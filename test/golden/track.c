@@ -12,8 +12,8 @@ void golden_track_par(struct exh_tracking_par *p, struct golden_rng *r, uint32_t
     p->time_ms = exh_clamp(golden_draw(r, 1, 12) * 1000 / rate_Hz, 1, 100);
 }
 
-int16_t golden_monitor(unsigned *astray, const struct exh_drive_par *p, struct golden_rng *r,
-                       int32_t coded_A_q26)
+int16_t golden_monitor(
+    unsigned *astray, const struct exh_drive_par *p, struct golden_rng *r, int32_t coded_A_q26)
 {
     const int64_t any_raw = golden_draw(r, -32768, 32767);
     const int64_t up = ((int64_t)coded_A_q26 << 14) / p->mon_A_q40; /* coded >= 0 in a scene */
@@ -41,7 +41,7 @@ void golden_track(struct golden *g, uint32_t rate_Hz)
     int32_t last = 0;
     unsigned astray = 0;
     golden_wave(&coded, "track", rate_Hz, 1, INT32_MIN, INT32_MAX,
-                (int32_t)(UINT32_C(1) << golden_draw(&r, 20, 27)));
+        (int32_t)(UINT32_C(1) << golden_draw(&r, 20, 27)));
     while (g->tick < GOLDEN_TICKS) {
         const uint32_t k = g->tick;
         int32_t mon;

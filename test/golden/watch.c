@@ -24,8 +24,8 @@ void golden_watch(struct golden *g, uint32_t rate_Hz)
     int32_t cnt = 0;
     unsigned stands = 0;
     unsigned fast = 0;
-    golden_wave(&moves, "watch", rate_Hz, 1, INT32_MIN, INT32_MAX,
-                INT32_C(1) << golden_draw(&r, 20, 27));
+    golden_wave(
+        &moves, "watch", rate_Hz, 1, INT32_MIN, INT32_MAX, INT32_C(1) << golden_draw(&r, 20, 27));
     while (g->tick < GOLDEN_TICKS) {
         const uint32_t k = g->tick;
         int32_t vel = moves.at[k];

@@ -25,10 +25,7 @@ static struct link {
     int begun;
 } world;
 
-static uint32_t any_u32(struct golden_rng *r)
-{
-    return (uint32_t)(golden_u64(r) & UINT32_MAX);
-}
+static uint32_t any_u32(struct golden_rng *r) { return (uint32_t)(golden_u64(r) & UINT32_MAX); }
 
 static void begin(struct golden_rng *r)
 {

@@ -23,19 +23,16 @@ static const struct load {
     {"drop", 20000, 14, 0, 8051, 2, 0, "make hil ARGS=rates, all in every tick"},
     {"drop, in turn", 20000, 11, 0, 7952, 1, 0, "make hil ARGS=rates, turns=1"},
     {"bilateral, a frame at once", 10000, 44, 49, 36887, 4, 1,
-     "accesses: test/device/cards; instructions as below"},
+        "accesses: test/device/cards; instructions as below"},
     {"bilateral, in turn, frame", 10000, 30, 1, 36887, 1, 6,
-     "make hil ARGS=box, turns=1 scan_slice=4: frame and packet"},
+        "make hil ARGS=box, turns=1 scan_slice=4: frame and packet"},
     {"bilateral, in turn, part", 10000, 30, 10, 26375, 1, 6,
-     "the same less a frame's 10512: packet, and 4 samples"},
+        "the same less a frame's 10512: packet, and 4 samples"},
 };
 #define LOADS       ((int)(sizeof load / sizeof load[0]))
 #define TIMER_READS 5 /* and one access to the interrupt controller, in every tick */
 
-static double larger(double a, double b)
-{
-    return a > b ? a : b;
-}
+static double larger(double a, double b) { return a > b ? a : b; }
 
 /* What does not hang on access times. */
 static double insns_us(const struct load *l, const struct times *t)
@@ -64,13 +61,13 @@ static void print(const struct load *l, const struct times *t, int csv)
                                           : "instructions";
     if (csv) {
         printf("\"%s\",%.0f,%d,%d,%d,%.3f,%.3f,%.3f,%.3f,%.3f,%.0f,%s,%.3f\n", l->name, l->goal_Hz,
-               l->words, l->bytes, l->insns, insns, bus, ad, t->update_us, glove, 1e6 / period, by,
-               holds_us);
+            l->words, l->bytes, l->insns, insns, bus, ad, t->update_us, glove, 1e6 / period, by,
+            holds_us);
         return;
     }
     printf("%-27s %3d + %2d %6d | %6.1f %6.1f %6.1f %6.1f %6.1f | %6.0f %-12s | %5.0f %-4s %6.2f\n",
-           l->name, l->words, l->bytes, l->insns, insns, bus, ad, t->update_us, glove, 1e6 / period,
-           by, l->goal_Hz, 1e6 / period >= l->goal_Hz ? "ok" : "no", holds_us);
+        l->name, l->words, l->bytes, l->insns, insns, bus, ad, t->update_us, glove, 1e6 / period,
+        by, l->goal_Hz, 1e6 / period >= l->goal_Hz ? "ok" : "no", holds_us);
 }
 
 static void head(void)
@@ -93,8 +90,8 @@ static void foot(const struct times *t)
            "and takes %.0f a channel, D/A %.0f\n(uncertain); glove %.0f us a sample (4..20, "
            "known), a frame every %.0f "
            "ticks. Instructions and accesses are counted:\n",
-           t->access_us, t->byte_us, t->timer_us, t->cpi, t->settle_us, t->convert_us, t->update_us,
-           t->sample_us, t->every);
+        t->access_us, t->byte_us, t->timer_us, t->cpi, t->settle_us, t->convert_us, t->update_us,
+        t->sample_us, t->every);
     for (int i = 0; i < LOADS; i++) { printf("  %-27s %s\n", load[i].name, load[i].counted); }
 }
 
@@ -104,7 +101,7 @@ int cli_budget(int argc, char **argv)
     int csv = 0, err;
     const struct cli_option option[] = {
         {"access-us", CLI_REAL, &t.access_us, 0.01, 100, "US",
-         "an access of 16 bits to a port (1)"},
+            "an access of 16 bits to a port (1)"},
         {"byte-us", CLI_REAL, &t.byte_us, 0.01, 100, "US", "one of 8 bits (as 16 bits)"},
         {"timer-us", CLI_REAL, &t.timer_us, 0, 100, "US", "a read of the timer (0.25)"},
         {"cpi", CLI_REAL, &t.cpi, 0.1, 100, "N", "cycles an instruction, of 1.6 GHz (2)"},
@@ -115,16 +112,12 @@ int cli_budget(int argc, char **argv)
         {"every", CLI_REAL, &t.every, 1, 1000, "TICKS", "from one glove frame to the next (20)"},
         {"csv", CLI_FLAG, &csv, 0, 0, NULL, "comma-separated values instead of the table"},
     };
-    const struct cli_command c = {
-        "budget",
-        "[options]",
+    const struct cli_command c = {"budget", "[options]",
         "The highest rate of the loop that the box can hold, bound by bound, from accesses and "
         "instructions\n"
         "as the tests count them and from times as they are stated here.\n"
         "holds to: the longest access at which the goal holds, all accesses alike.",
-        option,
-        (int)(sizeof option / sizeof option[0]),
-        0};
+        option, (int)(sizeof option / sizeof option[0]), 0};
     err = cli_parse(&c, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }
     if (t.byte_us < 0) { t.byte_us = t.access_us; }

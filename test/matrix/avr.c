@@ -22,10 +22,7 @@ static const volatile struct {
     uint32_t rate[3];
 } asked PROGMEM = {"EXHRATES", {1, GOLDEN_RATES, 1}};
 
-static uint32_t rate(unsigned i)
-{
-    return pgm_read_dword((const char *)(uintptr_t)&asked.rate[i]);
-}
+static uint32_t rate(unsigned i) { return pgm_read_dword((const char *)(uintptr_t)&asked.rate[i]); }
 
 int metal_putchar(int c)
 {
@@ -46,7 +43,7 @@ int main(void)
         ran++;
     }
     check_note("cells: %s %" PRIu32 "..%" PRIu32 ":%" PRIu32 " %" PRIu32 " %08" PRIx32,
-               NAME_(METAL_MODULE), lo, hi, step, ran, crc);
+        NAME_(METAL_MODULE), lo, hi, step, ran, crc);
     cli();
     sleep_enable();
     sleep_cpu(); /* without interrupts: the emulator's end */

@@ -66,8 +66,8 @@ static int run(const char *image, const unsigned rate[3])
     avr_register_io_write(avr, GPIOR0, say, NULL);
     while (state != cpu_Done && state != cpu_Crashed) { state = avr_run(avr); }
     printf("avr: %s: code %u B, data %u B, stack %u B of %u B, %llu cycles\n", image,
-           (unsigned)fw.flashsize, (unsigned)data_B, (unsigned)stack_B(avr, data_B),
-           (unsigned)(avr->ramend + 1 - BEGIN), (unsigned long long)avr->cycle);
+        (unsigned)fw.flashsize, (unsigned)data_B, (unsigned)stack_B(avr, data_B),
+        (unsigned)(avr->ramend + 1 - BEGIN), (unsigned long long)avr->cycle);
     return state != cpu_Done;
 }
 

@@ -105,9 +105,8 @@ static void fault(void)
 __attribute__((section(".vectors"), used)) static const struct {
     uint32_t *stack;
     void (*handler[15])(void);
-} vectors = {__stack_top,
-             {metal_reset, fault, fault, fault, fault, fault, fault, fault, fault, fault, fault,
-              fault, fault, fault, fault}};
+} vectors = {__stack_top, {metal_reset, fault, fault, fault, fault, fault, fault, fault, fault,
+                              fault, fault, fault, fault, fault, fault}};
 
 /* --- what compilers call: clang for this CPU by names of its own, with value and length the other
  * way round --- */
@@ -118,10 +117,7 @@ void *memset(void *dst, int value, size_t len_B);
 
 #define AS(name, list, call) \
     void name list; \
-    void name list \
-    { \
-        (void)call; \
-    }
+    void name list { (void)call; }
 AS(__aeabi_memcpy, (void *d, const void *s, size_t n), memcpy(d, s, n))
 AS(__aeabi_memcpy4, (void *d, const void *s, size_t n), memcpy(d, s, n))
 AS(__aeabi_memcpy8, (void *d, const void *s, size_t n), memcpy(d, s, n))

@@ -13,10 +13,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-__attribute__((noinline)) static int64_t less(int32_t a, int64_t b)
-{
-    return (int64_t)a * a - b;
-}
+__attribute__((noinline)) static int64_t less(int32_t a, int64_t b) { return (int64_t)a * a - b; }
 
 int main(int argc, char **argv)
 {

@@ -26,10 +26,7 @@
 static struct exh_period period;
 static uint8_t alive;
 
-static int pulse_ticks(void)
-{
-    return (int)(contract_rate_Hz / 20);
-}
+static int pulse_ticks(void) { return (int)(contract_rate_Hz / 20); }
 
 /* The board, set up once by whichever test comes first. */
 static void ready(void)
@@ -66,10 +63,7 @@ static void write_codes(int32_t from_zero, int32_t others, unsigned enable)
     CHECK_EQ_I64(exh_board_write_drive(&out), 0);
 }
 
-static void write_frame(int32_t from_zero, unsigned enable)
-{
-    write_codes(from_zero, 0, enable);
-}
+static void write_frame(int32_t from_zero, unsigned enable) { write_codes(from_zero, 0, enable); }
 
 /* One tick of a loop that does what it should. */
 static struct exh_drive_in tick(int32_t from_zero, unsigned enable)
@@ -125,7 +119,7 @@ TEST(achieved_period_is_near_the_asked)
     want = period.den;
     off = got > want ? got - want : want - got;
     CHECK(off * 1000 <= want, "%" PRIu32 "/%" PRIu32 " s for %" PRIu32 " Hz", period.num,
-          period.den, contract_rate_Hz);
+        period.den, contract_rate_Hz);
 }
 
 /* ---- Frames ---------------------------------------------------------------------- */
@@ -164,11 +158,11 @@ TEST(inputs_of_an_idle_box_are_healthy)
     for (int n = 0; n < 16; n++) {
         const struct exh_drive_in in = tick(0, 0);
         CHECK((in.din & want) == want, "digital inputs %#" PRIx32 ", want %#" PRIx32, in.din, want);
-        CHECK((in.din & ~may) == 0, "digital inputs %#" PRIx32 ": there are %#" PRIx32, in.din,
-              may);
+        CHECK(
+            (in.din & ~may) == 0, "digital inputs %#" PRIx32 ": there are %#" PRIx32, in.din, may);
         for (unsigned i = 0; i < exh_board_info.fingers && exh_board_info.enc_bits < 32; i++) {
             CHECK(in.enc_raw[i] >> exh_board_info.enc_bits == 0, "finger %u: count %#" PRIx32, i,
-                  in.enc_raw[i]);
+                in.enc_raw[i]);
         }
     }
 }
@@ -237,7 +231,7 @@ TEST(missed_ticks_are_counted_once)
     }
     cycles = exh_board_cycles() - from;
     CHECK(cycles + one / 4 - ticks * one <= one / 2,
-          "%" PRIu32 " ticks of %" PRIu32 " cycles took %" PRIu32, ticks, one, cycles);
+        "%" PRIu32 " ticks of %" PRIu32 " cycles took %" PRIu32, ticks, one, cycles);
 }
 
 TEST(cycles_run_while_it_waits)
@@ -251,15 +245,15 @@ TEST(cycles_run_while_it_waits)
         most = c > most ? c : most;
     }
     CHECK(least > 0 && most - least <= most / 10,
-          "four ticks took %" PRIu32 " .. %" PRIu32 " cycles", least, most);
+        "four ticks took %" PRIu32 " .. %" PRIu32 " cycles", least, most);
 #ifdef CONTRACT_CYCLES_HZ /* known: what was set is what comes, within 1 % */
     {
         const uint64_t want = 4 * (uint64_t)period.num * CONTRACT_CYCLES_HZ;
         const uint64_t got = (uint64_t)most * period.den,
                        off = got > want ? got - want : want - got;
         CHECK(off <= want / 100,
-              "four ticks took %" PRIu32 " cycles, period %" PRIu32 "/%" PRIu32 " s", most,
-              period.num, period.den);
+            "four ticks took %" PRIu32 " cycles, period %" PRIu32 "/%" PRIu32 " s", most,
+            period.num, period.den);
     }
 #endif
 }
@@ -281,10 +275,7 @@ TEST(cycles_run_while_it_waits)
 
 /* ---- Zero current ------------------------------------------------------------------ */
 
-static int is_zero(int32_t code)
-{
-    return code > -MON_HALF_A / 10 && code < MON_HALF_A / 10;
-}
+static int is_zero(int32_t code) { return code > -MON_HALF_A / 10 && code < MON_HALF_A / 10; }
 
 /* Mean monitor code of finger 0 over the last ticks of 50 ms of one frame. No other finger has
  * current. */
@@ -425,7 +416,7 @@ TEST(link_is_whole_packets_and_empty_at_first)
     for (unsigned i = 0; i < 8; i++) {
         const int n = exh_board_link_send(buf, sizeof buf);
         CHECK(n == 0 || n == (int)sizeof buf || n == -EXH_E_IO, "sent %d of %u", n,
-              (unsigned)sizeof buf);
+            (unsigned)sizeof buf);
         receive(i < 4 ? sizeof buf : 8);
         CHECK_EQ_I64(exh_board_wait(), 0); /* neither blocks */
     }
@@ -450,11 +441,11 @@ TEST(glove_is_read_with_its_age_or_absent)
         memset(&in, 0xA5, sizeof in);
         CHECK_EQ_I64(exh_board_read_glove(&in), 0);
         CHECK(in.age_ticks <= last.age_ticks || in.age_ticks == last.age_ticks + 1u,
-              "age %u after %u", in.age_ticks, last.age_ticks);
+            "age %u after %u", in.age_ticks, last.age_ticks);
         /* The first may have been converted twice in its tick: when asked for, and for the next. */
         CHECK(n == 0 || in.age_ticks <= last.age_ticks ||
                   memcmp(in.raw, last.raw, sizeof in.raw) == 0,
-              "an older frame of other codes, age %u", in.age_ticks);
+            "an older frame of other codes, age %u", in.age_ticks);
         last = in;
     }
     CHECK(last.age_ticks < UINT16_MAX, "no frame in %d ticks", 16);
@@ -477,11 +468,11 @@ TEST(cycles_run_freely)
 /* info and what needs no set-up first; then in the order of a box's life. */
 #define main contract_main /* who runs it has the other */
 TEST_MAIN("contract", info_is_sane, safe_needs_no_init, impossible_rates_are_refused,
-          achieved_period_is_near_the_asked, frames_work_before_the_first_tick,
-          set_up_is_no_missed_tick, counts_of_an_idle_box_stand_still, init_leaves_no_current,
-          waiting_in_time_misses_nothing, inputs_of_an_idle_box_are_healthy,
-          a_tick_may_read_twice_or_never, missed_ticks_are_counted_once, cycles_run_while_it_waits,
-          safe_takes_the_current_away_and_repeats, safe_fits_anywhere_in_a_tick,
-          a_disabled_drive_gives_no_current, codes_and_enables_act_together,
-          log_takes_a_record_whole_or_not_at_all, link_is_whole_packets_and_empty_at_first,
-          glove_is_read_with_its_age_or_absent, cycles_run_freely);
+    achieved_period_is_near_the_asked, frames_work_before_the_first_tick, set_up_is_no_missed_tick,
+    counts_of_an_idle_box_stand_still, init_leaves_no_current, waiting_in_time_misses_nothing,
+    inputs_of_an_idle_box_are_healthy, a_tick_may_read_twice_or_never,
+    missed_ticks_are_counted_once, cycles_run_while_it_waits,
+    safe_takes_the_current_away_and_repeats, safe_fits_anywhere_in_a_tick,
+    a_disabled_drive_gives_no_current, codes_and_enables_act_together,
+    log_takes_a_record_whole_or_not_at_all, link_is_whole_packets_and_empty_at_first,
+    glove_is_read_with_its_age_or_absent, cycles_run_freely);

@@ -40,7 +40,7 @@ static int contract(int how, uint32_t rate_Hz)
 {
     pid_t child;
     printf("  | %s at %u Hz\n", how == POSIX_CARDS_NONE ? "directly" : "through the cards",
-           (unsigned)rate_Hz);
+        (unsigned)rate_Hz);
     fflush(NULL);
     child = fork();
     if (child == 0) {
@@ -100,7 +100,7 @@ int main(void)
         int how;
         uint32_t rate_Hz;
     } run[] = {{POSIX_CARDS_INSTANT, 90}, {POSIX_CARDS_TIMED, 1000}, {POSIX_CARDS_INSTANT, 20000},
-               {POSIX_CARDS_NONE, 90},    {POSIX_CARDS_NONE, 1000},  {POSIX_CARDS_NONE, 20000}};
+        {POSIX_CARDS_NONE, 90}, {POSIX_CARDS_NONE, 1000}, {POSIX_CARDS_NONE, 20000}};
     int failed = 0;
     for (int how = POSIX_CARDS_NONE; how <= POSIX_CARDS_TIMED; how++) {
         failed |= expect("halt, done", halt(how, "done"), 0);

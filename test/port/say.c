@@ -13,10 +13,7 @@ int contract_put(int c)
     return c;
 }
 
-const char *contract_said(void)
-{
-    return "contract: not kept";
-}
+const char *contract_said(void) { return "contract: not kept"; }
 #else
 static char said[4000];
 static size_t said_B;
@@ -27,8 +24,5 @@ int contract_put(int c)
     return c;
 }
 
-const char *contract_said(void)
-{
-    return said;
-}
+const char *contract_said(void) { return said; }
 #endif

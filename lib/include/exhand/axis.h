@@ -79,8 +79,7 @@ struct exh_axis_setup {
  * its counters; tables as exh_drive_setup() wants them. 0, or the -EXH_E_... of the first part that
  * refuses. */
 static inline int exh_axis_setup(const struct exh_axis_setup *of, struct exh_period T,
-                                 unsigned enc_bits, struct exh_table force_to_cur,
-                                 struct exh_table cur_to_force)
+    unsigned enc_bits, struct exh_table force_to_cur, struct exh_table cur_to_force)
 {
     const struct exh_velocity_scale scale = {of->quad_par->step_m_q42, T};
     int err = exh_quad_setup(of->quad, of->quad_par, T, enc_bits);
@@ -98,8 +97,8 @@ static inline int exh_axis_setup(const struct exh_axis_setup *of, struct exh_per
 /* --- the tick --- */
 
 /* First: what the board read of finger f, 0 .. EXH_FINGERS-1. */
-static inline struct exh_axis_now exh_axis_sense(const struct exh_axis *a,
-                                                 const struct exh_drive_in *in, unsigned f)
+static inline struct exh_axis_now exh_axis_sense(
+    const struct exh_axis *a, const struct exh_drive_in *in, unsigned f)
 {
     const int32_t cnt = exh_quad_step(a->quad, a->quad_cfg, in->enc_raw[f]);
     const int32_t pos_m_q30 = exh_quad_pos_m_q30(a->quad_cfg->par, cnt);
@@ -120,16 +119,15 @@ static inline struct exh_axis_now exh_axis_sense(const struct exh_axis *a,
 }
 
 /* Arming's step ENCODER and the cause ENCODER are one bit, so that the tick needs no branch. */
-EXH_STATIC_ASSERT(axis_encoder_is_one_bit,
-                  (unsigned)EXH_ARM_ENCODER == (unsigned)EXH_FAULT_ENCODER);
+EXH_STATIC_ASSERT(
+    axis_encoder_is_one_bit, (unsigned)EXH_ARM_ENCODER == (unsigned)EXH_FAULT_ENCODER);
 
 /* Then, once: safety. `box` has what the fingers cannot know; to its `raised` come the causes of
  * fingers 0..n-1, and its `fingers` becomes n. Where no encoder is lost, arming's step ENCODER
  * comes to its `ready`. */
 static inline struct exh_permit exh_axis_permit(struct exh_safety *s,
-                                                const struct exh_safety_cfg *cfg,
-                                                const struct exh_axis_now *now, unsigned n,
-                                                struct exh_safety_in box)
+    const struct exh_safety_cfg *cfg, const struct exh_axis_now *now, unsigned n,
+    struct exh_safety_in box)
 {
     uint32_t raised = 0;
     for (unsigned k = 0; k < n; k++) { raised |= now[k].raised; }
@@ -142,7 +140,7 @@ static inline struct exh_permit exh_axis_permit(struct exh_safety *s,
 /* After the law has filled the force ledger: limits of force, then of current. Returns limit bits,
  * which go on to the gate with those of sense. */
 static inline uint32_t exh_axis_force(const struct exh_axis *a, const struct exh_permit *permit,
-                                      struct exh_force_ledger *f, struct exh_current_ledger *i)
+    struct exh_force_ledger *f, struct exh_current_ledger *i)
 {
     const uint32_t limits = exh_drive_force_step(a->drive, a->drive_cfg, permit, f);
     return limits | exh_drive_current_step(a->drive, a->drive_cfg, f, i);
@@ -158,8 +156,7 @@ static inline void exh_axis_update(const struct exh_axis *a, int32_t cnt, int32_
 /* Last, of a scene with one finger: the gate, and what was coded. cnt and *limits: of sense, the
  * limits with those of force; the gate adds its own. */
 static inline void exh_axis_out(const struct exh_axis *a, struct exh_safety *s, int32_t cnt,
-                                struct exh_current_ledger *i, uint32_t *limits,
-                                struct exh_drive_out *out)
+    struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out)
 {
     exh_gate_step(s, a->drive_cfg, 1, i, limits, out);
     exh_axis_update(a, cnt, i->coded_A_q26);

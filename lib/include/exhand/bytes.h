@@ -45,10 +45,7 @@ static inline int exh_bytes_ok(const struct exh_bytes *c)
 }
 
 /* What was read makes no sense: not ok from now on. */
-static inline void exh_bytes_fail(struct exh_bytes *c)
-{
-    c->at = UINT32_MAX;
-}
+static inline void exh_bytes_fail(struct exh_bytes *c) { c->at = UINT32_MAX; }
 
 /* One field, little-endian, in the direction of the cursor. */
 void exh_bytes_u8(struct exh_bytes *c, uint8_t *v);

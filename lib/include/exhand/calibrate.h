@@ -63,11 +63,11 @@ struct exh_calib_fit {
 /* -EXH_E_RANGE: n not 1 .. EXH_CALIB_POINTS_MAX, a value outside its range above, as is
  * its force over current. Set-up only (divides). */
 int exh_calib_fit(struct exh_calib_fit *fit, const struct exh_calib_point *p, unsigned n,
-                  enum exh_calib_column which);
+    enum exh_calib_column which);
 
 /* F - kf I of one point, N q20, error <= 1 LSB + 2^-31 of F; saturates at +-2048 N. */
-int32_t exh_calib_residual_N_q20(const struct exh_calib_fit *fit, const struct exh_calib_point *p,
-                                 enum exh_calib_column which);
+int32_t exh_calib_residual_N_q20(
+    const struct exh_calib_fit *fit, const struct exh_calib_point *p, enum exh_calib_column which);
 
 /* --- a calibration of one finger --- */
 
@@ -119,10 +119,10 @@ const char *exh_calib_error_text(unsigned what);
  * The monitor's is odd: it reads through zero. Returns how many knots, or -EXH_E_MONOTONE,
  * -EXH_E_RANGE (with *bad, may be NULL, the culprit), -EXH_E_SHORT (cap too small;
  * points + 2 and 2 points + 3 always do). Exact at every point. Set-up only (divides). */
-int exh_calib_force_table(const struct exh_calib *c, struct exh_knot *knot, unsigned cap,
-                          struct exh_calib_error *bad);
-int exh_calib_monitor_table(const struct exh_calib *c, struct exh_knot *knot, unsigned cap,
-                            struct exh_calib_error *bad);
+int exh_calib_force_table(
+    const struct exh_calib *c, struct exh_knot *knot, unsigned cap, struct exh_calib_error *bad);
+int exh_calib_monitor_table(
+    const struct exh_calib *c, struct exh_knot *knot, unsigned cap, struct exh_calib_error *bad);
 
 /* All of it: values in range and both tables as above. 0 or the error. */
 int exh_calib_validate(const struct exh_calib *c, struct exh_calib_error *bad);
@@ -137,8 +137,8 @@ struct exh_calib_target {
 /* May it be used here and today? -EXH_E_RANGE (no points: nothing was loaded, or it was
  * refused), -EXH_E_VERSION (another device, another finger) or -EXH_E_STALE (age, scales,
  * zeros); *bad tells which. It does not look at the points: exh_calib_load() has. */
-int exh_calib_check(const struct exh_calib *c, const struct exh_calib_target *here,
-                    struct exh_calib_error *bad);
+int exh_calib_check(
+    const struct exh_calib *c, const struct exh_calib_target *here, struct exh_calib_error *bad);
 
 /* --- image ---
  *
@@ -150,8 +150,8 @@ int exh_calib_check(const struct exh_calib *c, const struct exh_calib_target *he
 
 /* Bytes written, or -EXH_E_SHORT; or what exh_calib_validate() refuses: nothing that
  * could not be read again is written. */
-int32_t exh_calib_save(const struct exh_calib *c, void *buf, size_t cap_B,
-                       struct exh_calib_error *bad);
+int32_t exh_calib_save(
+    const struct exh_calib *c, void *buf, size_t cap_B, struct exh_calib_error *bad);
 
 /* Reads and checks a whole image; bytes behind it are ignored. c->point and c->cap
  * are the caller's. -EXH_E_SHORT (also: more points than cap), -EXH_E_VERSION,

@@ -70,12 +70,12 @@ struct exh_force_ledger {
  * penetration q - q_lim saturates at +-2 m. Returns `touching`: it sets at
  * q >= q_lim and clears at q < q_lim - hyst. */
 int exh_contact_step(struct exh_contact *s, const struct exh_contact_par *par,
-                     struct exh_contact_in in, struct exh_force_ledger *out);
+    struct exh_contact_in in, struct exh_force_ledger *out);
 
 /* The same where there is nothing to touch: no q_lim is far enough away for every position. The
  * pull-back force alone is left, and the contact has ended. */
 void exh_contact_step_free(struct exh_contact *s, const struct exh_contact_par *par,
-                           int32_t pos_m_q30, struct exh_force_ledger *out);
+    int32_t pos_m_q30, struct exh_force_ledger *out);
 
 /* State through a cursor (bytes.h). */
 void exh_contact_serialize(struct exh_bytes *c, struct exh_contact *s);

@@ -112,7 +112,7 @@ struct exh_current_ledger {
  * where no monitor is read. -EXH_E_RATE: T. -EXH_E_RANGE when a table is not so, a parameter lies
  * outside its range above (parameters in ROM have passed no other check), or i_peak < i_cont. */
 int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, struct exh_period T,
-                    struct exh_table force_to_cur, struct exh_table cur_to_force);
+    struct exh_table force_to_cur, struct exh_table cur_to_force);
 
 /* Completes the force ledger, by the permit's mode, any other being CLOSED.
  * OPEN: 0 <= force <= the share of f_max and of the table's end, |change| <=
@@ -122,13 +122,13 @@ int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, 
  * fall of it and at most 1 LSB more, one for each of `ticks`: with fall = 1/n it is zero after n.
  * CLOSED: the force is zero and rises from there when it opens again. Returns limit bits. */
 uint32_t exh_drive_force_step(struct exh_drive *s, const struct exh_drive_cfg *cfg,
-                              const struct exh_permit *permit, struct exh_force_ledger *f);
+    const struct exh_permit *permit, struct exh_force_ledger *f);
 
 /* Fills table, peak and i2t for the force commanded; zeroes the rest. The I2t
  * limit leaves the peak untouched while less than 3/4 of the budget is used,
  * then folds back to i_cont without a step. Returns limit bits. */
 uint32_t exh_drive_current_step(struct exh_drive *s, const struct exh_drive_cfg *cfg,
-                                const struct exh_force_ledger *f, struct exh_current_ledger *i);
+    const struct exh_force_ledger *f, struct exh_current_ledger *i);
 
 /* Monitored current of a code, A q26 (saturating, error <= 1/2 LSB = 7.5 nA). */
 int32_t exh_drive_monitor_A_q26(const struct exh_drive_cfg *cfg, int16_t mon_raw);

@@ -54,8 +54,8 @@ struct exh_filter {
  * the rate; -EXH_E_RATE: no period; -EXH_E_RANGE: order not 1 or 2, fc not positive or below 2^-21
  * (4.8e-7) of the rate. Relative error of fc below 2^-28; of Q, too, up to 0.45 of the rate,
  * above it below 2^-32 over what is left to half the rate. Gain at 0 Hz is 1. */
-int exh_filter_setup(struct exh_filter_cfg *cfg, const struct exh_filter_par *par,
-                     struct exh_period T);
+int exh_filter_setup(
+    struct exh_filter_cfg *cfg, const struct exh_filter_par *par, struct exh_period T);
 
 /* n channels settled at x: the next outputs are x while the inputs are. */
 void exh_filter_reset(struct exh_filter *s, const int32_t *x, unsigned n);
@@ -68,7 +68,7 @@ void exh_filter_reset(struct exh_filter *s, const int32_t *x, unsigned n);
  * overshoots by 4.3 %) and comes back: no input wraps a state. A state from damaged bytes
  * that none can cause finds its way back. */
 void exh_filter_step(struct exh_filter *s, const struct exh_filter_cfg *cfg, const int32_t *x,
-                     int32_t *y, unsigned n);
+    int32_t *y, unsigned n);
 
 /* From one set of coefficients to another, between two ticks, of n channels. A settled
  * channel stays exactly where it is; one that moves goes on from its place, and with its
@@ -76,7 +76,7 @@ void exh_filter_step(struct exh_filter *s, const struct exh_filter_cfg *cfg, con
  * the last, LOW2 both: 23/16 tan(pi fc T) of full scale each; any tick may add two thirds of that.
  */
 void exh_filter_retune(struct exh_filter *s, const struct exh_filter_cfg *from,
-                       const struct exh_filter_cfg *to, unsigned n);
+    const struct exh_filter_cfg *to, unsigned n);
 
 /* State through a cursor (bytes.h). */
 void exh_filter_serialize(struct exh_bytes *c, struct exh_filter *s);

@@ -77,10 +77,7 @@ static inline int64_t exh_clamp64(int64_t v, int64_t most)
 }
 
 /* 1 if lo <= v <= hi. */
-static inline int exh_inside(int32_t v, int32_t lo, int32_t hi)
-{
-    return v >= lo && v <= hi;
-}
+static inline int exh_inside(int32_t v, int32_t lo, int32_t hi) { return v >= lo && v <= hi; }
 
 /* floor(v / 2^n + 1/2), 1 <= n <= 63; exact for every v. */
 static inline int64_t exh_shr_round(int64_t v, unsigned n)
@@ -95,10 +92,7 @@ static inline int64_t exh_mul_shr(int32_t a, int32_t b, unsigned n)
 }
 
 /* The high word of a product, floor(a*b / 2^32): the cheapest product there is. */
-static inline int32_t exh_mul_hi(int32_t a, int32_t b)
-{
-    return (int32_t)((int64_t)a * b >> 32);
-}
+static inline int32_t exh_mul_hi(int32_t a, int32_t b) { return (int32_t)((int64_t)a * b >> 32); }
 static inline uint32_t exh_umul_hi(uint32_t a, uint32_t b)
 {
     return (uint32_t)((uint64_t)a * b >> 32);

@@ -51,14 +51,14 @@ int exh_gains_ok(const struct exh_gains_par *rule, int32_t k_Npm_q10, int32_t b_
  * if not: nothing is staged then. So b before k when both rise, k before b when both fall. Any
  * other value as exh_params_stage(). */
 int exh_gains_stage(struct exh_params *p, const struct exh_gains_par *rule, uint16_t id,
-                    uint16_t instance, int32_t raw);
+    uint16_t instance, int32_t raw);
 
 /* Of a whole image, behind exh_params_load() and before exh_params_apply(): 0, or -EXH_E_GAINS with
  * *instance (may be NULL) the first whose staged k and b are outside. Then what is staged must not
  * be applied: exh_params_discard() puts the active values back in its place. They are inside, in
  * mid-way too, where exh_gains_step() moves them. */
-int exh_gains_validate(const struct exh_params *p, const struct exh_gains_par *rule,
-                       uint16_t *instance);
+int exh_gains_validate(
+    const struct exh_params *p, const struct exh_gains_par *rule, uint16_t *instance);
 
 /* At set-up of a scene with a rule: on 1, k and b stand still in exh_params_apply() while locked
  * and are moved by exh_gains_step() alone; 0: as all slewed values. Who forgets the step stays

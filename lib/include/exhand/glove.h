@@ -149,7 +149,7 @@ int exh_glove_cal_validate(const struct exh_glove_cal *cal, struct exh_glove_err
 /* May it be used for this user, glove and day? -EXH_E_RANGE (nothing loaded, or refused),
  * -EXH_E_VERSION (another user, another glove), -EXH_E_STALE (age); *bad tells which. */
 int exh_glove_cal_check(const struct exh_glove_cal *cal, uint32_t user_id, uint32_t glove_id,
-                        uint32_t day, struct exh_glove_error *bad);
+    uint32_t day, struct exh_glove_error *bad);
 
 /* Image: "EXHG", version u16, sensors u16, five u32 in the order above, then of each
  * sensor zero, gain, cross 0, cross 1 (i32), low, high (i16), of 0, of 1 (u8), CRC-32 of
@@ -159,13 +159,13 @@ int exh_glove_cal_check(const struct exh_glove_cal *cal, uint32_t user_id, uint3
 
 /* Bytes written, or -EXH_E_SHORT; or what exh_glove_cal_validate() refuses: nothing that
  * could not be read again is written. */
-int32_t exh_glove_cal_save(const struct exh_glove_cal *cal, void *buf, size_t cap_B,
-                           struct exh_glove_error *bad);
+int32_t exh_glove_cal_save(
+    const struct exh_glove_cal *cal, void *buf, size_t cap_B, struct exh_glove_error *bad);
 
 /* Reads and checks a whole image; bytes behind it are ignored. -EXH_E_SHORT,
  * -EXH_E_VERSION, -EXH_E_CRC, or what exh_glove_cal_validate() refuses; then present is 0. */
-int exh_glove_cal_load(struct exh_glove_cal *cal, const void *buf, size_t len_B,
-                       struct exh_glove_error *bad);
+int exh_glove_cal_load(
+    struct exh_glove_cal *cal, const void *buf, size_t len_B, struct exh_glove_error *bad);
 
 /* --- the tick --- */
 
@@ -210,7 +210,7 @@ struct exh_glove {
  * step, low_raw not below high_raw, what exh_glove_cal_validate() refuses, or a calibrated span
  * that touches a rail. */
 int exh_glove_setup(struct exh_glove_cfg *cfg, const struct exh_glove_par *par,
-                    const struct exh_glove_cal *cal, struct exh_period T);
+    const struct exh_glove_cal *cal, struct exh_period T);
 
 /* One new frame; *s is zero before the first. Call it once a frame, not once a tick: with
  * an older frame that was seen before, keep the angles. 22 angles, turn_q32, +-1/2 turn:
@@ -230,7 +230,7 @@ int exh_glove_setup(struct exh_glove_cfg *cfg, const struct exh_glove_par *par,
  * Cost depends on the order and the number of cross terms; a channel that is faulty or in
  * doubt costs some 20 instructions more. Ages are the caller's: in->age_ticks is not read. */
 uint32_t exh_glove_step(struct exh_glove *s, const struct exh_glove_cfg *cfg,
-                        const struct exh_glove_in *in, int32_t *angle_turn_q32);
+    const struct exh_glove_in *in, int32_t *angle_turn_q32);
 
 /* State through a cursor (bytes.h). */
 void exh_glove_serialize(struct exh_bytes *c, struct exh_glove *s);
@@ -274,8 +274,8 @@ struct exh_glove_fit {
  * Off exact least squares by less than 2^-12 of the span, however hard the poses are to
  * tell apart. Set-up only (divides). */
 int exh_glove_cal_fit(struct exh_glove_cal *cal, struct exh_glove_fit *fit,
-                      const struct exh_glove_pose *pose, unsigned n,
-                      const struct exh_glove_fit_par *par, struct exh_glove_error *bad);
+    const struct exh_glove_pose *pose, unsigned n, const struct exh_glove_fit_par *par,
+    struct exh_glove_error *bad);
 
 #ifdef __cplusplus
 }

@@ -53,7 +53,7 @@ int exh_hand_map_validate(const struct exh_hand_map *map);
  * sensor, exact, rounded once, limited to lo .. hi. Nothing wraps. Error <= 1/2 LSB.
  * Bit j of the result: joint j was limited. */
 uint32_t exh_hand_joints(const struct exh_hand_map *map, unsigned finger,
-                         const int32_t *sensor_turn_q32, int32_t *joint_turn_q32);
+    const int32_t *sensor_turn_q32, int32_t *joint_turn_q32);
 
 /* --- joints to the fingertip --- */
 
@@ -86,8 +86,8 @@ struct exh_hand_finger {
  * above, rot no rotation (axes not of length 1 or not square to each other, within 1e-6, or
  * left-handed), or both arm1 and arm2 + arm3 so small that a metre of string would turn them by
  * more than 250 rad: arm1^2 + (arm2 + arm3)^2 below (4 mm)^2. */
-int exh_hand_setup(struct exh_hand_finger *f, const struct exh_hand_bones *bones,
-                   const struct exh_hand_par *par);
+int exh_hand_setup(
+    struct exh_hand_finger *f, const struct exh_hand_bones *bones, const struct exh_hand_par *par);
 
 /* Set-up, behind it: the string bends the wearer's joints, and the robot's follow them as the map
  * has it, each by gain times as much. A joint at its limit does not turn: the caller makes its pull
@@ -99,8 +99,8 @@ int exh_hand_couple(struct exh_hand_finger *f, const struct exh_hand_map *map, u
  * which may be any angles. Error against exact kinematics of these angles and bones <= 2.15 LSB
  * (0.002 um) for exh_hit2_bones, 3 LSB for any; what their constants miss, by rounding to their
  * formats, is below 0.3 LSB. Nothing can overflow or saturate: |P_F| < 0.5 m. */
-void exh_hand_tip(const struct exh_hand_finger *f, const int32_t *joint_turn_q32,
-                  struct exh_vec3 *tip_m_q30);
+void exh_hand_tip(
+    const struct exh_hand_finger *f, const int32_t *joint_turn_q32, struct exh_vec3 *tip_m_q30);
 
 /* The same P_F, and how it moves as string runs out: metres per metre of string, q24. String over
  * the back of the finger turns q1, and q2 with q3: of all turnings that pay out a metre,
@@ -109,7 +109,7 @@ void exh_hand_tip(const struct exh_hand_finger *f, const int32_t *joint_turn_q32
  * 17 and 24), 16 LSB for any, of the pulls in f; that these are rounded to q20 adds up to 4 LSB
  * with the longest bones (5.5 in all found). It cannot saturate: below 68. */
 void exh_hand_tip_slope(const struct exh_hand_finger *f, const int32_t *joint_turn_q32,
-                        struct exh_vec3 *tip_m_q30, struct exh_vec3 *slope_q24);
+    struct exh_vec3 *tip_m_q30, struct exh_vec3 *slope_q24);
 
 #ifdef __cplusplus
 }

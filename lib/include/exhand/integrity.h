@@ -30,8 +30,8 @@ struct exh_integrity {
 
 /* At the end of set-up: the area as it is now, none of which changes until it is sealed anew, and
  * the parameters (NULL: none, as where they are constants in ROM, or within the area). */
-void exh_integrity_seal(struct exh_integrity *g, const void *area, size_t len_B,
-                        struct exh_params *params);
+void exh_integrity_seal(
+    struct exh_integrity *g, const void *area, size_t len_B, struct exh_params *params);
 
 /* Once a tick, at constant cost: the next EXH_INTEGRITY_B bytes of the area, the CRC at the end of
  * a round, and exh_params_verify() at the next EXH_INTEGRITY_WORDS parameters. So a change of one

@@ -21,8 +21,8 @@ extern "C" {
 /* Answers one request: functions 1 2 3 4 5 6 15 16 22 23 and 43/14 (device identification). Bytes
  * of the answer, an exception included; 0: no request at all (len_B 0); -EXH_E_SHORT: cap_B below
  * EXH_MODBUS_PDU_B, and nothing was done. req and resp must not overlap. */
-int exh_modbus_answer(struct exh_regs *r, const uint8_t *req, size_t len_B, uint8_t *resp,
-                      size_t cap_B);
+int exh_modbus_answer(
+    struct exh_regs *r, const uint8_t *req, size_t len_B, uint8_t *resp, size_t cap_B);
 
 #ifdef __cplusplus
 }

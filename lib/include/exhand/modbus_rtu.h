@@ -44,8 +44,8 @@ int exh_modbus_rtu_poll(struct exh_modbus_rtu *u, uint32_t us);
 /* Carries it out. Bytes of the answer, address and CRC included; 0: it gets none, as it was for all
  * (of those, writes alone are carried out), or there is no request; -EXH_E_SHORT: cap_B below
  * EXH_MODBUS_ADU_B, and the request still waits. */
-int exh_modbus_rtu_answer(struct exh_modbus_rtu *u, struct exh_regs *r, uint8_t *resp,
-                          size_t cap_B);
+int exh_modbus_rtu_answer(
+    struct exh_modbus_rtu *u, struct exh_regs *r, uint8_t *resp, size_t cap_B);
 
 /* CRC-16/MODBUS: reflected 0xA001, start 0xFFFF, no final; of "123456789" 0x4B37. On the line its
  * low byte comes first. */

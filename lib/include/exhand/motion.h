@@ -43,18 +43,18 @@ struct exh_motion {
 };
 
 /* Set-up (divides). -EXH_E_RANGE: a parameter outside its range above; -EXH_E_RATE: T. */
-int exh_motion_setup(struct exh_motion_cfg *cfg, const struct exh_motion_par *par,
-                     struct exh_period T);
+int exh_motion_setup(
+    struct exh_motion_cfg *cfg, const struct exh_motion_par *par, struct exh_period T);
 
 /* First thing of a tick, with the velocity measured: brings it within the limit, adds
  * EXH_LIMIT_SPEED to limits where it was not, and returns the faults that are due
  * (EXH_FAULT_SPEED, EXH_FAULT_STUCK). Ticks missed are no evidence and do not count. */
-uint32_t exh_motion_step(struct exh_motion *s, const struct exh_motion_cfg *cfg,
-                         int32_t *vel_mps_q27, uint32_t *limits);
+uint32_t exh_motion_step(
+    struct exh_motion *s, const struct exh_motion_cfg *cfg, int32_t *vel_mps_q27, uint32_t *limits);
 
 /* Behind the gate, with the count of this tick and the current coded. */
-void exh_motion_update(struct exh_motion *s, const struct exh_motion_cfg *cfg, int32_t cnt,
-                       int32_t coded_A_q26);
+void exh_motion_update(
+    struct exh_motion *s, const struct exh_motion_cfg *cfg, int32_t cnt, int32_t coded_A_q26);
 
 /* State through a cursor. A state of zeros is a finger at rest. */
 void exh_motion_serialize(struct exh_bytes *c, struct exh_motion *s);

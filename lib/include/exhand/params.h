@@ -45,15 +45,15 @@ extern const struct exh_signal exh_tune_rows[EXH_TUNE_ROWS];
 #define EXH_TUNE_SHIFT_MAX 15 /* 2^15 ticks are more than 1 s at 20 kHz */
 
 /* Defaults into both arrays, unlocked, shift 0. */
-void exh_params_setup(struct exh_params *p, const struct exh_signal_table *table, int32_t *active,
-                      int32_t *staged);
+void exh_params_setup(
+    struct exh_params *p, const struct exh_signal_table *table, int32_t *active, int32_t *staged);
 
 /* At the end of set-up, in scenes that want it: the least shift with 2^shift * T >= par->time_ms,
  * at most EXH_TUNE_SHIFT_MAX. So in a tick a value goes by no more than T/time of what is left (and
  * 1 LSB), and 63 % of the way takes time to 2 * time. A scene that never calls it changes at once.
  */
-void exh_params_slew_setup(struct exh_params *p, const struct exh_tune_par *par,
-                           struct exh_period T);
+void exh_params_slew_setup(
+    struct exh_params *p, const struct exh_tune_par *par, struct exh_period T);
 
 /* Stages one raw value. -EXH_E_UNKNOWN, -EXH_E_RANGE (outside min..max), or
  * -EXH_E_STATE (an output; another set-up value while locked, the same is

@@ -80,19 +80,19 @@ struct exh_passivity {
  * a way of more than 2^24 counts, or slew_down so low that force could not fall from its highest to
  * none in one tick (lowered later, it adds the work of its fall to the bound); -EXH_E_RATE: T. */
 int exh_passivity_setup(struct exh_passivity_cfg *cfg, const struct exh_passivity_par *par,
-                        const struct exh_drive_cfg *drive, struct exh_table held,
-                        struct exh_velocity_scale scale, int32_t speed_mps_q27);
+    const struct exh_drive_cfg *drive, struct exh_table held, struct exh_velocity_scale scale,
+    int32_t speed_mps_q27);
 
 /* Behind the law, with the count that it saw and what it returned. Fills f->passivity: what of
  * spring + damper is above the limit, negative. Returns EXH_LIMIT_PASSIVITY or 0. The limit is at
  * most 3 LSB (3 uN) below exact, never above. */
 uint32_t exh_passivity_step(struct exh_passivity *s, const struct exh_passivity_cfg *cfg,
-                            int32_t cnt, int touching, struct exh_force_ledger *f);
+    int32_t cnt, int touching, struct exh_force_ledger *f);
 
 /* Behind the gate, with the same ledger and the current that the code stands for (coded of the
  * current ledger). */
 void exh_passivity_update(struct exh_passivity *s, const struct exh_passivity_cfg *cfg,
-                          const struct exh_force_ledger *f, int32_t coded_A_q26);
+    const struct exh_force_ledger *f, int32_t coded_A_q26);
 
 /* Energy taken up by the present contact, J, q24 (60 nJ, within 1/2 LSB, saturates at +-128 J). */
 int32_t exh_passivity_J_q24(const struct exh_passivity *s, const struct exh_passivity_cfg *cfg);

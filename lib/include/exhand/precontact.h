@@ -172,14 +172,14 @@ enum exh_precontact_bit {
  * m, 0 .. 25 mm (exh_hand_par has it). -EXH_E_RATE: T. -EXH_E_RANGE: a parameter outside its range
  * above, or no material, or more than 255. Pad and its sign are those of planes told afterwards. */
 int exh_precontact_setup(struct exh_precontact_cfg *cfg, const struct exh_precontact_par *par,
-                         const struct exh_material_par *material, unsigned materials,
-                         int32_t pad_m_q30, struct exh_period T);
+    const struct exh_material_par *material, unsigned materials, int32_t pad_m_q30,
+    struct exh_period T);
 
 /* What a message tells about this finger, age_ticks old; before the step of the tick. A frozen
  * finger's q_lim, material, distance and release do not depend on it. 0, or -EXH_E_RANGE for a
  * plane refused. */
 int exh_precontact_update(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
-                          const struct exh_plane *plane, uint32_t age_ticks);
+    const struct exh_plane *plane, uint32_t age_ticks);
 
 /* 1: no contact can be, exh_contact_step_free() is due; 0: one can be at lim_m_q30. */
 static inline int exh_precontact_none(const struct exh_precontact *s)
@@ -196,7 +196,7 @@ void exh_precontact_advance(struct exh_precontact *s, uint32_t missed);
  * slope within 2^-25 + 2^-28*s; it saturates. Returns bits. With the law's own q, no input
  * makes the law touch before the freeze, but for q at the format's end while q_lim moves along. */
 uint32_t exh_precontact_step(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
-                             const struct exh_precontact_in *in);
+    const struct exh_precontact_in *in);
 
 /* State through a cursor; what was read is brought back into range. A q_lim that was to be frozen
  * in the first tick after it is not if it touches at once: the plane counts as born there. */
@@ -228,8 +228,7 @@ struct exh_precontact_advice {
  * above 2 s, d_lim not below 0, or an answer beyond 2 m or 16 m/s (the speed stands at 16 m/s
  * instead). */
 int exh_precontact_advise(struct exh_precontact_advice *advice,
-                          const struct exh_precontact_need *need, struct exh_period T,
-                          int32_t d_lim_m_q30);
+    const struct exh_precontact_need *need, struct exh_period T, int32_t d_lim_m_q30);
 
 #ifdef __cplusplus
 }

@@ -83,8 +83,8 @@ struct exh_probe {
 };
 
 /* Set-up (divides). -EXH_E_RANGE: a parameter outside its range. */
-int exh_probe_setup(struct exh_probe_cfg *cfg, const struct exh_probe_par *par,
-                    struct exh_probe_scale scale);
+int exh_probe_setup(
+    struct exh_probe_cfg *cfg, const struct exh_probe_par *par, struct exh_probe_scale scale);
 
 /* From a count and a current, which is limited to 0 .. 3.3 A. */
 void exh_probe_start(struct exh_probe *s, int32_t cnt, int32_t cur_A_q26);
@@ -122,8 +122,8 @@ struct exh_home {
 };
 
 /* Set-up (divides). -EXH_E_RANGE as above. */
-int exh_home_setup(struct exh_home_cfg *cfg, const struct exh_home_par *par,
-                   struct exh_probe_scale scale);
+int exh_home_setup(
+    struct exh_home_cfg *cfg, const struct exh_home_par *par, struct exh_probe_scale scale);
 
 /* From a count, with no current yet. */
 void exh_home_start(struct exh_home *s, int32_t cnt);
@@ -161,8 +161,8 @@ struct exh_weigh {
 };
 
 /* Set-up (divides). -EXH_E_RANGE as above. */
-int exh_weigh_setup(struct exh_weigh_cfg *cfg, const struct exh_weigh_par *par,
-                    struct exh_probe_scale scale);
+int exh_weigh_setup(
+    struct exh_weigh_cfg *cfg, const struct exh_weigh_par *par, struct exh_probe_scale scale);
 
 /* From a count, with the current that takes up the slack. */
 void exh_weigh_start(struct exh_weigh *s, const struct exh_weigh_cfg *cfg, int32_t cnt);
@@ -171,7 +171,7 @@ void exh_weigh_start(struct exh_weigh *s, const struct exh_weigh_cfg *cfg, int32
  * A. TIME also bounds each of the three phases: a mass that does not come to rest
  * between lift and sink ends so. */
 uint8_t exh_weigh_step(struct exh_weigh *s, const struct exh_weigh_cfg *cfg, int32_t cnt,
-                       int32_t coded_A_q26, int32_t mon_A_q26);
+    int32_t coded_A_q26, int32_t mon_A_q26);
 
 /* The point of a mass that is DONE: currents are means (error <= 1/2 LSB), friction
  * is (lift - sink) / 2. */

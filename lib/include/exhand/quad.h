@@ -48,8 +48,8 @@ extern const struct exh_quad_mode exh_quad_x1, exh_quad_x2,
 void exh_quad_ab_step(struct exh_quad_ab *s, const struct exh_quad_mode *mode, unsigned ab);
 
 /* n samples, ab[0] the first: as n steps, at a third of their cost. */
-void exh_quad_ab_run(struct exh_quad_ab *s, const struct exh_quad_mode *mode, const uint8_t *ab,
-                     size_t n);
+void exh_quad_ab_run(
+    struct exh_quad_ab *s, const struct exh_quad_mode *mode, const uint8_t *ab, size_t n);
 
 /* 64 samples in x4, a line a word, bit 0 the first, as a shift register collects
  * them: as 64 steps, at a sixth of the cost of a run. To end a stream within a word,
@@ -87,8 +87,8 @@ struct exh_quad {
  * board. -EXH_E_RATE: T. -EXH_E_RANGE: bits not 16 .. 32, step or speed_max outside its range
  * above, or speed_max moves the counter by a quarter of its width or more in one
  * tick: so a movement of up to three times that speed is still told as too fast. */
-int exh_quad_setup(struct exh_quad_cfg *cfg, const struct exh_quad_par *par, struct exh_period T,
-                   unsigned bits);
+int exh_quad_setup(
+    struct exh_quad_cfg *cfg, const struct exh_quad_par *par, struct exh_period T, unsigned bits);
 
 /* The extended count. Right as long as the counter moves less than half its
  * width between two calls; bits of raw above the width are ignored. A movement

@@ -114,7 +114,7 @@ struct exh_record_place {
 
 /* Makes ready a record of this type, sequence number and tick; nothing goes out yet. */
 void exh_record_out_begin(struct exh_record_out *o, uint8_t type, uint32_t seq, uint32_t tick,
-                          struct exh_record_place payload);
+    struct exh_record_place payload);
 
 /* The next bytes, at most cap_B of them: how many; 0: all were taken. */
 uint32_t exh_record_out(struct exh_record_out *o, uint8_t *to, uint32_t cap_B);

@@ -210,8 +210,8 @@ void exh_regs_update(struct exh_regs *r, const struct exh_safety *s, uint32_t di
 
 /* n registers from `at`, each two bytes, high byte first: 2 n bytes. 0, or an exception (enum
  * exh_modbus_exception). kind: HOLDING or INPUT. All of a request lies in one block. */
-int exh_regs_read(const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at, uint16_t n,
-                  uint8_t *to);
+int exh_regs_read(
+    const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at, uint16_t n, uint8_t *to);
 
 /* Stages n holding registers, 2 n bytes as above, all or none: a value of which one register alone
  * is written keeps the other as it stands, but not a binary32 (exception 3). Exception 3 too:
@@ -227,8 +227,8 @@ int exh_regs_validate(const struct exh_regs *r, uint16_t at, uint16_t n, const u
 
 /* n bits from `at`, the first the lowest of to[0], unused ones of the last byte 0: (n + 7) / 8
  * bytes. 0 or exception 2. kind: COIL or DISCRETE. */
-int exh_regs_read_bits(const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at, uint16_t n,
-                       uint8_t *to);
+int exh_regs_read_bits(
+    const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at, uint16_t n, uint8_t *to);
 
 /* Commands by coils, all or none. Exception 3: not in `may`, or APPLY with DISCARD; exception 6:
  * DISCARD while APPLY is pending. DISCARD is done here, the others are asked for. */

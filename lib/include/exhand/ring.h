@@ -45,8 +45,8 @@ int exh_ring_due(const struct exh_ring *r);
 /* A record's payload, copied. 1, or 0: lost, as there is no keyframe before it, or it is longer
  * than 65535 bytes or than the memory. Interrupted at any instruction, the ring holds what it held,
  * maybe without its oldest parts: a box that is halted in the middle of it can still be read. */
-int exh_ring_put(struct exh_ring *r, uint8_t type, uint32_t tick, const void *payload,
-                 uint32_t len_B);
+int exh_ring_put(
+    struct exh_ring *r, uint8_t type, uint32_t tick, const void *payload, uint32_t len_B);
 
 /* Reading, oldest first; nothing may be put meanwhile. */
 struct exh_ring_place {
@@ -57,8 +57,8 @@ struct exh_ring_place {
 struct exh_ring_place exh_ring_first(const struct exh_ring *r);
 
 /* 1: the next record, to be put out with this sequence number; 0: there is none. */
-int exh_ring_next(const struct exh_ring *r, struct exh_ring_place *p, uint32_t seq,
-                  struct exh_record_out *o);
+int exh_ring_next(
+    const struct exh_ring *r, struct exh_ring_place *p, uint32_t seq, struct exh_record_out *o);
 
 #ifdef __cplusplus
 }

@@ -135,8 +135,8 @@ struct exh_safety_cfg {
 };
 
 /* Set-up (divides). -EXH_E_RANGE: a parameter outside its range above; -EXH_E_RATE: T. */
-int exh_safety_setup(struct exh_safety_cfg *cfg, const struct exh_safety_par *par,
-                     struct exh_period T);
+int exh_safety_setup(
+    struct exh_safety_cfg *cfg, const struct exh_safety_par *par, struct exh_period T);
 
 /* The box from tick to tick. A state of zeros is OFF. For everybody to read, for the functions
  * below alone to write. */
@@ -174,8 +174,8 @@ struct exh_safety_in {
 
 /* One tick, first thing. Returns what the force may do, for exh_drive_force_step(). A state that
  * cannot be is FAULT, LOGIC. */
-struct exh_permit exh_safety_step(struct exh_safety *s, const struct exh_safety_cfg *cfg,
-                                  struct exh_safety_in in);
+struct exh_permit exh_safety_step(
+    struct exh_safety *s, const struct exh_safety_cfg *cfg, struct exh_safety_in in);
 
 /* enum exh_arm: on which step arming is, or else was refused at last; 0: none. */
 uint8_t exh_safety_arm_step(const struct exh_safety *s);
@@ -197,7 +197,7 @@ int exh_safety_is_open(const struct exh_safety *s);
  * EXH_LIMIT_GATE (current held back) to limits, and keeps all of them for the next
  * exh_safety_step(), which counts them. */
 void exh_gate_step(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
-                   struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out);
+    struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out);
 
 /* The same of a scene that drives nothing: the gate is shut, every finger gets dac_zero_raw. */
 void exh_gate_shut(struct exh_safety *s, uint16_t dac_zero_raw, struct exh_drive_out *out);

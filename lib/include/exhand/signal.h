@@ -67,8 +67,8 @@ uint32_t exh_signal_count(const struct exh_signal_table *t);
 
 /* The row of value index i and its instance (NULL: not wanted); NULL if i is
  * not below exh_signal_count(). */
-const struct exh_signal *exh_signal_at(const struct exh_signal_table *t, uint32_t i,
-                                       uint16_t *instance);
+const struct exh_signal *exh_signal_at(
+    const struct exh_signal_table *t, uint32_t i, uint16_t *instance);
 
 /* Index of the value with this id and instance, or -EXH_E_UNKNOWN. */
 int32_t exh_signal_find(const struct exh_signal_table *t, uint16_t id, uint16_t instance);

@@ -74,7 +74,7 @@ int exh_slots_find(struct exh_slot *newest, const void *slot0, const void *slot1
  * cap_B or slot_B, or those above 2^31 - 1: nothing is written, *to is untouched. The sequence is
  * the one behind that of the slot that counts, 1 behind 2^32 - 2; of none, slot 0 and 1. */
 int32_t exh_slots_encode(unsigned *to, const void *slot0, const void *slot1, size_t slot_B,
-                         void *buf, size_t cap_B, size_t image_B);
+    void *buf, size_t cap_B, size_t image_B);
 
 #ifdef __cplusplus
 }

@@ -36,13 +36,13 @@ struct exh_supply {
 
 /* Set-up (divides). -EXH_E_RANGE: a parameter outside its range above, or limits between which
  * there is no code, or of which the upper is not below the highest code; -EXH_E_RATE: T. */
-int exh_supply_setup(struct exh_supply_cfg *cfg, const struct exh_supply_par *par,
-                     struct exh_period T);
+int exh_supply_setup(
+    struct exh_supply_cfg *cfg, const struct exh_supply_par *par, struct exh_period T);
 
 /* A tick's code, after so many that were missed, which count as this one. 1 while the voltage is
  * outside its limits for cfg->ticks ticks on end: to be raised as EXH_FAULT_SUPPLY; else 0. */
-int exh_supply_step(struct exh_supply *s, const struct exh_supply_cfg *cfg, int16_t raw,
-                    uint32_t missed);
+int exh_supply_step(
+    struct exh_supply *s, const struct exh_supply_cfg *cfg, int16_t raw, uint32_t missed);
 
 /* State through a cursor. A state of zeros is a supply that was never outside. Damaged bytes at
  * worst raise the fault until a voltage within the limits is seen. */

@@ -47,8 +47,8 @@ struct exh_trace {
 
 /* Nothing is traced, nothing is held. -EXH_E_RANGE: frames is no power of two from 2 to
  * EXH_TRACE_FRAMES, or there are no signals. */
-int exh_trace_setup(struct exh_trace *t, struct exh_trace_frame *frame, uint32_t frames,
-                    uint32_t signals);
+int exh_trace_setup(
+    struct exh_trace *t, struct exh_trace_frame *frame, uint32_t frames, uint32_t signals);
 
 /* Another trace, from the next tick on; frames of the one before are not held any more.
  * -EXH_E_RANGE: an index of none of the signals; nothing changes. */

@@ -47,14 +47,14 @@ struct exh_tracking {
 };
 
 /* Set-up (divides). -EXH_E_RANGE: a parameter outside its range above; -EXH_E_RATE: T. */
-int exh_tracking_setup(struct exh_tracking_cfg *cfg, const struct exh_tracking_par *par,
-                       struct exh_period T);
+int exh_tracking_setup(
+    struct exh_tracking_cfg *cfg, const struct exh_tracking_par *par, struct exh_period T);
 
 /* First thing of a tick, with the current monitored (exh_drive_monitor_A_q26). 1 while the
  * current has not followed for cfg->ticks ticks, this one among them: to be raised as
  * EXH_FAULT_TRACKING, in every state; else 0. */
-int exh_tracking_step(struct exh_tracking *s, const struct exh_tracking_cfg *cfg,
-                      int32_t mon_A_q26);
+int exh_tracking_step(
+    struct exh_tracking *s, const struct exh_tracking_cfg *cfg, int32_t mon_A_q26);
 
 /* Behind the gate, with the current that the code stands for (coded of the ledger). Who forgets
  * it gets the fault with the first current. */

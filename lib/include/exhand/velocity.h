@@ -61,9 +61,9 @@ struct exh_velocity_window {
 /* Set-up (divides); the velocity, m/s, q27, in a tick of this count; state through a cursor.
  * -EXH_E_RATE: T; -EXH_E_RANGE when p > 4 or the step is not above 0. */
 int exh_velocity_window_setup(struct exh_velocity_window_cfg *cfg, struct exh_velocity_scale s,
-                              const struct exh_velocity_par *par);
-int32_t exh_velocity_window_step(struct exh_velocity_window *s,
-                                 const struct exh_velocity_window_cfg *cfg, int32_t cnt);
+    const struct exh_velocity_par *par);
+int32_t exh_velocity_window_step(
+    struct exh_velocity_window *s, const struct exh_velocity_window_cfg *cfg, int32_t cnt);
 void exh_velocity_window_serialize(struct exh_bytes *c, struct exh_velocity_window *s);
 
 /* --- pole: v += (diff - v) * T/(T + tau) --- */
@@ -81,10 +81,10 @@ struct exh_velocity_pole {
 };
 
 /* As those of the window; tau_us: 0 .. 10^6, else -EXH_E_RANGE too. */
-int exh_velocity_pole_setup(struct exh_velocity_pole_cfg *cfg, struct exh_velocity_scale s,
-                            uint32_t tau_us);
-int32_t exh_velocity_pole_step(struct exh_velocity_pole *s, const struct exh_velocity_pole_cfg *cfg,
-                               int32_t cnt);
+int exh_velocity_pole_setup(
+    struct exh_velocity_pole_cfg *cfg, struct exh_velocity_scale s, uint32_t tau_us);
+int32_t exh_velocity_pole_step(
+    struct exh_velocity_pole *s, const struct exh_velocity_pole_cfg *cfg, int32_t cnt);
 void exh_velocity_pole_serialize(struct exh_bytes *c, struct exh_velocity_pole *s);
 
 /* --- foaw: best fit (least squares) over the longest window whose samples all
@@ -106,10 +106,10 @@ struct exh_velocity_foaw {
 };
 
 /* As those of the window; n: 1 .. 16, tol_cnt: 1 .. 255, else -EXH_E_RANGE too. */
-int exh_velocity_foaw_setup(struct exh_velocity_foaw_cfg *cfg, struct exh_velocity_scale s,
-                            unsigned n, unsigned tol_cnt);
-int32_t exh_velocity_foaw_step(struct exh_velocity_foaw *s, const struct exh_velocity_foaw_cfg *cfg,
-                               int32_t cnt);
+int exh_velocity_foaw_setup(
+    struct exh_velocity_foaw_cfg *cfg, struct exh_velocity_scale s, unsigned n, unsigned tol_cnt);
+int32_t exh_velocity_foaw_step(
+    struct exh_velocity_foaw *s, const struct exh_velocity_foaw_cfg *cfg, int32_t cnt);
 void exh_velocity_foaw_serialize(struct exh_bytes *c, struct exh_velocity_foaw *s);
 
 /* --- track: alpha-beta observer with a double pole theta = T_f/(T_f + T):
@@ -132,10 +132,10 @@ struct exh_velocity_track {
 
 /* As those of the window; tf_us: time constant T_f of each pole, 0 .. 10^6, else -EXH_E_RANGE too.
  */
-int exh_velocity_track_setup(struct exh_velocity_track_cfg *cfg, struct exh_velocity_scale s,
-                             uint32_t tf_us);
-int32_t exh_velocity_track_step(struct exh_velocity_track *s,
-                                const struct exh_velocity_track_cfg *cfg, int32_t cnt);
+int exh_velocity_track_setup(
+    struct exh_velocity_track_cfg *cfg, struct exh_velocity_scale s, uint32_t tf_us);
+int32_t exh_velocity_track_step(
+    struct exh_velocity_track *s, const struct exh_velocity_track_cfg *cfg, int32_t cnt);
 void exh_velocity_track_serialize(struct exh_bytes *c, struct exh_velocity_track *s);
 
 #ifdef __cplusplus

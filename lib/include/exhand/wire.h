@@ -166,8 +166,8 @@ struct exh_wire_tx {
  * this order, -EXH_E_UNKNOWN (no such type), -EXH_E_RANGE (session 0, or a role, kind, mask,
  * result or number of frames that no receiver would take), -EXH_E_SHORT (cap_B too small;
  * EXH_WIRE_MAX_B never is); then nothing is used up but what buf held. */
-int32_t exh_wire_encode(struct exh_wire_tx *tx, struct exh_wire_packet *p, uint32_t stamp_us,
-                        void *buf, size_t cap_B);
+int32_t exh_wire_encode(
+    struct exh_wire_tx *tx, struct exh_wire_packet *p, uint32_t stamp_us, void *buf, size_t cap_B);
 
 /* --- receiving --- */
 
@@ -205,8 +205,8 @@ int exh_wire_poll(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us)
  * -EXH_E_STALE (duplicate, reordered, old), -EXH_E_RANGE (far). A HELLO of a new session is taken
  * whatever its sequence number: the peer has started anew. So is, of an open receiver, any HELLO
  * but the newest packet itself once more. Reads len_B bytes at most. */
-int exh_wire_decode(struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf,
-                    size_t len_B);
+int exh_wire_decode(
+    struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf, size_t len_B);
 
 /* The plane of one finger as precontact wants it. */
 struct exh_plane exh_wire_plane_of(const struct exh_wire_planes *planes, unsigned finger);

@@ -17,41 +17,41 @@
 
 const struct exh_signal exh_drive_rows[EXH_DRIVE_ROWS] = {
     {0x0501, EXH_Q_FORCE, EXH_WHEN_LIMIT, 0, EXH_FORCE_MAX_N_Q20, EXH_Q(40, 1, EXH_Q_FORCE),
-     "f_max", "n", "force limit"},
+        "f_max", "n", "force limit"},
     {0x0502, 0, EXH_WHEN_ANY, 1, SLEW_MAX_NPS, 200000, "slew_up", "n_per_s",
-     "fastest rise of force"},
+        "fastest rise of force"},
     /* At 1 kN/s the 22 N of a CyberGrasp motor are gone in 22 ms: letting go is never slow. */
     {0x0503, 0, EXH_WHEN_ANY, SLEW_DOWN_MIN_NPS, SLEW_MAX_NPS, 200000, "slew_down", "n_per_s",
-     "fastest fall of force"},
+        "fastest fall of force"},
     /* Elmo Castanet: 6.6 A peak for about 2.7 s, 3.3 A for ever (hardware facts). */
     {0x0504, EXH_Q_CUR, EXH_WHEN_SETUP, I_PEAK_MIN_A_Q26, I_PEAK_MAX_A_Q26, I_PEAK_MAX_A_Q26,
-     "i_peak", "a", "peak current of the drive"},
+        "i_peak", "a", "peak current of the drive"},
     {0x0505, EXH_Q_CUR, EXH_WHEN_SETUP, 0, I_CONT_MAX_A_Q26, I_CONT_MAX_A_Q26, "i_cont", "a",
-     "continuous current of the drive"},
+        "continuous current of the drive"},
     {0x0506, 0, EXH_WHEN_SETUP, 1, PEAK_MAX_MS, PEAK_MAX_MS, "peak_time", "ms",
-     "peak current from cold"},
+        "peak current from cold"},
     /* Sensoray 526: offset binary, 3249 codes/V; Castanet: 1.76 A/V, +-3.75 V. */
     {0x0507, 0, EXH_WHEN_SETUP, 0, 65535, 32768, "dac_zero", "", "D/A code of no current"},
     {0x0508, 0, EXH_WHEN_SETUP, 0, 32767, 12184, "dac_span", "", "codes used either side of it"},
     {0x0509, EXH_Q_DAC, EXH_WHEN_SETUP, EXH_Q(1, 1, EXH_Q_DAC), INT32_MAX,
-     EXH_Q(324900, 176, EXH_Q_DAC), "dac_scale", "per_a", "D/A codes per ampere"},
+        EXH_Q(324900, 176, EXH_Q_DAC), "dac_scale", "per_a", "D/A codes per ampere"},
     {0x050A, 0, EXH_WHEN_SETUP, -32768, 32767, 0, "mon_zero", "", "monitor code of no current"},
     /* 305.2 uV per code over 0.591 V/A. */
     {0x050B, EXH_Q_MON, EXH_WHEN_SETUP, 1, INT32_MAX, EXH_Q(5164, 10000000, EXH_Q_MON), "mon_scale",
-     "a", "ampere per monitor code"},
+        "a", "ampere per monitor code"},
 };
 
 /* --- set-up --- */
 
 /* Ticks of the longest peak at the highest rate, which a timer may exceed by 1000 ppm. */
 #define PEAK_TICKS_MAX ((int64_t)PEAK_MAX_MS * 20020 / 1000 + 1)
-EXH_STATIC_ASSERT(i2t_has_room, ((int64_t)I_PEAK_MAX_A_Q26 >> 10) * (I_PEAK_MAX_A_Q26 >> 10) <
-                                    INT64_MAX / 2 / PEAK_TICKS_MAX);
+EXH_STATIC_ASSERT(i2t_has_room,
+    ((int64_t)I_PEAK_MAX_A_Q26 >> 10) * (I_PEAK_MAX_A_Q26 >> 10) < INT64_MAX / 2 / PEAK_TICKS_MAX);
 
 /* I2t: heat above i_cont^2, in A^2 ticks with 32 fraction bits, so that no
  * multiplication by the period is needed in the tick. */
-static int setup_i2t(struct exh_drive_cfg *cfg, const struct exh_drive_par *par,
-                     struct exh_period T)
+static int setup_i2t(
+    struct exh_drive_cfg *cfg, const struct exh_drive_par *par, struct exh_period T)
 {
     const int64_t peak_A_q16 = par->i_peak_A_q26 >> (EXH_Q_CUR - 16);
     const int64_t cont_A_q16 = par->i_cont_A_q26 >> (EXH_Q_CUR - 16);
@@ -97,7 +97,7 @@ static int par_ok(const struct exh_drive_par *par, int monitor)
 }
 
 int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, struct exh_period T,
-                    struct exh_table force_to_cur, struct exh_table cur_to_force)
+    struct exh_table force_to_cur, struct exh_table cur_to_force)
 {
     int err;
     if (!exh_period_ok(T)) { return -EXH_E_RATE; }
@@ -116,7 +116,7 @@ int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, 
     err = exh_gain_set(&cfg->tick_N_q20, (uint64_t)T.num << EXH_Q_FORCE, T.den);
     if (err == 0) {
         err = exh_gain_set(&cfg->dac_A_q26, UINT64_C(1) << (EXH_Q_CUR + EXH_Q_DAC),
-                           (uint64_t)(uint32_t)par->dac_rawpA_q16);
+            (uint64_t)(uint32_t)par->dac_rawpA_q16);
     }
     return err == 0 ? setup_i2t(cfg, par, T) : err;
 }
@@ -124,8 +124,8 @@ int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, 
 /* --- the tick --- */
 
 /* Closed: nothing is left for the slew limit to remember. */
-static uint32_t no_force(struct exh_drive *s, int64_t asked_N_q20, int32_t small_N_q20,
-                         struct exh_force_ledger *f)
+static uint32_t no_force(
+    struct exh_drive *s, int64_t asked_N_q20, int32_t small_N_q20, struct exh_force_ledger *f)
 {
     /* What passivity takes for a while is no proof that the finger stands free. */
     const int64_t law_N_q20 = exh_wrap_diff64(asked_N_q20, f->passivity_N_q20);
@@ -139,7 +139,7 @@ static uint32_t no_force(struct exh_drive *s, int64_t asked_N_q20, int32_t small
 /* Nothing that is asked for counts any more, only what is held: a law that lost its inputs must
  * not speak. The step rounded up, so that the last one is none too small. */
 static uint32_t release(struct exh_drive *s, int64_t asked_N_q20, const struct exh_permit *permit,
-                        struct exh_force_ledger *f)
+    struct exh_force_ledger *f)
 {
     int64_t rest;
     if (s->fall_N_q20 == 0) {
@@ -153,11 +153,11 @@ static uint32_t release(struct exh_drive *s, int64_t asked_N_q20, const struct e
 }
 
 uint32_t exh_drive_force_step(struct exh_drive *s, const struct exh_drive_cfg *cfg,
-                              const struct exh_permit *permit, struct exh_force_ledger *f)
+    const struct exh_permit *permit, struct exh_force_ledger *f)
 {
     const struct exh_drive_par *par = cfg->par;
     const int64_t asked = exh_wrap_add64(exh_wrap_add64(f->spring_N_q20, f->damper_N_q20),
-                                         exh_wrap_add64(f->pullback_N_q20, f->passivity_N_q20));
+        exh_wrap_add64(f->pullback_N_q20, f->passivity_N_q20));
     const int32_t top = par->f_max_N_q20 < cfg->f_top_N_q20 ? par->f_max_N_q20 : cfg->f_top_N_q20;
     const int32_t most = (int32_t)((int64_t)top * permit->share_q30 >> 30);
     const int32_t held = exh_clamp(asked, 0, most);
@@ -195,7 +195,7 @@ static int32_t i2t_limit(const struct exh_drive *s, const struct exh_drive_cfg *
 }
 
 uint32_t exh_drive_current_step(struct exh_drive *s, const struct exh_drive_cfg *cfg,
-                                const struct exh_force_ledger *f, struct exh_current_ledger *i)
+    const struct exh_force_ledger *f, struct exh_current_ledger *i)
 {
     const int32_t table = exh_table_at(cfg->force_to_cur, f->force_N_q20);
     const int32_t peak = exh_clamp32(table, -cfg->par->i_peak_A_q26, cfg->par->i_peak_A_q26);
@@ -220,8 +220,8 @@ uint32_t exh_drive_current_step(struct exh_drive *s, const struct exh_drive_cfg 
 
 int32_t exh_drive_monitor_A_q26(const struct exh_drive_cfg *cfg, int16_t mon_raw)
 {
-    return exh_sat32(exh_mul_shr((int32_t)mon_raw - cfg->par->mon_zero_raw, cfg->par->mon_A_q40,
-                                 EXH_Q_MON - EXH_Q_CUR));
+    return exh_sat32(exh_mul_shr(
+        (int32_t)mon_raw - cfg->par->mon_zero_raw, cfg->par->mon_A_q40, EXH_Q_MON - EXH_Q_CUR));
 }
 
 int32_t exh_drive_monitor_N_q20(const struct exh_drive_cfg *cfg, int32_t mon_A_q26)

@@ -7,11 +7,11 @@
 
 /* The code for one current: within the span of zero, no further from it than `most`, and of 16
  * bits. */
-static uint16_t code_of(const struct exh_drive_par *par, int32_t cur_A_q26, uint16_t most_raw,
-                        uint32_t *limits)
+static uint16_t code_of(
+    const struct exh_drive_par *par, int32_t cur_A_q26, uint16_t most_raw, uint32_t *limits)
 {
-    const int32_t asked = (int32_t)exh_mul_shr(cur_A_q26, par->dac_rawpA_q16,
-                                               EXH_Q_CUR + EXH_Q_DAC); /* 20 bits and a sign */
+    const int32_t asked = (int32_t)exh_mul_shr(
+        cur_A_q26, par->dac_rawpA_q16, EXH_Q_CUR + EXH_Q_DAC); /* 20 bits and a sign */
     const int32_t span = par->dac_span_raw < most_raw ? par->dac_span_raw : most_raw;
     const int32_t spanned = exh_clamp32(asked, -span, span);
     const int32_t code = exh_clamp32(par->dac_zero_raw + spanned, 0, UINT16_MAX);
@@ -20,7 +20,7 @@ static uint16_t code_of(const struct exh_drive_par *par, int32_t cur_A_q26, uint
 }
 
 void exh_gate_step(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
-                   struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out)
+    struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out)
 {
     const int open = exh_safety_is_open(s), falls = s->state == EXH_STATE_RELEASE;
 

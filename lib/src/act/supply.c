@@ -12,17 +12,17 @@
  * divider, nobody can tell but who built the box: not judged until supply_min is given. */
 const struct exh_signal exh_supply_rows[EXH_SUPPLY_ROWS] = {
     {0x0D11, EXH_Q_SUPPLY, EXH_WHEN_SETUP, 0, V_MAX_Q20, 0, "supply_min", "v",
-     "lowest voltage of the drives' supply; 0: it is not judged"},
+        "lowest voltage of the drives' supply; 0: it is not judged"},
     {0x0D12, EXH_Q_SUPPLY, EXH_WHEN_SETUP, 0, V_MAX_Q20, EXH_Q(30, 1, EXH_Q_SUPPLY), "supply_max",
-     "v", "highest"},
+        "v", "highest"},
     {0x0D13, EXH_Q_VPRAW, EXH_WHEN_SETUP, 1, INT32_MAX, EXH_Q(4 * 10, 32768, EXH_Q_VPRAW),
-     "supply_scale", "v", "volt per code of its monitor"},
+        "supply_scale", "v", "volt per code of its monitor"},
     {0x0D14, 0, EXH_WHEN_SETUP, 1, TIME_MAX_MS, 10, "supply_time", "ms",
-     "outside them for no longer than this"},
+        "outside them for no longer than this"},
 };
 
-int exh_supply_setup(struct exh_supply_cfg *cfg, const struct exh_supply_par *par,
-                     struct exh_period T)
+int exh_supply_setup(
+    struct exh_supply_cfg *cfg, const struct exh_supply_par *par, struct exh_period T)
 {
     const unsigned up = EXH_Q_VPRAW - EXH_Q_SUPPLY;
     uint64_t least, most, rest;
@@ -45,8 +45,8 @@ int exh_supply_setup(struct exh_supply_cfg *cfg, const struct exh_supply_par *pa
     return 0;
 }
 
-int exh_supply_step(struct exh_supply *s, const struct exh_supply_cfg *cfg, int16_t raw,
-                    uint32_t missed)
+int exh_supply_step(
+    struct exh_supply *s, const struct exh_supply_cfg *cfg, int16_t raw, uint32_t missed)
 {
     if (raw >= cfg->min_raw && raw <= cfg->max_raw) {
         s->off_ticks = 0;

@@ -39,5 +39,5 @@ int32_t exh_table_at(struct exh_table t, int32_t x)
     /* Every knot is looked at: the cost must not depend on the force. */
     for (unsigned k = 1; k <= last; k++) { i += in >= t.knot[k].x; }
     return exh_clamp(t.knot[i].y + exh_gain_mul(t.knot[i].slope, exh_wrap_diff(in, t.knot[i].x)),
-                     t.knot[i].y, t.knot[i < last ? i + 1 : last].y);
+        t.knot[i].y, t.knot[i < last ? i + 1 : last].y);
 }

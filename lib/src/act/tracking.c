@@ -19,13 +19,13 @@
  * until 0.2 A are left of 13.2 A; rounded up to 20 ms for slower ones. */
 const struct exh_signal exh_tracking_rows[EXH_TRACKING_ROWS] = {
     {0x0D01, EXH_Q_CUR, EXH_WHEN_SETUP, TOL_MIN_A_Q26, TOL_MAX_A_Q26, EXH_Q(1, 4, EXH_Q_CUR),
-     "track_tol", "a", "current monitored differs from what is coded by no more"},
+        "track_tol", "a", "current monitored differs from what is coded by no more"},
     {0x0D02, 0, EXH_WHEN_SETUP, 1, TIME_MAX_MS, 20, "track_time", "ms",
-     "for no longer than this and 4 ticks"},
+        "for no longer than this and 4 ticks"},
 };
 
-int exh_tracking_setup(struct exh_tracking_cfg *cfg, const struct exh_tracking_par *par,
-                       struct exh_period T)
+int exh_tracking_setup(
+    struct exh_tracking_cfg *cfg, const struct exh_tracking_par *par, struct exh_period T)
 {
     if (par->tol_A_q26 < TOL_MIN_A_Q26 || par->tol_A_q26 > TOL_MAX_A_Q26 || par->time_ms < 1 ||
         par->time_ms > TIME_MAX_MS) {

@@ -57,7 +57,7 @@ static int point_ok(const struct exh_calib_point *p, enum exh_calib_column which
 }
 
 int exh_calib_fit(struct exh_calib_fit *fit, const struct exh_calib_point *p, unsigned n,
-                  enum exh_calib_column which)
+    enum exh_calib_column which)
 {
     uint64_t fi = 0, ii = 0; /* terms < 2^57 and < 2^59, 16 of them */
     fit->gain = (struct exh_gain){0, 1};
@@ -75,8 +75,8 @@ int exh_calib_fit(struct exh_calib_fit *fit, const struct exh_calib_point *p, un
     return 0;
 }
 
-int32_t exh_calib_residual_N_q20(const struct exh_calib_fit *fit, const struct exh_calib_point *p,
-                                 enum exh_calib_column which)
+int32_t exh_calib_residual_N_q20(
+    const struct exh_calib_fit *fit, const struct exh_calib_point *p, enum exh_calib_column which)
 {
     return exh_sat32(p->force_N_q20 - exh_gain_mul(fit->gain, current_of(p, which)));
 }
@@ -117,7 +117,7 @@ static int values_ok(const struct exh_calib *c)
 /* All points, each in its range and above the one before it: on the bench, a mass hung
  * on twice or in another order, or a monitor that is not connected. */
 static int rises(const struct exh_calib *c, enum exh_calib_column which,
-                 enum exh_calib_error_kind what, struct exh_calib_error *bad)
+    enum exh_calib_error_kind what, struct exh_calib_error *bad)
 {
     int32_t force = 0, cur = 0;
     if (!values_ok(c)) { return refuse(bad, EXH_CALIB_VALUE, 0, -EXH_E_RANGE); }
@@ -135,8 +135,8 @@ static int rises(const struct exh_calib *c, enum exh_calib_column which,
 
 /* The point at which the tables end when they go on straight; 0 where they don't. A
  * slope below the monitor's or the table's own resolution is no table either. */
-static int straight_on(const struct exh_calib *c, enum exh_calib_column which,
-                       struct exh_knot *knot)
+static int straight_on(
+    const struct exh_calib *c, enum exh_calib_column which, struct exh_knot *knot)
 {
     const struct exh_calib_point *last = &c->point[c->points - 1];
     const int64_t more = (int64_t)c->end_A_q26 - last->cur_A_q26;
@@ -151,8 +151,8 @@ static int straight_on(const struct exh_calib *c, enum exh_calib_column which,
     return 1;
 }
 
-int exh_calib_force_table(const struct exh_calib *c, struct exh_knot *knot, unsigned cap,
-                          struct exh_calib_error *bad)
+int exh_calib_force_table(
+    const struct exh_calib *c, struct exh_knot *knot, unsigned cap, struct exh_calib_error *bad)
 {
     const unsigned last = c->points;
     int err = rises(c, EXH_CALIB_CURRENT, EXH_CALIB_FORCE_TABLE, bad);
@@ -172,8 +172,8 @@ int exh_calib_force_table(const struct exh_calib *c, struct exh_knot *knot, unsi
     return refuse(bad, EXH_CALIB_FORCE_TABLE, last - 1u, err);
 }
 
-int exh_calib_monitor_table(const struct exh_calib *c, struct exh_knot *knot, unsigned cap,
-                            struct exh_calib_error *bad)
+int exh_calib_monitor_table(
+    const struct exh_calib *c, struct exh_knot *knot, unsigned cap, struct exh_calib_error *bad)
 {
     const unsigned last = c->points;
     struct exh_knot end = {0, 0, {0, 1}};
@@ -206,8 +206,8 @@ int exh_calib_validate(const struct exh_calib *c, struct exh_calib_error *bad)
     return n < 0 ? n : 0;
 }
 
-int exh_calib_check(const struct exh_calib *c, const struct exh_calib_target *here,
-                    struct exh_calib_error *bad)
+int exh_calib_check(
+    const struct exh_calib *c, const struct exh_calib_target *here, struct exh_calib_error *bad)
 {
     if (c->points == 0) { return refuse(bad, EXH_CALIB_VALUE, 0, -EXH_E_RANGE); }
     if (c->device_id != here->device_id) {
@@ -242,8 +242,8 @@ static void head_bytes(struct exh_bytes *b, struct head *h)
 static void body_bytes(struct exh_bytes *b, struct exh_calib *c)
 {
     uint32_t *const id[] = {&c->device_id, &c->finger, &c->day, &c->valid_days};
-    int32_t *const value[] = {&c->dac_rawpA_q16, &c->dac_zero_raw, &c->mon_A_q40,
-                              &c->mon_zero_raw,  &c->f0_A_q26,     &c->end_A_q26};
+    int32_t *const value[] = {&c->dac_rawpA_q16, &c->dac_zero_raw, &c->mon_A_q40, &c->mon_zero_raw,
+        &c->f0_A_q26, &c->end_A_q26};
     for (unsigned i = 0; i < sizeof id / sizeof id[0]; i++) { exh_bytes_u32(b, id[i]); }
     for (unsigned i = 0; i < sizeof value / sizeof value[0]; i++) { exh_bytes_i32(b, value[i]); }
     for (unsigned i = 0; i < c->points; i++) {
@@ -254,8 +254,8 @@ static void body_bytes(struct exh_bytes *b, struct exh_calib *c)
     }
 }
 
-int32_t exh_calib_save(const struct exh_calib *c, void *buf, size_t cap_B,
-                       struct exh_calib_error *bad)
+int32_t exh_calib_save(
+    const struct exh_calib *c, void *buf, size_t cap_B, struct exh_calib_error *bad)
 {
     struct head h = {IMAGE_MAGIC, EXH_CALIB_VERSION, c->points};
     struct exh_bytes b = exh_bytes_writer(buf, cap_B);

@@ -17,8 +17,13 @@
 const char *exh_probe_result_text(unsigned result)
 {
     static const char *const text[EXH_PROBE_RESULTS] = {
-        "busy",          "done",   "went the wrong way", "did not move", "moved too far",
-        "took too long", "jammed",
+        "busy",
+        "done",
+        "went the wrong way",
+        "did not move",
+        "moved too far",
+        "took too long",
+        "jammed",
     };
     return result < EXH_PROBE_RESULTS ? text[result] : "unknown";
 }
@@ -40,8 +45,8 @@ static uint32_t dwell_of(int32_t ms, struct exh_period T)
 
 static int32_t counts_of(int32_t m_q30, int32_t step_m_q42, int32_t least)
 {
-    const uint64_t n = exh_udiv64((uint64_t)(uint32_t)m_q30 << (EXH_Q_STEP - EXH_Q_POS),
-                                  (uint32_t)step_m_q42, NULL);
+    const uint64_t n = exh_udiv64(
+        (uint64_t)(uint32_t)m_q30 << (EXH_Q_STEP - EXH_Q_POS), (uint32_t)step_m_q42, NULL);
     return n < (uint32_t)least ? least : exh_clamp((int64_t)n, least, INT32_MAX);
 }
 
@@ -50,8 +55,8 @@ static int scale_ok(struct exh_probe_scale scale)
     return scale.step_m_q42 > 0 && exh_period_ok(scale.T);
 }
 
-int exh_probe_setup(struct exh_probe_cfg *cfg, const struct exh_probe_par *par,
-                    struct exh_probe_scale scale)
+int exh_probe_setup(
+    struct exh_probe_cfg *cfg, const struct exh_probe_par *par, struct exh_probe_scale scale)
 {
     const int64_t step = par->step_A_q26;
     const int64_t size = step < 0 ? -step : step;
@@ -76,14 +81,14 @@ int exh_probe_setup(struct exh_probe_cfg *cfg, const struct exh_probe_par *par,
 void exh_probe_start(struct exh_probe *s, int32_t cnt, int32_t cur_A_q26)
 {
     *s = (struct exh_probe){.cur_A_q26 = exh_clamp(cur_A_q26, 0, EXH_PROBE_CUR_MAX_A_Q26),
-                            .start_cnt = cnt,
-                            .dwell_cnt = cnt,
-                            .result = EXH_PROBE_BUSY};
+        .start_cnt = cnt,
+        .dwell_cnt = cnt,
+        .result = EXH_PROBE_BUSY};
 }
 
 /* What the counts say; BUSY: nothing yet. out: counts moved outwards in this dwell. */
-static uint8_t judge(const struct exh_probe *s, const struct exh_probe_cfg *cfg, int32_t cnt,
-                     int64_t out)
+static uint8_t judge(
+    const struct exh_probe *s, const struct exh_probe_cfg *cfg, int32_t cnt, int64_t out)
 {
     const int64_t far = exh_wrap_diff(cnt, s->start_cnt);
     const int rises = cfg->step_A_q26 > 0;
@@ -95,8 +100,8 @@ static uint8_t judge(const struct exh_probe *s, const struct exh_probe_cfg *cfg,
 }
 
 /* A dwell is over: the next current, if the last dwell was one to step from. */
-static void next_dwell(struct exh_probe *s, const struct exh_probe_cfg *cfg, int32_t cnt,
-                       int64_t out)
+static void next_dwell(
+    struct exh_probe *s, const struct exh_probe_cfg *cfg, int32_t cnt, int64_t out)
 {
     const int64_t next = (int64_t)s->cur_A_q26 + cfg->step_A_q26;
     s->dwell = 0;
@@ -126,8 +131,8 @@ uint8_t exh_probe_step(struct exh_probe *s, const struct exh_probe_cfg *cfg, int
 
 /* --- home --- */
 
-int exh_home_setup(struct exh_home_cfg *cfg, const struct exh_home_par *par,
-                   struct exh_probe_scale scale)
+int exh_home_setup(
+    struct exh_home_cfg *cfg, const struct exh_home_par *par, struct exh_probe_scale scale)
 {
     if (!scale_ok(scale) || !exh_inside(par->cur_A_q26, 1, HOME_MAX_A_Q26) ||
         !exh_inside(par->dwell_ms, 1, DWELL_MAX_MS) || !exh_inside(par->time_ms, 1, TIME_MAX_MS) ||

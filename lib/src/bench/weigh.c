@@ -8,8 +8,8 @@
 
 enum { UP, DOWN, REST, MEANS };
 
-int exh_weigh_setup(struct exh_weigh_cfg *cfg, const struct exh_weigh_par *par,
-                    struct exh_probe_scale scale)
+int exh_weigh_setup(
+    struct exh_weigh_cfg *cfg, const struct exh_weigh_par *par, struct exh_probe_scale scale)
 {
     struct exh_probe_par down = par->probe;
     int err;
@@ -37,7 +37,7 @@ void exh_weigh_start(struct exh_weigh *s, const struct exh_weigh_cfg *cfg, int32
 /* Between lift and sink friction holds the mass: wait for it, then take the means. A
  * movement meanwhile and it waits again. */
 static uint8_t hold(struct exh_weigh *s, const struct exh_weigh_cfg *cfg, int32_t cnt,
-                    int32_t coded_A_q26, int32_t mon_A_q26)
+    int32_t coded_A_q26, int32_t mon_A_q26)
 {
     const int64_t moved = exh_wrap_diff(cnt, s->probe.dwell_cnt);
     const int64_t far = exh_wrap_diff(cnt, s->probe.start_cnt);
@@ -80,7 +80,7 @@ static uint8_t lift_or_sink(struct exh_weigh *s, const struct exh_weigh_cfg *cfg
 }
 
 uint8_t exh_weigh_step(struct exh_weigh *s, const struct exh_weigh_cfg *cfg, int32_t cnt,
-                       int32_t coded_A_q26, int32_t mon_A_q26)
+    int32_t coded_A_q26, int32_t mon_A_q26)
 {
     if (s->result != EXH_PROBE_BUSY) { return s->result; }
     s->result =
@@ -92,7 +92,6 @@ uint8_t exh_weigh_step(struct exh_weigh *s, const struct exh_weigh_cfg *cfg, int
 struct exh_calib_point exh_weigh_point(const struct exh_weigh *s, int32_t force_N_q20)
 {
     const struct exh_calib_point p = {force_N_q20, exh_mean_value(&s->coded),
-                                      exh_mean_value(&s->mon),
-                                      (s->lift_A_q26 - s->sink_A_q26) >> 1};
+        exh_mean_value(&s->mon), (s->lift_A_q26 - s->sink_A_q26) >> 1};
     return p;
 }

@@ -30,8 +30,7 @@ static int is_need(const struct exh_precontact_need *n)
 }
 
 int exh_precontact_advise(struct exh_precontact_advice *advice,
-                          const struct exh_precontact_need *need, struct exh_period T,
-                          int32_t d_lim_m_q30)
+    const struct exh_precontact_need *need, struct exh_period T, int32_t d_lim_m_q30)
 {
     const uint64_t off = (uint64_t) - (int64_t)d_lim_m_q30;
     const uint64_t noise = (uint64_t)need->noise_m_q30;

@@ -7,15 +7,15 @@
 
 const struct exh_signal exh_contact_rows[EXH_CONTACT_ROWS] = {
     {EXH_CONTACT_K_ID, EXH_Q_K, EXH_WHEN_SLEWED, 0, EXH_K_MAX_NPM_Q10, EXH_Q(1500, 1, EXH_Q_K), "k",
-     "n_per_m", "stiffness of the virtual wall"},
+        "n_per_m", "stiffness of the virtual wall"},
     {EXH_CONTACT_B_ID, EXH_Q_B, EXH_WHEN_SLEWED, 0, EXH_B_MAX_NSPM_Q20, 0, "b", "ns_per_m",
-     "damping of the virtual wall"},
+        "damping of the virtual wall"},
     {0x0403, EXH_Q_FORCE, EXH_WHEN_SLEWED, 0, EXH_Q(20, 1, EXH_Q_FORCE),
-     EXH_Q(107, 1000, EXH_Q_FORCE), "f0", "n", "pull-back force while the string runs in"},
+        EXH_Q(107, 1000, EXH_Q_FORCE), "f0", "n", "pull-back force while the string runs in"},
     {0x0404, EXH_Q_POS, EXH_WHEN_ANY, 0, EXH_Q(1, 100, EXH_Q_POS), EXH_Q(2, 10000, EXH_Q_POS),
-     "f0_band", "m", "movement that reverses the pull-back force"},
+        "f0_band", "m", "movement that reverses the pull-back force"},
     {0x0405, EXH_Q_POS, EXH_WHEN_ANY, 0, EXH_Q(1, 100, EXH_Q_POS), 0, "hyst", "m",
-     "contact ends this far before q_lim"},
+        "contact ends this far before q_lim"},
 };
 
 /* Two states: the farthest point since the last reversal moves along; a return of more than the
@@ -36,7 +36,7 @@ static inline void follow_reversals(struct exh_contact *s, int32_t pos, int32_t 
 }
 
 int exh_contact_step(struct exh_contact *s, const struct exh_contact_par *par,
-                     struct exh_contact_in in, struct exh_force_ledger *out)
+    struct exh_contact_in in, struct exh_force_ledger *out)
 {
     const int32_t pen = exh_diff_sat32(in.pos_m_q30, in.lim_m_q30);
     int touching;
@@ -62,7 +62,7 @@ int exh_contact_step(struct exh_contact *s, const struct exh_contact_par *par,
 }
 
 void exh_contact_step_free(struct exh_contact *s, const struct exh_contact_par *par,
-                           int32_t pos_m_q30, struct exh_force_ledger *out)
+    int32_t pos_m_q30, struct exh_force_ledger *out)
 {
     const struct exh_contact_in far = {pos_m_q30, 0, INT32_MAX};
     (void)exh_contact_step(s, par, far, out);

@@ -23,10 +23,10 @@
 
 const struct exh_signal exh_gains_rows[EXH_GAINS_ROWS] = {
     {0x1201, 8, EXH_WHEN_SETUP, RATE_Q8(1), RATE_Q8(20000), RATE_Q8(2000), "rule_rate", "hz",
-     "the loop rate that the rule of gains is for"},
+        "the loop rate that the rule of gains is for"},
     {0x1202, 0, EXH_WHEN_SETUP, 2, EXH_GAINS_KNOTS, 2, "rule_n", "", "knots of the rule of gains"},
     {0x1203, EXH_Q_K, EXH_WHEN_SETUP, 0, EXH_K_MAX_NPM_Q10, 0, "rule_k_min", "n_per_m",
-     "smallest stiffness inside"},
+        "smallest stiffness inside"},
     KNOT_B(0),
     KNOT_B(1),
     KNOT_B(2),
@@ -88,10 +88,7 @@ struct pair {
     int32_t k, b; /* N/m q10, Ns/m q20 */
 };
 
-static int is_none(struct pair at)
-{
-    return at.k == 0 && at.b == 0;
-}
+static int is_none(struct pair at) { return at.k == 0 && at.b == 0; }
 
 /* (a - b) times (c - d) of what lies within 0 .. 2^30, exact. Other values wrap, and lie outside
  * the pieces anyway. */
@@ -129,7 +126,7 @@ static int pair_ok(const struct exh_params *p, const struct exh_gains_par *rule,
 }
 
 int exh_gains_stage(struct exh_params *p, const struct exh_gains_par *rule, uint16_t id,
-                    uint16_t instance, int32_t raw)
+    uint16_t instance, int32_t raw)
 {
     const int32_t i = exh_signal_find(p->table, id, instance);
     const int32_t was = i >= 0 ? p->staged[i] : 0;
@@ -144,8 +141,8 @@ int exh_gains_stage(struct exh_params *p, const struct exh_gains_par *rule, uint
     return -EXH_E_GAINS;
 }
 
-int exh_gains_validate(const struct exh_params *p, const struct exh_gains_par *rule,
-                       uint16_t *instance)
+int exh_gains_validate(
+    const struct exh_params *p, const struct exh_gains_par *rule, uint16_t *instance)
 {
     for (uint16_t n = 0; exh_signal_find(p->table, EXH_CONTACT_K_ID, n) >= 0; n++) {
         if (!pair_ok(p, rule, n)) {
@@ -184,8 +181,8 @@ static int32_t aim(const struct exh_gains_par *rule, struct pair at, struct pair
 /* From under the pieces to under the pieces. One of the two may have to wait for the other: k falls
  * alone, since less stiff is inside too; b goes alone where k rises, since then the line there is
  * above k. */
-static struct pair slewed(const struct exh_gains_par *rule, struct pair at, struct pair goal,
-                          unsigned shift)
+static struct pair slewed(
+    const struct exh_gains_par *rule, struct pair at, struct pair goal, unsigned shift)
 {
     struct pair next;
     next.k = exh_params_slew_step(at.k, aim(rule, at, goal), shift);
@@ -199,8 +196,8 @@ static struct pair slewed(const struct exh_gains_par *rule, struct pair at, stru
     return next;
 }
 
-static struct pair stepped(const struct exh_gains_par *rule, struct pair at, struct pair goal,
-                           unsigned shift)
+static struct pair stepped(
+    const struct exh_gains_par *rule, struct pair at, struct pair goal, unsigned shift)
 {
     static const struct pair none = {0, 0};
     const int under = is_under(rule, at), goal_under = is_under(rule, goal);

@@ -14,14 +14,14 @@
 
 const struct exh_signal exh_passivity_rows[EXH_PASSIVITY_ROWS] = {
     {0x0F01, 0, EXH_WHEN_ANY, 0, LATE, LATE, "passivity", "",
-     "0 observes, 1 limits, 2 limits with outputs up to a tick late"},
+        "0 observes, 1 limits, 2 limits with outputs up to a tick late"},
 };
 
 /* --- set-up --- */
 
 int exh_passivity_setup(struct exh_passivity_cfg *cfg, const struct exh_passivity_par *par,
-                        const struct exh_drive_cfg *drive, struct exh_table held,
-                        struct exh_velocity_scale scale, int32_t speed_mps_q27)
+    const struct exh_drive_cfg *drive, struct exh_table held, struct exh_velocity_scale scale,
+    int32_t speed_mps_q27)
 {
     const int32_t most =
         drive->f_top_N_q20 < EXH_FORCE_MAX_N_Q20 ? drive->f_top_N_q20 : EXH_FORCE_MAX_N_Q20;
@@ -33,7 +33,7 @@ int exh_passivity_setup(struct exh_passivity_cfg *cfg, const struct exh_passivit
         exh_table_at(held, 0) != 0 ||
         exh_gain_mul(drive->tick_N_q20, drive->par->slew_down_Nps) < most ||
         exh_gain_set(&cnt, (uint64_t)scale.T.num << (EXH_Q_STEP - EXH_Q_VEL),
-                     (uint64_t)scale.T.den * (uint32_t)scale.step_m_q42) < 0) {
+            (uint64_t)scale.T.den * (uint32_t)scale.step_m_q42) < 0) {
         return -EXH_E_RANGE;
     }
     way = exh_gain_mul(cnt, speed_mps_q27) + 1;
@@ -72,7 +72,7 @@ static int64_t owed_over_way(const struct exh_passivity_cfg *cfg, int64_t owed_N
 }
 
 uint32_t exh_passivity_step(struct exh_passivity *s, const struct exh_passivity_cfg *cfg,
-                            int32_t cnt, int touching, struct exh_force_ledger *f)
+    int32_t cnt, int touching, struct exh_force_ledger *f)
 {
     const int32_t most =
         cfg->drive->f_max_N_q20 < cfg->f_top_N_q20 ? cfg->drive->f_max_N_q20 : cfg->f_top_N_q20;
@@ -94,7 +94,7 @@ uint32_t exh_passivity_step(struct exh_passivity *s, const struct exh_passivity_
 }
 
 void exh_passivity_update(struct exh_passivity *s, const struct exh_passivity_cfg *cfg,
-                          const struct exh_force_ledger *f, int32_t coded_A_q26)
+    const struct exh_force_ledger *f, int32_t coded_A_q26)
 {
     const int64_t held = exh_table_at(cfg->held, coded_A_q26) - f->pullback_N_q20;
     const int any = f->force_N_q20 > f->pullback_N_q20; /* else it is all the pull-back's */
@@ -105,8 +105,8 @@ void exh_passivity_update(struct exh_passivity *s, const struct exh_passivity_cf
 
 int32_t exh_passivity_J_q24(const struct exh_passivity *s, const struct exh_passivity_cfg *cfg)
 {
-    return exh_sat32(exh_shr_round(exh_mul64_q31(s->energy_Ncnt_q20, cfg->step_m_q42),
-                                   EXH_Q_FORCE + EXH_Q_STEP - 31 - 24));
+    return exh_sat32(exh_shr_round(
+        exh_mul64_q31(s->energy_Ncnt_q20, cfg->step_m_q42), EXH_Q_FORCE + EXH_Q_STEP - 31 - 24));
 }
 
 void exh_passivity_serialize(struct exh_bytes *c, struct exh_passivity *s)

@@ -12,40 +12,37 @@
 
 const struct exh_signal exh_material_rows[EXH_MATERIAL_ROWS] = {
     {0x0B01, EXH_Q_K, EXH_WHEN_ANY, 0, EXH_K_MAX_NPM_Q10, EXH_Q(20000, 1, EXH_Q_K), "mat_k",
-     "n_per_m", "stiffness of the material"},
+        "n_per_m", "stiffness of the material"},
     {0x0B02, EXH_Q_B, EXH_WHEN_ANY, 0, EXH_B_MAX_NSPM_Q20, EXH_Q(60, 1, EXH_Q_B), "mat_b",
-     "ns_per_m", "damping of the material"},
+        "ns_per_m", "damping of the material"},
     {0x0B03, EXH_Q_FORCE, EXH_WHEN_ANY, 0, EXH_FORCE_MAX_N_Q20, EXH_Q(12, 1, EXH_Q_FORCE),
-     "mat_f_max", "n", "force limit of the material"},
+        "mat_f_max", "n", "force limit of the material"},
 };
 
 const struct exh_signal exh_precontact_rows[EXH_PRECONTACT_ROWS] = {
     {0x0C01, EXH_Q_POS, EXH_WHEN_ANY, -EXH_Q(2, 10, EXH_Q_POS), -EXH_Q(1, 10000, EXH_Q_POS),
-     -EXH_Q(45, 10000, EXH_Q_POS), "d_lim", "m", "q_lim is frozen at this distance, < 0"},
+        -EXH_Q(45, 10000, EXH_Q_POS), "d_lim", "m", "q_lim is frozen at this distance, < 0"},
     {0x0C02, EXH_Q_POS, EXH_WHEN_ANY, 0, EXH_Q(5, 100, EXH_Q_POS), EXH_Q(1, 1000, EXH_Q_POS),
-     "d_hyst", "m", "released this far before d_lim"},
+        "d_hyst", "m", "released this far before d_lim"},
     {0x0C03, 24, EXH_WHEN_ANY, SCALE_MIN_Q24, SCALE_MAX_Q24, INT32_C(1) << 24, "string_per_tip", "",
-     "string metres per fingertip metre"},
+        "string metres per fingertip metre"},
     {0x0C04, 0, EXH_WHEN_ANY, 0, 1, 0, "string_from_slope", "", "1: that of the joints instead"},
     {0x0C05, 0, EXH_WHEN_SETUP, 0, 1, 0, "d_printed", "", "1: the sign of the pad as printed"},
     {0x0C06, 0, EXH_WHEN_SETUP, 1, 60000, 2000, "age_max", "ms", "an older plane is none"},
     {0x0C07, EXH_Q_POS, EXH_WHEN_ANY, 0, EXH_Q(5, 100, EXH_Q_POS), EXH_Q(5, 1000, EXH_Q_POS),
-     "d_doubt", "m", "touching so far before d_lim and d_hyst is in doubt"},
+        "d_doubt", "m", "touching so far before d_lim and d_hyst is in doubt"},
     {0x0C08, 0, EXH_WHEN_SETUP, 1, 60000, 100, "doubt_max", "ms",
-     "a contact longer in doubt is let go"},
+        "a contact longer in doubt is let go"},
     {0x0C09, 0, EXH_WHEN_SETUP, 1, 60000, 50, "tip_age_max", "ms", "an older fingertip is unknown"},
 };
 
 /* The first number of ticks that lasts longer. At 20 kHz and a minute 1.2 million: far from any
  * end. */
-static uint32_t more_than(int32_t ms, struct exh_period T)
-{
-    return exh_ticks_in(ms, T) + 1;
-}
+static uint32_t more_than(int32_t ms, struct exh_period T) { return exh_ticks_in(ms, T) + 1; }
 
 int exh_precontact_setup(struct exh_precontact_cfg *cfg, const struct exh_precontact_par *par,
-                         const struct exh_material_par *material, unsigned materials,
-                         int32_t pad_m_q30, struct exh_period T)
+    const struct exh_material_par *material, unsigned materials, int32_t pad_m_q30,
+    struct exh_period T)
 {
     if (!exh_period_ok(T)) { return -EXH_E_RATE; }
     if (materials < 1 || materials > MATERIALS_MAX || pad_m_q30 < 0 ||
@@ -95,7 +92,7 @@ static int is_same(const struct exh_precontact_plane *a, const struct exh_precon
 }
 
 int exh_precontact_update(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
-                          const struct exh_plane *plane, uint32_t age_ticks)
+    const struct exh_plane *plane, uint32_t age_ticks)
 {
     struct exh_precontact_plane now = {0, {0, 0, 0}, 0, 0};
     uint32_t left = 0;
@@ -132,8 +129,8 @@ static int32_t distance_m_q30(const struct exh_precontact_plane *p, const struct
 
 /* s with the string's own slope: as q goes on by 1, d does by -(n.slope), and d has to go
  * by -d. A finger that does not approach gets the end of the range. */
-static int32_t scale_of_slope(const struct exh_vec3 *normal_q30, const struct exh_vec3 *slope_q24,
-                              uint32_t *bits)
+static int32_t scale_of_slope(
+    const struct exh_vec3 *normal_q30, const struct exh_vec3 *slope_q24, uint32_t *bits)
 {
     const int64_t g_q24 = exh_shr_round(-dot(normal_q30, slope_q24), 30);
     const int32_t kept_q24 = exh_clamp(g_q24, SCALE_MIN_Q24, SCALE_MAX_Q24);
@@ -142,14 +139,14 @@ static int32_t scale_of_slope(const struct exh_vec3 *normal_q30, const struct ex
 }
 
 static uint32_t track(struct exh_precontact *s, const struct exh_precontact_par *par,
-                      const struct exh_precontact_in *in)
+    const struct exh_precontact_in *in)
 {
     uint32_t bits = EXH_PRECONTACT_TRACKS;
     const int32_t scale_q24 = par->from_slope
                                   ? scale_of_slope(&s->newest.normal_q30, &in->slope_q24, &bits)
                                   : par->scale_q24;
-    s->lim_m_q30 = exh_clamp(in->pos_m_q30 - exh_mul_shr(scale_q24, s->d_m_q30, 24), INT32_MIN,
-                             EXH_PRECONTACT_NO_LIM);
+    s->lim_m_q30 = exh_clamp(
+        in->pos_m_q30 - exh_mul_shr(scale_q24, s->d_m_q30, 24), INT32_MIN, EXH_PRECONTACT_NO_LIM);
     s->phase = EXH_PRECONTACT_TRACK;
     return bits;
 }
@@ -186,7 +183,7 @@ static uint32_t be_idle(struct exh_precontact *s, uint32_t left)
 
 /* One that is frozen: EXH_PRECONTACT_RELEASE among the bits if it is so no longer. */
 static uint32_t stand(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
-                      const struct exh_precontact_in *in, uint32_t blind)
+    const struct exh_precontact_in *in, uint32_t blind)
 {
     const int64_t free_m_q30 = (int64_t)cfg->par->d_lim_m_q30 - cfg->par->hyst_m_q30;
     s->d_m_q30 = distance_m_q30(&s->held, &in->tip_m_q30);
@@ -216,7 +213,7 @@ void exh_precontact_advance(struct exh_precontact *s, uint32_t missed)
 }
 
 uint32_t exh_precontact_step(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
-                             const struct exh_precontact_in *in)
+    const struct exh_precontact_in *in)
 {
     const struct exh_precontact_par *par = cfg->par;
     /* More there cannot be, but in bytes. */

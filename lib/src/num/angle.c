@@ -4,7 +4,4 @@
 
 #include "sincos.h"
 
-void exh_sincos(int32_t x_turn_q32, struct exh_sincos *y)
-{
-    *y = sincos_in_place(x_turn_q32);
-}
+void exh_sincos(int32_t x_turn_q32, struct exh_sincos *y) { *y = sincos_in_place(x_turn_q32); }

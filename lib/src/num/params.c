@@ -12,7 +12,7 @@
 
 const struct exh_signal exh_tune_rows[EXH_TUNE_ROWS] = {
     {0x1301, 0, EXH_WHEN_SETUP, 0, TIME_MAX_MS, 20, "tune_time", "ms",
-     "least time a slewed parameter takes for 63 % of its way; 0: at once"},
+        "least time a slewed parameter takes for 63 % of its way; 0: at once"},
 };
 
 /* --- the two arrays, and the sum over both --- */
@@ -59,8 +59,8 @@ int exh_params_verify(struct exh_params *p)
     return bad;
 }
 
-void exh_params_setup(struct exh_params *p, const struct exh_signal_table *table, int32_t *active,
-                      int32_t *staged)
+void exh_params_setup(
+    struct exh_params *p, const struct exh_signal_table *table, int32_t *active, int32_t *staged)
 {
     const struct exh_params none = {0};
     *p = none;
@@ -77,8 +77,8 @@ void exh_params_setup(struct exh_params *p, const struct exh_signal_table *table
 
 /* --- staged and applied --- */
 
-void exh_params_slew_setup(struct exh_params *p, const struct exh_tune_par *par,
-                           struct exh_period T)
+void exh_params_slew_setup(
+    struct exh_params *p, const struct exh_tune_par *par, struct exh_period T)
 {
     const int64_t time = (int64_t)exh_clamp(par->time_ms, 0, TIME_MAX_MS) * T.den;
     int64_t taken = (int64_t)T.num * 1000; /* ms, times den: below 2^42 */
@@ -160,8 +160,8 @@ static uint32_t next_other(const struct exh_params *p, uint32_t i, uint32_t end)
 }
 
 /* Values from `first` on, of one group: few differ, and of the others there is nothing to do. */
-static void apply_group(struct exh_params *p, const struct exh_signal_group *g, uint32_t first,
-                        int all)
+static void apply_group(
+    struct exh_params *p, const struct exh_signal_group *g, uint32_t first, int all)
 {
     const uint32_t end = first + (uint32_t)g->rows * g->instances;
     for (uint32_t i = next_other(p, first, end); i < end; i = next_other(p, i + 1, end)) {
@@ -199,8 +199,8 @@ void exh_params_rollback(struct exh_params *p, const int32_t *was, uint8_t pendi
 /* --- keyframe --- */
 
 /* 1: what is read may be; it is taken only if `take`. */
-static int value_bytes(struct exh_bytes *c, struct exh_params *p, const struct exh_signal *row,
-                       uint32_t i, int take)
+static int value_bytes(
+    struct exh_bytes *c, struct exh_params *p, const struct exh_signal *row, uint32_t i, int take)
 {
     const int slewed = is_slewed(row);
     int32_t is = p->active[i], wanted = p->staged[i];

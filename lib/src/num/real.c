@@ -25,10 +25,7 @@ static struct exh_real norm(uint64_t v, int32_t e)
     return r;
 }
 
-struct exh_real exh_real_of(uint64_t v)
-{
-    return norm(v, 0);
-}
+struct exh_real exh_real_of(uint64_t v) { return norm(v, 0); }
 
 struct exh_real exh_real_mul(struct exh_real a, struct exh_real b)
 {

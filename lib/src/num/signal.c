@@ -15,8 +15,8 @@ uint32_t exh_signal_count(const struct exh_signal_table *t)
     return n;
 }
 
-const struct exh_signal *exh_signal_at(const struct exh_signal_table *t, uint32_t i,
-                                       uint16_t *instance)
+const struct exh_signal *exh_signal_at(
+    const struct exh_signal_table *t, uint32_t i, uint16_t *instance)
 {
     for (uint16_t g = 0; g < t->groups; g++) {
         const struct exh_signal_group *grp = &t->group[g];

@@ -29,10 +29,7 @@
 #define QUARTER (UINT32_C(1) << 30)
 
 /* -1 if the top bit of x is set, else 0. */
-static inline int32_t top_mask(uint32_t x)
-{
-    return exh_from_u32(x) >> 31;
-}
+static inline int32_t top_mask(uint32_t x) { return exh_from_u32(x) >> 31; }
 
 /* floor(a*b / 2^32) of 32-bit values, in a type no narrower and as wide as the machine likes. */
 static inline int_fast32_t high(int_fast32_t a, int_fast32_t b)

@@ -62,10 +62,7 @@ static int recording(void)
     return is.state == EXH_BLACKBOX_RECORDS || is.state == EXH_BLACKBOX_RUNS_ON;
 }
 
-static int empty(void)
-{
-    return exh_ring_first(&ring).left_B == 0;
-}
+static int empty(void) { return exh_ring_first(&ring).left_B == 0; }
 
 static void take(uint8_t type, uint32_t tick, const uint8_t *payload, uint32_t len_B)
 {
@@ -74,10 +71,7 @@ static void take(uint8_t type, uint32_t tick, const uint8_t *payload, uint32_t l
     (void)exh_ring_put(&ring, type, tick, payload, len_B);
 }
 
-static int due(void)
-{
-    return recording() && exh_ring_due(&ring);
-}
+static int due(void) { return recording() && exh_ring_due(&ring); }
 
 /* --- start --- */
 
@@ -162,10 +156,7 @@ void exh_blackbox_start(const struct exh_scene *sc, struct exh_scene_board board
 
 #define IMAGE_HEAD_B 12u
 
-static uint8_t *value_at(uint32_t i)
-{
-    return memory + image.end_B - 4 - 4 * (image.n - i);
-}
+static uint8_t *value_at(uint32_t i) { return memory + image.end_B - 4 - 4 * (image.n - i); }
 
 static void begin_image(void)
 {
@@ -198,7 +189,7 @@ static void begin_dump(void)
     dump.seq = 0;
     dump.stage = HEADER;
     exh_record_out_begin(&dump.out, EXH_RECORD_HEADER, dump.seq++, 0,
-                         (struct exh_record_place){memory, header_B, 0, (uint16_t)image.header_B});
+        (struct exh_record_place){memory, header_B, 0, (uint16_t)image.header_B});
 }
 
 static void freeze(void)
@@ -240,8 +231,8 @@ void exh_blackbox_before(uint32_t tick, struct exh_scene_in *in)
     if (!alone || recording()) { exh_log_before(tick, in); }
 }
 
-void exh_blackbox_after(uint32_t tick, const struct exh_scene_in *in,
-                        const struct exh_drive_out *out)
+void exh_blackbox_after(
+    uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
     if (!alone || recording()) { exh_log_after(tick, in, out); }
     if (recording()) { last_tick = tick; }
@@ -260,22 +251,18 @@ void exh_blackbox_stop(int halted)
 
 /* --- records out --- */
 
-static uint16_t at_most(uint32_t v)
-{
-    return v < UINT16_MAX ? (uint16_t)v : UINT16_MAX;
-}
+static uint16_t at_most(uint32_t v) { return v < UINT16_MAX ? (uint16_t)v : UINT16_MAX; }
 
 static void begin_small(uint8_t type, const struct exh_bytes *payload)
 {
-    exh_record_out_begin(
-        &dump.out, type, dump.seq++, last_tick + 1,
+    exh_record_out_begin(&dump.out, type, dump.seq++, last_tick + 1,
         (struct exh_record_place){dump.small, sizeof dump.small, 0, (uint16_t)payload->at});
 }
 
 static void begin_froze(void)
 {
-    struct exh_event e = {EXH_EVENT_FROZE, at_most(is.later), at_most(last_tick - is.tick),
-                          exh_from_u32(is.cause)};
+    struct exh_event e = {
+        EXH_EVENT_FROZE, at_most(is.later), at_most(last_tick - is.tick), exh_from_u32(is.cause)};
     struct exh_bytes c = exh_bytes_writer(dump.small, sizeof dump.small);
     exh_event_serialize(&c, &e);
     begin_small(EXH_RECORD_EVENT, &c);

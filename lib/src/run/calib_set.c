@@ -9,11 +9,11 @@
 
 const struct exh_signal exh_calib_set_rows[EXH_CALIB_SET_ROWS] = {
     {0x8901, 0, EXH_WHEN_SETUP, 0, INT32_MAX, 0, "device_id", "",
-     "of this box: calibrations are made for one"},
+        "of this box: calibrations are made for one"},
     {0x8902, 0, EXH_WHEN_SETUP, 0, INT32_MAX, 0, "day", "",
-     "today, days since 1970; 0: not known, no calibration of a day holds"},
+        "today, days since 1970; 0: not known, no calibration of a day holds"},
     {0x8903, 0, EXH_WHEN_SETUP, 0, 1, 0, "uncalibrated", "",
-     "1: a finger without a calibration arms without, by kf, polarity on trust"},
+        "1: a finger without a calibration arms without, by kf, polarity on trust"},
 };
 
 /* Images carry at most so many points. */
@@ -48,11 +48,10 @@ static int load(struct loaded *to, struct exh_scene_calib *k, unsigned i)
 
 /* With the image's own scales where `drive` is NULL. */
 static struct exh_calib_target here(const struct exh_calib *c, const struct exh_calib_set_par *par,
-                                    const struct exh_drive_par *drive)
+    const struct exh_drive_par *drive)
 {
-    struct exh_calib_target h = {(uint32_t)par->device_id, c->finger,       (uint32_t)par->day,
-                                 c->dac_rawpA_q16,         c->dac_zero_raw, c->mon_A_q40,
-                                 c->mon_zero_raw};
+    struct exh_calib_target h = {(uint32_t)par->device_id, c->finger, (uint32_t)par->day,
+        c->dac_rawpA_q16, c->dac_zero_raw, c->mon_A_q40, c->mon_zero_raw};
     if (drive) {
         h.dac_rawpA_q16 = drive->dac_rawpA_q16;
         h.dac_zero_raw = drive->dac_zero_raw;
@@ -82,7 +81,7 @@ static int check(struct exh_scene_calib *k, const struct exh_calib_set_par *par,
 }
 
 int exh_calib_set_load(struct exh_scene_calib *k, struct exh_params *params,
-                       const struct exh_calib_set_par *par, uint32_t fingers)
+    const struct exh_calib_set_par *par, uint32_t fingers)
 {
     static const struct exh_calib_error scale = {EXH_CALIB_SCALE, 0};
     struct loaded now;
@@ -116,8 +115,8 @@ static int lines(struct exh_calib_tables *t, const struct exh_calib_finger *of)
     return err == 0 ? exh_table_setup(t->cur_to_force, 2) : err;
 }
 
-static int measured(struct exh_calib_tables *t, struct exh_scene_calib *k, unsigned i,
-                    const struct loaded *now)
+static int measured(
+    struct exh_calib_tables *t, struct exh_scene_calib *k, unsigned i, const struct loaded *now)
 {
     struct exh_calib_error bad = {0, 0};
     int m, n = exh_calib_force_table(&now->c, t->force_to_cur, EXH_CALIB_POINTS_MAX + 2, &bad);
@@ -131,7 +130,7 @@ static int measured(struct exh_calib_tables *t, struct exh_scene_calib *k, unsig
 }
 
 int exh_calib_set_tables(struct exh_calib_tables *t, struct exh_scene_calib *k,
-                         const struct exh_calib_set_par *par, const struct exh_calib_finger *of)
+    const struct exh_calib_set_par *par, const struct exh_calib_finger *of)
 {
     struct loaded now;
     t->vouches = par->uncalibrated ? EXH_UNCALIBRATED | EXH_UNPOLARISED : 0;

@@ -11,8 +11,8 @@ extern const struct exh_scene EXH_SCENE;
 
 int main(void)
 {
-    static const struct exh_loop_hooks hooks = {.start = exh_deadman_start,
-                                                .before = exh_deadman_before};
+    static const struct exh_loop_hooks hooks = {
+        .start = exh_deadman_start, .before = exh_deadman_before};
     int err;
     if (EXH_SCENE.defaults) { EXH_SCENE.defaults(); }
 #ifdef UNCALIBRATED

@@ -150,7 +150,7 @@ static void glove_bytes(struct exh_bytes *c, struct exh_scene_in *in)
 }
 
 void exh_log_frame_serialize(struct exh_bytes *c, const struct exh_scene *sc,
-                             struct exh_scene_in *in, struct exh_drive_out *out, int32_t *signal)
+    struct exh_scene_in *in, struct exh_drive_out *out, int32_t *signal)
 {
     const uint32_t n = signals(sc);
     exh_drive_in_serialize(c, &in->drive, sc->fingers);
@@ -194,8 +194,8 @@ void exh_log_before(uint32_t tick, struct exh_scene_in *in)
         event(tick, (struct exh_event){EXH_EVENT_COMMAND, 0, 0, in->command});
     }
     if (in->missed != 0) {
-        event(tick,
-              (struct exh_event){EXH_EVENT_MISSED, 0, 0, exh_clamp(in->missed, 0, INT32_MAX)});
+        event(
+            tick, (struct exh_event){EXH_EVENT_MISSED, 0, 0, exh_clamp(in->missed, 0, INT32_MAX)});
     }
 }
 

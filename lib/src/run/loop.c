@@ -84,7 +84,7 @@ static void write_link(const struct exh_scene_link *link)
 
 /* put: 1, the outputs go out; 0, they stay as they are. */
 static int one_tick(const struct exh_scene *sc, const struct exh_loop_hooks *h, uint32_t tick,
-                    struct exh_scene_in *in, int put)
+    struct exh_scene_in *in, int put)
 {
     struct exh_drive_out out;
     int err;
@@ -104,7 +104,7 @@ static int one_tick(const struct exh_scene *sc, const struct exh_loop_hooks *h, 
  * that the scene's fault, its log and whoever listens have the cause. The outputs are safe before,
  * and nothing of this tick reaches them. */
 static void last_tick(const struct exh_scene *sc, const struct exh_loop_hooks *h, uint32_t tick,
-                      struct exh_scene_in *in)
+    struct exh_scene_in *in)
 {
     exh_board_safe();
     in->drive.din &= ~(uint32_t)EXH_DIN_CARDS;

@@ -41,10 +41,7 @@ void stream_sent(unsigned n)
     out.place += n;
 }
 
-uint32_t stream_pieces(void)
-{
-    return out.number;
-}
+uint32_t stream_pieces(void) { return out.number; }
 
 int stream_read(struct stream_piece *p, const uint8_t *datagram, size_t len_B)
 {
@@ -52,8 +49,7 @@ int stream_read(struct stream_piece *p, const uint8_t *datagram, size_t len_B)
         get32(datagram + 16) > 1) {
         return 0;
     }
-    *p = (struct stream_piece){get32(datagram + 4),      get32(datagram + 8),
-                               get32(datagram + 12),     get32(datagram + 16),
-                               datagram + STREAM_HEAD_B, len_B - STREAM_HEAD_B};
+    *p = (struct stream_piece){get32(datagram + 4), get32(datagram + 8), get32(datagram + 12),
+        get32(datagram + 16), datagram + STREAM_HEAD_B, len_B - STREAM_HEAD_B};
     return 1;
 }

@@ -4,8 +4,8 @@
 
 #include "exhand/bytes.h"
 
-void exh_integrity_seal(struct exh_integrity *g, const void *area, size_t len_B,
-                        struct exh_params *params)
+void exh_integrity_seal(
+    struct exh_integrity *g, const void *area, size_t len_B, struct exh_params *params)
 {
     g->area = area;
     g->len_B = (uint32_t)len_B;

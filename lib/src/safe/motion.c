@@ -18,22 +18,19 @@
 
 const struct exh_signal exh_motion_rows[EXH_MOTION_ROWS] = {
     {0x0E01, EXH_Q_VEL, EXH_WHEN_SETUP, SPEED_MIN_MPS_Q27, SPEED_MAX_MPS_Q27,
-     EXH_Q(3, 1, EXH_Q_VEL), "speed_limit", "m_per_s", "velocity into the law is no more"},
+        EXH_Q(3, 1, EXH_Q_VEL), "speed_limit", "m_per_s", "velocity into the law is no more"},
     {0x0E02, 0, EXH_WHEN_SETUP, 1, SPEED_MAX_MS, 20, "speed_time", "ms",
-     "a fault if it would be for longer"},
+        "a fault if it would be for longer"},
     {0x0E03, 0, EXH_WHEN_SETUP, 0, STUCK_MAX_MS, 0, "stuck_time", "ms",
-     "a fault if not one count moves for longer, 0: never"},
+        "a fault if not one count moves for longer, 0: never"},
     {0x0E04, EXH_Q_CUR, EXH_WHEN_SETUP, CUR_MIN_A_Q26, CUR_MAX_A_Q26, EXH_Q(1, 4, EXH_Q_CUR),
-     "stuck_cur", "a", "while more than this is coded"},
+        "stuck_cur", "a", "while more than this is coded"},
 };
 
-static uint32_t ticks_of(int32_t ms, struct exh_period T)
-{
-    return exh_ticks_in(ms, T) + 1;
-}
+static uint32_t ticks_of(int32_t ms, struct exh_period T) { return exh_ticks_in(ms, T) + 1; }
 
-int exh_motion_setup(struct exh_motion_cfg *cfg, const struct exh_motion_par *par,
-                     struct exh_period T)
+int exh_motion_setup(
+    struct exh_motion_cfg *cfg, const struct exh_motion_par *par, struct exh_period T)
 {
     if (!exh_inside(par->speed_mps_q27, SPEED_MIN_MPS_Q27, SPEED_MAX_MPS_Q27) ||
         !exh_inside(par->speed_ms, 1, SPEED_MAX_MS) ||
@@ -54,8 +51,8 @@ static uint32_t run_of(uint32_t ticks, int on, uint32_t most)
     return !on ? 0 : ticks < most ? ticks + 1 : most;
 }
 
-uint32_t exh_motion_step(struct exh_motion *s, const struct exh_motion_cfg *cfg,
-                         int32_t *vel_mps_q27, uint32_t *limits)
+uint32_t exh_motion_step(
+    struct exh_motion *s, const struct exh_motion_cfg *cfg, int32_t *vel_mps_q27, uint32_t *limits)
 {
     const int32_t most = cfg->par->speed_mps_q27;
     const int32_t held = exh_clamp(*vel_mps_q27, -most, most);
@@ -67,8 +64,8 @@ uint32_t exh_motion_step(struct exh_motion *s, const struct exh_motion_cfg *cfg,
            (cfg->stuck_ticks && s->stuck_ticks >= cfg->stuck_ticks ? EXH_FAULT_STUCK : 0u);
 }
 
-void exh_motion_update(struct exh_motion *s, const struct exh_motion_cfg *cfg, int32_t cnt,
-                       int32_t coded_A_q26)
+void exh_motion_update(
+    struct exh_motion *s, const struct exh_motion_cfg *cfg, int32_t cnt, int32_t coded_A_q26)
 {
     const int pulled = coded_A_q26 > cfg->par->stuck_cur_A_q26;
     s->stuck_ticks = run_of(s->stuck_ticks, pulled && cnt == s->cnt, cfg->stuck_ticks);

@@ -21,20 +21,20 @@
 
 const struct exh_signal exh_safety_rows[EXH_SAFETY_ROWS] = {
     {0x0601, 0, EXH_WHEN_SETUP, 0, MISSED_MAX, 1, "missed_max", "",
-     "missed ticks tolerated, in 64"},
+        "missed ticks tolerated, in 64"},
     {0x0602, EXH_Q_FORCE, EXH_WHEN_SETUP, SMALL_MIN_NQ20, SMALL_MAX_NQ20, EXH_Q(1, 1, EXH_Q_FORCE),
-     "arm_force", "n", "arming needs a law that asks for no more"},
+        "arm_force", "n", "arming needs a law that asks for no more"},
     {0x0603, 0, EXH_WHEN_SETUP, 1, ARM_MAX_MS, 50, "arm_time", "ms", "for so long, and 2 ticks"},
     {0x0604, 0, EXH_WHEN_SETUP, 1, RAMP_MAX_MS, 500, "ramp_time", "ms",
-     "then the force limit rises to f_max in"},
+        "then the force limit rises to f_max in"},
     {0x0605, 0, EXH_WHEN_SETUP, RELEASE_MIN_MS, RELEASE_MAX_MS, 15, "release_time", "ms",
-     "a force let go falls to zero in, 3 ticks at least"},
+        "a force let go falls to zero in, 3 ticks at least"},
 };
 
 /* --- set-up --- */
 
-int exh_safety_setup(struct exh_safety_cfg *cfg, const struct exh_safety_par *par,
-                     struct exh_period T)
+int exh_safety_setup(
+    struct exh_safety_cfg *cfg, const struct exh_safety_par *par, struct exh_period T)
 {
     uint32_t ramp_ticks;
     if (!exh_inside(par->missed_max, 0, MISSED_MAX) ||
@@ -60,10 +60,7 @@ int exh_safety_setup(struct exh_safety_cfg *cfg, const struct exh_safety_par *pa
 
 /* --- what is the case --- */
 
-static uint32_t add_sat(uint32_t a, uint32_t b)
-{
-    return a > UINT32_MAX - b ? UINT32_MAX : a + b;
-}
+static uint32_t add_sat(uint32_t a, uint32_t b) { return a > UINT32_MAX - b ? UINT32_MAX : a + b; }
 
 /* A tick too long by half a period misses every other one: it must add up. */
 static void count_missed(struct exh_safety *s, uint32_t missed)
@@ -95,8 +92,8 @@ static int sane(const struct exh_safety *s)
 }
 
 /* Causes present in this tick. */
-static uint32_t causes(struct exh_safety *s, const struct exh_safety_cfg *cfg,
-                       const struct exh_safety_in *in)
+static uint32_t causes(
+    struct exh_safety *s, const struct exh_safety_cfg *cfg, const struct exh_safety_in *in)
 {
     const uint32_t drives = ((1u << in->fingers) - 1u) * EXH_DIN_DRIVE0;
     uint32_t c = in->raised;
@@ -164,7 +161,7 @@ const uint8_t exh_safety_next[EXH_STATES][EXH_TRIGGERS] = {
 
 /* Which triggers apply. Those that one state alone has are asked for in no other. */
 static uint32_t triggers(const struct exh_safety *s, const struct exh_safety_cfg *cfg,
-                         const struct exh_safety_in *in, uint32_t lacks)
+    const struct exh_safety_in *in, uint32_t lacks)
 {
     const int ramp = s->state == EXH_STATE_ARM && s->share_q30 > 0;
     const int early = s->state == EXH_STATE_ARM && s->share_q30 <= 0;
@@ -192,8 +189,8 @@ static uint8_t first_of(uint32_t due)
 }
 
 /* What a state counts: from its first tick on. */
-static void count_steps(struct exh_safety *s, const struct exh_safety_cfg *cfg, int anew,
-                        uint32_t missed)
+static void count_steps(
+    struct exh_safety *s, const struct exh_safety_cfg *cfg, int anew, uint32_t missed)
 {
     if (anew) { s->steps = 0; }
     if (anew || s->state != EXH_STATE_ARM) { s->share_q30 = 0; }
@@ -206,8 +203,8 @@ static void count_steps(struct exh_safety *s, const struct exh_safety_cfg *cfg, 
     }
 }
 
-static struct exh_permit permit_of(const struct exh_safety *s, const struct exh_safety_cfg *cfg,
-                                   uint32_t missed)
+static struct exh_permit permit_of(
+    const struct exh_safety *s, const struct exh_safety_cfg *cfg, uint32_t missed)
 {
     struct exh_permit p;
     p.mode = !exh_safety_is_open(s)          ? EXH_PERMIT_CLOSED
@@ -220,8 +217,8 @@ static struct exh_permit permit_of(const struct exh_safety *s, const struct exh_
     return p;
 }
 
-struct exh_permit exh_safety_step(struct exh_safety *s, const struct exh_safety_cfg *cfg,
-                                  struct exh_safety_in in)
+struct exh_permit exh_safety_step(
+    struct exh_safety *s, const struct exh_safety_cfg *cfg, struct exh_safety_in in)
 {
     uint32_t lacks;
     uint8_t before;

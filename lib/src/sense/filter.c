@@ -16,7 +16,7 @@
 const struct exh_signal exh_filter_rows[EXH_FILTER_ROWS] = {
     {0x0701, 0, EXH_WHEN_SETUP, 1, 2, 2, "order", "", "order of the low-pass"},
     {0x0702, 16, EXH_WHEN_SETUP, FC_MIN, FC_MAX, EXH_Q(20, 1, 16), "fc", "hz",
-     "cut-off of the low-pass, -3 dB"},
+        "cut-off of the low-pass, -3 dB"},
 };
 
 /* --- set-up --- */
@@ -30,10 +30,7 @@ static int32_t coefficient(struct exh_real v, int32_t n, unsigned bits)
 }
 
 /* The n that brings v to 2^(bits-1) .. 2^bits. */
-static int32_t places(struct exh_real v, int32_t bits)
-{
-    return bits - 63 - v.e;
-}
+static int32_t places(struct exh_real v, int32_t bits) { return bits - 63 - v.e; }
 
 /* Below, g = tan(pi fc T) and damped = g (g + sqrt 2); see NUMERICS.md. */
 static void low2(struct exh_filter_cfg *cfg, struct exh_real g, struct exh_real damped)
@@ -74,8 +71,8 @@ static void high1(struct exh_filter_cfg *cfg, struct exh_real g)
     cfg->a = coefficient(exh_real_div(g, exh_real_add(exh_real_of(1), g)), 31, 31);
 }
 
-int exh_filter_setup(struct exh_filter_cfg *cfg, const struct exh_filter_par *par,
-                     struct exh_period T)
+int exh_filter_setup(
+    struct exh_filter_cfg *cfg, const struct exh_filter_par *par, struct exh_period T)
 {
     /* fc T = num / den */
     const uint64_t num = par->fc_Hz_q16 > 0 ? (uint64_t)par->fc_Hz_q16 * T.num : 0;
@@ -118,7 +115,7 @@ static int second_order(const struct exh_filter_cfg *cfg)
 }
 
 void exh_filter_step(struct exh_filter *s, const struct exh_filter_cfg *cfg, const int32_t *x,
-                     int32_t *y, unsigned n)
+    int32_t *y, unsigned n)
 {
     switch ((enum exh_filter_kind)cfg->kind) {
     case EXH_FILTER_LOW1: exh_filter_low1(s, cfg, x, y, n); break;
@@ -144,7 +141,7 @@ static int64_t narrowed(int64_t v, unsigned n)
 /* Both states keep what they mean: the output does not jump, it goes on from there. The
  * high kinds see by themselves what they are given. */
 void exh_filter_retune(struct exh_filter *s, const struct exh_filter_cfg *from,
-                       const struct exh_filter_cfg *to, unsigned n)
+    const struct exh_filter_cfg *to, unsigned n)
 {
     const int to_low = to->kind == EXH_FILTER_LOW2 || to->kind == EXH_FILTER_LOW1;
     for (unsigned i = 0; i < n; i++) {

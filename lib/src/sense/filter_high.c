@@ -9,10 +9,7 @@
 
 /* States swing up to 32 times the input where that swings at half the rate. There they
  * stop, which takes energy and so cannot start an oscillation. */
-static int64_t bounded(int64_t v)
-{
-    return exh_clamp64(v, INT64_C(1) << (31 + 5 + Q));
-}
+static int64_t bounded(int64_t v) { return exh_clamp64(v, INT64_C(1) << (31 + 5 + Q)); }
 
 /* What a reset, or a low kind before, left: into our format. A low kind that is settled stands
  * anywhere within an LSB of pos, and of vel, of which it sees the integer part alone; so do we. */

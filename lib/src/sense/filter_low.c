@@ -27,10 +27,7 @@ static inline int32_t output(struct exh_filter *s, int64_t low)
     return exh_from_u32((uint32_t)((uint64_t)low >> POS_Q & UINT32_MAX));
 }
 
-static inline int32_t high_word(int64_t v)
-{
-    return exh_from_u32((uint32_t)((uint64_t)v >> 32));
-}
+static inline int32_t high_word(int64_t v) { return exh_from_u32((uint32_t)((uint64_t)v >> 32)); }
 
 /* (x - floor(pos)) * a modulo 2^64, in whichever way the CPU has the shorter code: the same
  * bits. 2a fits. */
@@ -41,8 +38,8 @@ static inline uint64_t drive(int64_t pos, int32_t x, int32_t a)
 #else
     const int32_t below = exh_from_u32((uint32_t)((uint64_t)pos & UINT32_MAX));
     const int64_t odd = (uint32_t)a & (uint32_t)(below >> 31);
-    return (uint64_t)((int64_t)x * a - (int64_t)high_word(pos) * exh_from_u32(2 * (uint32_t)a) -
-                      odd);
+    return (
+        uint64_t)((int64_t)x * a - (int64_t)high_word(pos) * exh_from_u32(2 * (uint32_t)a) - odd);
 #endif
 }
 

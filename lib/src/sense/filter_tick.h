@@ -21,7 +21,7 @@ static inline void exh_filter_rest(struct exh_filter *s, int32_t x)
 
 #define EXH_FILTER_STEP(name) \
     void name(struct exh_filter *s, const struct exh_filter_cfg *cfg, const int32_t *x, \
-              int32_t *y, unsigned n)
+        int32_t *y, unsigned n)
 
 EXH_FILTER_STEP(exh_filter_low1);
 EXH_FILTER_STEP(exh_filter_low2);

@@ -19,22 +19,22 @@
  * hysteresis of as much keeps its 11 bits stable at every rate, filtered or not. */
 const struct exh_signal exh_glove_rows[EXH_GLOVE_ROWS] = {
     {0x0901, 0, EXH_WHEN_SETUP, 0, 2, 2, "glove_order", "",
-     "order of the glove's low-pass, 0 = none"},
+        "order of the glove's low-pass, 0 = none"},
     {0x0902, 16, EXH_WHEN_SETUP, FC_MIN_HZ_Q16, FC_MAX_HZ_Q16, EXH_Q(30, 1, 16), "glove_fc", "hz",
-     "its cut-off, below half the glove's rate"},
+        "its cut-off, below half the glove's rate"},
     {0x0903, 0, EXH_WHEN_SETUP, 1, 24, 11, "glove_bits", "", "stable bits of the card's range"},
     {0x0904, 16, EXH_WHEN_SETUP, 0, HYST_MAX_RAW_Q16, EXH_Q(20, 1, 16), "glove_hyst", "",
-     "hysteresis, A/D codes: the noise, peak to peak"},
+        "hysteresis, A/D codes: the noise, peak to peak"},
     {0x0905, 0, EXH_WHEN_SETUP, INT16_MIN, INT16_MAX, -32000, "glove_low", "",
-     "A/D code at or below: lower rail"},
+        "A/D code at or below: lower rail"},
     {0x0906, 0, EXH_WHEN_SETUP, INT16_MIN, INT16_MAX, 32000, "glove_high", "",
-     "A/D code at or above: upper rail"},
+        "A/D code at or above: upper rail"},
     {0x0907, 0, EXH_WHEN_SETUP, 0, 1, 1, "glove_open_high", "",
-     "1: an open wire reads high, a short low"},
+        "1: an open wire reads high, a short low"},
     {0x0908, 0, EXH_WHEN_SETUP, 1, 255, 3, "glove_debounce", "",
-     "frames in a row that make and end a fault"},
+        "frames in a row that make and end a fault"},
     {0x0909, 16, EXH_WHEN_SETUP, 0, MARGIN_MAX_Q16, EXH_Q(1, 2, 16), "glove_margin", "",
-     "share of the calibrated span that a code may leave it by"},
+        "share of the calibrated span that a code may leave it by"},
 };
 
 const char *exh_glove_cause_text(unsigned cause)
@@ -68,7 +68,7 @@ static int limits(struct exh_glove_cfg *cfg, const struct exh_glove_par *par)
 }
 
 int exh_glove_setup(struct exh_glove_cfg *cfg, const struct exh_glove_par *par,
-                    const struct exh_glove_cal *cal, struct exh_period T)
+    const struct exh_glove_cal *cal, struct exh_period T)
 {
     const struct exh_quantizer_par quantizer = {par->bits, par->hyst_raw_q16};
     const struct exh_filter_par filter = {par->order, par->fc_Hz_q16};
@@ -123,8 +123,8 @@ static void doubt(struct exh_glove *s, const struct exh_glove_cfg *cfg, unsigned
 }
 
 /* The first frame: no code was ever good. */
-static void start(struct exh_glove *s, const struct exh_glove_cfg *cfg,
-                  const struct exh_glove_in *in)
+static void start(
+    struct exh_glove *s, const struct exh_glove_cfg *cfg, const struct exh_glove_in *in)
 {
     int32_t x_raw_q16[EXH_GLOVE_SENSORS];
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
@@ -162,7 +162,7 @@ static void cross(const struct exh_glove_cfg *cfg, int32_t *angle_turn_q32)
 }
 
 uint32_t exh_glove_step(struct exh_glove *s, const struct exh_glove_cfg *cfg,
-                        const struct exh_glove_in *in, int32_t *angle_turn_q32)
+    const struct exh_glove_in *in, int32_t *angle_turn_q32)
 {
     const struct exh_glove_sensor *cal = cfg->cal->sensor;
     int32_t *const x = angle_turn_q32; /* codes q16 on their way to become angles */
@@ -182,9 +182,8 @@ uint32_t exh_glove_step(struct exh_glove *s, const struct exh_glove_cfg *cfg,
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++, cal++) {
         const int32_t code = quantizer_in_place(&s->quantizer[i], &cfg->quantizer, x[i]);
         /* Half the code: the difference to a zero at the far end fits. */
-        angle_turn_q32[i] =
-            exh_sat32(exh_mul_shr(exh_wrap_diff(code >> 1, cal->zero_raw_q15),
-                                  cal->gain_turnpraw_q38, EXH_Q_ZERO + EXH_Q_TPRAW - EXH_Q_TURN));
+        angle_turn_q32[i] = exh_sat32(exh_mul_shr(exh_wrap_diff(code >> 1, cal->zero_raw_q15),
+            cal->gain_turnpraw_q38, EXH_Q_ZERO + EXH_Q_TPRAW - EXH_Q_TURN));
     }
     cross(cfg, angle_turn_q32);
     return faulty;

@@ -15,7 +15,7 @@
 #define CODE(m) ((int16_t)((2 * (m)-1000) * INT64_C(294912) / 10000))
 #define ZERO_Q15(m0, m1, d0, d1) \
     ((int32_t)((2 * ((m0)*INT64_C(1) * ((d1) - (d0)) - (d0)*INT64_C(1) * ((m1) - (m0))) - \
-                1000 * INT64_C(1) * ((d1) - (d0))) * \
+                   1000 * INT64_C(1) * ((d1) - (d0))) * \
                (INT64_C(294912) << 15) / (((d1) - (d0)) * INT64_C(10000))))
 #define GAIN_Q38(m0, m1, d0, d1) \
     ((int32_t)(((d1) - (d0)) * (INT64_C(1) << 38) * 1000 / (((m1) - (m0)) * INT64_C(21233664))))
@@ -34,14 +34,12 @@
 const struct exh_glove_cal exh_glove_cal_default = {
     .valid_days = UINT32_MAX,
     .present = (UINT32_C(1) << EXH_GLOVE_SENSORS) - 1u,
-    .sensor = {UP(335, 697, -60, 60),  UP(311, 736, -30, 30), UP(461, 909, 0, 90),
-               DOWN(791, 350, 0, 50),  UP(429, 654, 0, 90),   UP(181, 654, 0, 90),
-               UP(185, 469, 0, 90),    UP(417, 630, 0, 90),   UP(268, 591, 0, 90),
-               UP(0, 323, 0, 90),      DOWN(468, 390, 0, 50), UP(323, 571, 0, 90),
-               UP(240, 618, 0, 90),    UP(177, 390, 0, 90),   DOWN(610, 283, 0, 50),
-               UP(354, 591, 0, 90),    UP(154, 602, 0, 90),   UP(319, 579, 0, 90),
-               DOWN(516, 209, 0, 50),  UP(357, 650, 0, 40),   UP(154, 622, -30, 40),
-               DOWN(925, 236, -30, 10)},
+    .sensor = {UP(335, 697, -60, 60), UP(311, 736, -30, 30), UP(461, 909, 0, 90),
+        DOWN(791, 350, 0, 50), UP(429, 654, 0, 90), UP(181, 654, 0, 90), UP(185, 469, 0, 90),
+        UP(417, 630, 0, 90), UP(268, 591, 0, 90), UP(0, 323, 0, 90), DOWN(468, 390, 0, 50),
+        UP(323, 571, 0, 90), UP(240, 618, 0, 90), UP(177, 390, 0, 90), DOWN(610, 283, 0, 50),
+        UP(354, 591, 0, 90), UP(154, 602, 0, 90), UP(319, 579, 0, 90), DOWN(516, 209, 0, 50),
+        UP(357, 650, 0, 40), UP(154, 622, -30, 40), DOWN(925, 236, -30, 10)},
 };
 
 /* --- words --- */
@@ -49,10 +47,28 @@ const struct exh_glove_cal exh_glove_cal_default = {
 const char *exh_glove_sensor_text(unsigned sensor)
 {
     static const char *const text[EXH_GLOVE_SENSORS] = {
-        "ThumbRotate",  "ThumbMPJ",  "ThumbIJ",      "ThumbAb",   "IndexMPJ",      "IndexPIJ",
-        "IndexDIJ",     "MiddleMPJ", "MiddlePIJ",    "MiddleDIJ", "MiddleIndexAb", "RingMPJ",
-        "RingPIJ",      "RingDIJ",   "RingMiddleAb", "PinkieMPJ", "PinkiePIJ",     "PinkieDIJ",
-        "PinkieRingAb", "PalmArch",  "WristPitch",   "WristYaw",
+        "ThumbRotate",
+        "ThumbMPJ",
+        "ThumbIJ",
+        "ThumbAb",
+        "IndexMPJ",
+        "IndexPIJ",
+        "IndexDIJ",
+        "MiddleMPJ",
+        "MiddlePIJ",
+        "MiddleDIJ",
+        "MiddleIndexAb",
+        "RingMPJ",
+        "RingPIJ",
+        "RingDIJ",
+        "RingMiddleAb",
+        "PinkieMPJ",
+        "PinkiePIJ",
+        "PinkieDIJ",
+        "PinkieRingAb",
+        "PalmArch",
+        "WristPitch",
+        "WristYaw",
     };
     return sensor < EXH_GLOVE_SENSORS ? text[sensor] : "unknown";
 }
@@ -133,7 +149,7 @@ int exh_glove_cal_validate(const struct exh_glove_cal *cal, struct exh_glove_err
 }
 
 int exh_glove_cal_check(const struct exh_glove_cal *cal, uint32_t user_id, uint32_t glove_id,
-                        uint32_t day, struct exh_glove_error *bad)
+    uint32_t day, struct exh_glove_error *bad)
 {
     if (cal->present == 0) { return refuse(bad, EXH_GLOVE_PRESENT, 0, -EXH_E_RANGE); }
     if (cal->user_id != user_id) { return refuse(bad, EXH_GLOVE_USER, 0, -EXH_E_VERSION); }
@@ -179,8 +195,8 @@ static void body_bytes(struct exh_bytes *b, struct exh_glove_cal *cal)
     }
 }
 
-int32_t exh_glove_cal_save(const struct exh_glove_cal *cal, void *buf, size_t cap_B,
-                           struct exh_glove_error *bad)
+int32_t exh_glove_cal_save(
+    const struct exh_glove_cal *cal, void *buf, size_t cap_B, struct exh_glove_error *bad)
 {
     struct head h = {IMAGE_MAGIC, EXH_GLOVE_CAL_VERSION, EXH_GLOVE_SENSORS};
     struct exh_bytes b = exh_bytes_writer(buf, cap_B);
@@ -213,8 +229,8 @@ static int load(struct exh_glove_cal *cal, const void *buf, size_t len_B)
     return crc == exh_crc32(0, buf, at) ? 0 : -EXH_E_CRC;
 }
 
-int exh_glove_cal_load(struct exh_glove_cal *cal, const void *buf, size_t len_B,
-                       struct exh_glove_error *bad)
+int exh_glove_cal_load(
+    struct exh_glove_cal *cal, const void *buf, size_t len_B, struct exh_glove_error *bad)
 {
     int err = load(cal, buf, len_B);
     if (err < 0) {

@@ -54,7 +54,7 @@ static int64_t factor_mul(const struct factor *f, int64_t v)
 static int32_t own_turn_q32(const struct exh_glove_sensor *s, int32_t raw_q16)
 {
     return exh_sat32(exh_mul_shr((raw_q16 >> 1) - s->zero_raw_q15, s->gain_turnpraw_q38,
-                                 EXH_Q_ZERO + EXH_Q_TPRAW - EXH_Q_TURN));
+        EXH_Q_ZERO + EXH_Q_TPRAW - EXH_Q_TURN));
 }
 
 /* sum[r][c] over all pairs; the known angle comes behind the terms. */
@@ -103,8 +103,7 @@ static int last_factor(struct known *k, struct factor *f, struct factor *inverse
 
 /* The poses of sensor `at`, and whether they will do. EXH_GLOVE_ERRORS: they will. */
 static unsigned gather(struct known *k, const struct exh_glove_cal *cal, struct exh_glove_fit *fit,
-                       unsigned at, const struct exh_glove_pose *pose, unsigned n,
-                       const struct exh_glove_fit_par *par)
+    unsigned at, const struct exh_glove_pose *pose, unsigned n, const struct exh_glove_fit_par *par)
 {
     int32_t code[2] = {INT32_MAX, INT32_MIN}, angle[2] = {INT32_MAX, INT32_MIN};
     k->n = 0;
@@ -187,7 +186,7 @@ static unsigned fit_line(struct known *k, struct exh_glove_sensor *s)
 }
 
 static unsigned residuals(const struct known *k, const struct exh_glove_sensor *s,
-                          struct exh_glove_fit *fit, int32_t max_turn_q32)
+    struct exh_glove_fit *fit, int32_t max_turn_q32)
 {
     int64_t worst = -1;
     for (unsigned p = 0; p < k->n; p++) {
@@ -203,8 +202,8 @@ static unsigned residuals(const struct known *k, const struct exh_glove_sensor *
 }
 
 /* The span over all poses: also those that do not say the angle. */
-static void span(struct exh_glove_sensor *s, unsigned at, const struct exh_glove_pose *pose,
-                 unsigned n)
+static void span(
+    struct exh_glove_sensor *s, unsigned at, const struct exh_glove_pose *pose, unsigned n)
 {
     s->low_raw = INT16_MAX;
     s->high_raw = INT16_MIN;
@@ -221,8 +220,7 @@ static int has_cross(const struct exh_glove_sensor *s)
 }
 
 static unsigned fit_sensor(struct exh_glove_cal *cal, struct exh_glove_fit *fit, unsigned at,
-                           const struct exh_glove_pose *pose, unsigned n,
-                           const struct exh_glove_fit_par *par)
+    const struct exh_glove_pose *pose, unsigned n, const struct exh_glove_fit_par *par)
 {
     struct exh_glove_sensor *s = &cal->sensor[at];
     struct known k;
@@ -235,8 +233,8 @@ static unsigned fit_sensor(struct exh_glove_cal *cal, struct exh_glove_fit *fit,
 }
 
 /* The other sensors it needs are there, have no cross terms, and came out fine. */
-static int cross_known(const struct exh_glove_cal *cal, const struct exh_glove_fit *fit,
-                       unsigned at)
+static int cross_known(
+    const struct exh_glove_cal *cal, const struct exh_glove_fit *fit, unsigned at)
 {
     for (unsigned j = 0; j < 2; j++) {
         const unsigned of = cal->sensor[at].of[j];
@@ -251,8 +249,7 @@ static int cross_known(const struct exh_glove_cal *cal, const struct exh_glove_f
 
 /* Those that are there and have cross terms, or those that have none. */
 static void fit_all(struct exh_glove_cal *cal, struct exh_glove_fit *fit,
-                    const struct exh_glove_pose *pose, unsigned n,
-                    const struct exh_glove_fit_par *par, int cross)
+    const struct exh_glove_pose *pose, unsigned n, const struct exh_glove_fit_par *par, int cross)
 {
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
         unsigned what = EXH_GLOVE_CROSS;
@@ -265,8 +262,8 @@ static void fit_all(struct exh_glove_cal *cal, struct exh_glove_fit *fit,
 }
 
 int exh_glove_cal_fit(struct exh_glove_cal *cal, struct exh_glove_fit *fit,
-                      const struct exh_glove_pose *pose, unsigned n,
-                      const struct exh_glove_fit_par *par, struct exh_glove_error *bad)
+    const struct exh_glove_pose *pose, unsigned n, const struct exh_glove_fit_par *par,
+    struct exh_glove_error *bad)
 {
     struct exh_glove_error first = {EXH_GLOVE_POSES, 0};
     int err = n < 2 || n > EXH_GLOVE_POSES_MAX ? -EXH_E_RANGE : 0;

@@ -20,13 +20,13 @@
  * in full; exoskeletons of this kind are said to move 60 to 90 mm. */
 const struct exh_signal exh_hand_rows[EXH_HAND_ROWS] = {
     {0x0A01, EXH_Q_POS, EXH_WHEN_SETUP, 0, ARM_MAX_M_Q30, EXH_Q(20, 1000, EXH_Q_POS), "arm1", "m",
-     "string per radian of the knuckle"},
+        "string per radian of the knuckle"},
     {0x0A02, EXH_Q_POS, EXH_WHEN_SETUP, 0, ARM_MAX_M_Q30, EXH_Q(16, 1000, EXH_Q_POS), "arm2", "m",
-     "string per radian of the joint beyond"},
+        "string per radian of the joint beyond"},
     {0x0A03, EXH_Q_POS, EXH_WHEN_SETUP, 0, ARM_MAX_M_Q30, EXH_Q(12, 1000, EXH_Q_POS), "arm3", "m",
-     "string per radian of the last joint"},
+        "string per radian of the last joint"},
     {0x0A04, EXH_Q_POS, EXH_WHEN_SETUP, 0, EXH_PAD_MAX_M_Q30, EXH_Q(105, 10000, EXH_Q_POS), "pad",
-     "m", "radius of the fingertip's pad"},
+        "m", "radius of the fingertip's pad"},
 };
 
 /* --- sensors to joints --- */
@@ -55,7 +55,7 @@ int exh_hand_map_validate(const struct exh_hand_map *map)
 }
 
 uint32_t exh_hand_joints(const struct exh_hand_map *map, unsigned finger,
-                         const int32_t *sensor_turn_q32, int32_t *joint_turn_q32)
+    const int32_t *sensor_turn_q32, int32_t *joint_turn_q32)
 {
     uint32_t limited = 0;
     for (unsigned i = 0; i < EXH_HAND_JOINTS; i++) {
@@ -115,13 +115,10 @@ static int bones_ok(const struct exh_hand_bones *b)
     return sum <= LEN_MAX_M_Q34 && is_rotation(b->rot_q30);
 }
 
-static int arm_ok(int32_t arm_m_q30)
-{
-    return arm_m_q30 >= 0 && arm_m_q30 <= ARM_MAX_M_Q30;
-}
+static int arm_ok(int32_t arm_m_q30) { return arm_m_q30 >= 0 && arm_m_q30 <= ARM_MAX_M_Q30; }
 
-int exh_hand_setup(struct exh_hand_finger *f, const struct exh_hand_bones *bones,
-                   const struct exh_hand_par *par)
+int exh_hand_setup(
+    struct exh_hand_finger *f, const struct exh_hand_bones *bones, const struct exh_hand_par *par)
 {
     uint64_t arm_m_q30[2], square_q60;
     if (!arm_ok(par->arm1_m_q30) || !arm_ok(par->arm2_m_q30) || !arm_ok(par->arm3_m_q30) ||
@@ -212,23 +209,23 @@ static inline struct base3 turned(const struct pose *p, int_fast32_t along, int_
     const int64_t out = (int64_t)along * p->q1.cos_q30 - (int64_t)across * p->q1.sin_q30;
     const int64_t up = (int64_t)along * p->q1.sin_q30 + (int64_t)across * p->q1.cos_q30;
     const int_fast32_t far = (int_fast32_t)(out >> 30);
-    const struct base3 v = {part(p->q0.cos_q30, far, 30), part(p->q0.sin_q30, far, 30),
-                            (int_fast32_t)(up >> 30)};
+    const struct base3 v = {
+        part(p->q0.cos_q30, far, 30), part(p->q0.sin_q30, far, 30), (int_fast32_t)(up >> 30)};
     return v;
 }
 
 /* One coordinate in the palm. Three products lose half an LSB of q32 each, which the 3 gives back
  * (1.5, and 2 to round). */
-static inline int32_t place_m_q30(int32_t base_m_q32, const int32_t row_q30[3],
-                                  struct base3 v_m_q34)
+static inline int32_t place_m_q30(
+    int32_t base_m_q32, const int32_t row_q30[3], struct base3 v_m_q34)
 {
     return (int32_t)(base_m_q32 + part(row_q30[0], v_m_q34.x, 32) +
                      part(row_q30[1], v_m_q34.y, 32) + part(row_q30[2], v_m_q34.z, 32) + 3) >>
            (32 - 30);
 }
 
-static inline void tip_of(const struct pose *p, const struct exh_hand_bones *b,
-                          struct exh_vec3 *tip_m_q30)
+static inline void tip_of(
+    const struct pose *p, const struct exh_hand_bones *b, struct exh_vec3 *tip_m_q30)
 {
     const struct base3 v_m_q34 = turned(p, p->along_m_q34, p->across_m_q34);
     tip_m_q30->x = place_m_q30(b->base_m_q32[0], b->rot_q30[0], v_m_q34);
@@ -236,8 +233,8 @@ static inline void tip_of(const struct pose *p, const struct exh_hand_bones *b,
     tip_m_q30->z = place_m_q30(b->base_m_q32[2], b->rot_q30[2], v_m_q34);
 }
 
-void exh_hand_tip(const struct exh_hand_finger *f, const int32_t *joint_turn_q32,
-                  struct exh_vec3 *tip_m_q30)
+void exh_hand_tip(
+    const struct exh_hand_finger *f, const int32_t *joint_turn_q32, struct exh_vec3 *tip_m_q30)
 {
     const struct pose p = pose_of(f->bones->len_m_q34, joint_turn_q32);
     tip_of(&p, f->bones, tip_m_q30);
@@ -253,7 +250,7 @@ static inline int32_t turned_q24(const int32_t row_q30[3], struct base3 v_q24)
 /* As q1 turns, the tip moves by (-across, along); as q2 turns, and q3 with it, by
  * (-K sin q2, K cos q2 - 2 l2), K = 2 M - l1. */
 void exh_hand_tip_slope(const struct exh_hand_finger *f, const int32_t *joint_turn_q32,
-                        struct exh_vec3 *tip_m_q30, struct exh_vec3 *slope_q24)
+    struct exh_vec3 *tip_m_q30, struct exh_vec3 *slope_q24)
 {
     const struct exh_hand_bones *b = f->bones;
     const struct pose p = pose_of(b->len_m_q34, joint_turn_q32);
@@ -265,7 +262,7 @@ void exh_hand_tip_slope(const struct exh_hand_finger *f, const int32_t *joint_tu
     const int64_t along_q54 = 2 * w2_radpm_q20 * along_m_q33 - w1_radpm_q20 * p.across_m_q34;
     const int64_t across_q54 = 2 * w2_radpm_q20 * across_m_q33 + w1_radpm_q20 * p.along_m_q34;
     const struct base3 v_q24 = turned(&p, (int_fast32_t)exh_shr_round(along_q54, 54 - 24),
-                                      (int_fast32_t)exh_shr_round(across_q54, 54 - 24));
+        (int_fast32_t)exh_shr_round(across_q54, 54 - 24));
 
     tip_of(&p, b, tip_m_q30);
     slope_q24->x = turned_q24(b->rot_q30[0], v_q24);

@@ -11,10 +11,10 @@
 
 const struct exh_signal exh_quad_rows[EXH_QUAD_ROWS] = {
     {0x0201, EXH_Q_STEP, EXH_WHEN_SETUP, STEP_MIN_M_Q42, INT32_MAX,
-     EXH_Q(6632, 100000000, EXH_Q_STEP), "step", "m", "string per encoder count"},
+        EXH_Q(6632, 100000000, EXH_Q_STEP), "step", "m", "string per encoder count"},
     /* Beyond the fastest hand: what moves more is no movement. */
     {0x0202, EXH_Q_VEL, EXH_WHEN_SETUP, SPEED_MIN_MPS_Q27, INT32_MAX, EXH_Q(10, 1, EXH_Q_VEL),
-     "speed_max", "m_per_s", "faster is an encoder fault"},
+        "speed_max", "m_per_s", "faster is an encoder fault"},
 };
 
 /* --- two lines --- */
@@ -48,8 +48,8 @@ void exh_quad_ab_step(struct exh_quad_ab *s, const struct exh_quad_mode *mode, u
     s->started = 1;
 }
 
-void exh_quad_ab_run(struct exh_quad_ab *s, const struct exh_quad_mode *mode, const uint8_t *ab,
-                     size_t n)
+void exh_quad_ab_run(
+    struct exh_quad_ab *s, const struct exh_quad_mode *mode, const uint8_t *ab, size_t n)
 {
     uint32_t past; /* samples, the last in the low bits */
     if (n == 0) { return; }
@@ -106,8 +106,8 @@ void exh_quad_index_step(struct exh_quad_index *s, int32_t cnt, unsigned level)
 
 /* --- a counter --- */
 
-int exh_quad_setup(struct exh_quad_cfg *cfg, const struct exh_quad_par *par, struct exh_period T,
-                   unsigned bits)
+int exh_quad_setup(
+    struct exh_quad_cfg *cfg, const struct exh_quad_par *par, struct exh_period T, unsigned bits)
 {
     struct exh_gain per_tick; /* counts per m/s q27 */
     int64_t jump;
@@ -115,7 +115,7 @@ int exh_quad_setup(struct exh_quad_cfg *cfg, const struct exh_quad_par *par, str
     if (bits < 16 || bits > 32 || par->step_m_q42 < STEP_MIN_M_Q42 ||
         par->speed_max_mps_q27 < SPEED_MIN_MPS_Q27 ||
         exh_gain_set(&per_tick, (uint64_t)T.num << (EXH_Q_STEP - EXH_Q_VEL),
-                     (uint64_t)(uint32_t)par->step_m_q42 * T.den) < 0) {
+            (uint64_t)(uint32_t)par->step_m_q42 * T.den) < 0) {
         return -EXH_E_RANGE;
     }
     jump = exh_gain_mul(per_tick, par->speed_max_mps_q27) + 1;

@@ -11,7 +11,7 @@
 const struct exh_signal exh_quantizer_rows[EXH_QUANTIZER_ROWS] = {
     {0x0801, 0, EXH_WHEN_SETUP, 1, 24, 14, "bits", "", "stable bits"},
     {0x0802, 16, EXH_WHEN_SETUP, 0, INT32_MAX, EXH_Q(4, 1, 16), "hyst", "raw",
-     "noise that shall not show, peak to peak"},
+        "noise that shall not show, peak to peak"},
 };
 
 int exh_quantizer_setup(struct exh_quantizer_cfg *cfg, const struct exh_quantizer_par *par)

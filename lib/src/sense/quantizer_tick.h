@@ -7,8 +7,8 @@
 #include "exhand/fix.h"
 #include "exhand/quantizer.h"
 
-static inline int32_t quantizer_in_place(struct exh_quantizer *s,
-                                         const struct exh_quantizer_cfg *cfg, int32_t x)
+static inline int32_t quantizer_in_place(
+    struct exh_quantizer *s, const struct exh_quantizer_cfg *cfg, int32_t x)
 {
     const int32_t value = s->value;
     const uint32_t off = x > value ? (uint32_t)x - (uint32_t)value : (uint32_t)value - (uint32_t)x;

@@ -29,15 +29,15 @@ static int32_t share_q31(struct exh_period T, uint32_t tau_us)
 }
 
 int exh_velocity_window_setup(struct exh_velocity_window_cfg *cfg, struct exh_velocity_scale s,
-                              const struct exh_velocity_par *par)
+    const struct exh_velocity_par *par)
 {
     if (par->p < 0 || par->p > 4) { return -EXH_E_RANGE; }
     cfg->n = (uint8_t)(1u << par->p);
     return scale(&cfg->gain, s, cfg->n);
 }
 
-int32_t exh_velocity_window_step(struct exh_velocity_window *s,
-                                 const struct exh_velocity_window_cfg *cfg, int32_t cnt)
+int32_t exh_velocity_window_step(
+    struct exh_velocity_window *s, const struct exh_velocity_window_cfg *cfg, int32_t cnt)
 {
     int32_t moved;
     if (!s->started) {
@@ -61,16 +61,16 @@ void exh_velocity_window_serialize(struct exh_bytes *c, struct exh_velocity_wind
 
 #define POLE_MAX_MPS_Q55 (INT64_C(16) << 55)
 
-int exh_velocity_pole_setup(struct exh_velocity_pole_cfg *cfg, struct exh_velocity_scale s,
-                            uint32_t tau_us)
+int exh_velocity_pole_setup(
+    struct exh_velocity_pole_cfg *cfg, struct exh_velocity_scale s, uint32_t tau_us)
 {
     if (tau_us > 1000000u) { return -EXH_E_RANGE; }
     cfg->a_q31 = share_q31(s.T, tau_us);
     return scale(&cfg->gain, s, 1);
 }
 
-int32_t exh_velocity_pole_step(struct exh_velocity_pole *s, const struct exh_velocity_pole_cfg *cfg,
-                               int32_t cnt)
+int32_t exh_velocity_pole_step(
+    struct exh_velocity_pole *s, const struct exh_velocity_pole_cfg *cfg, int32_t cnt)
 {
     const int32_t moved = s->started ? exh_wrap_diff(cnt, s->cnt) : 0;
     const int64_t diff_q55 =
@@ -91,8 +91,8 @@ void exh_velocity_pole_serialize(struct exh_bytes *c, struct exh_velocity_pole *
     exh_bytes_u8(c, &s->started);
 }
 
-int exh_velocity_foaw_setup(struct exh_velocity_foaw_cfg *cfg, struct exh_velocity_scale s,
-                            unsigned n, unsigned tol_cnt)
+int exh_velocity_foaw_setup(
+    struct exh_velocity_foaw_cfg *cfg, struct exh_velocity_scale s, unsigned n, unsigned tol_cnt)
 {
     int err = n < 1 || n > EXH_VELOCITY_N || tol_cnt < 1 || tol_cnt > 255 ? -EXH_E_RANGE : 0;
     uint32_t sum = 0, weight = 0; /* weight = m(m+1)(m+2)/6, summed up */
@@ -127,12 +127,12 @@ static int32_t wide_gain(struct exh_gain g, int64_t m)
     if (m == exh_clamp(m, INT32_MIN, INT32_MAX)) { return exh_sat32(exh_gain_mul(g, (int32_t)m)); }
     if (g.shift < 31) { return exh_sat32(m); }
     if (g.shift == 31) { return exh_sat32(exh_mul64_q31(m, g.mant)); }
-    return exh_sat32(exh_shr_round((m >> 31) * g.mant + ((m & INT32_MAX) * g.mant >> 31),
-                                   ((g.shift - 32u) & 31u) + 1u));
+    return exh_sat32(exh_shr_round(
+        (m >> 31) * g.mant + ((m & INT32_MAX) * g.mant >> 31), ((g.shift - 32u) & 31u) + 1u));
 }
 
-int32_t exh_velocity_foaw_step(struct exh_velocity_foaw *s, const struct exh_velocity_foaw_cfg *cfg,
-                               int32_t cnt)
+int32_t exh_velocity_foaw_step(
+    struct exh_velocity_foaw *s, const struct exh_velocity_foaw_cfg *cfg, int32_t cnt)
 {
     int32_t d[EXH_VELOCITY_N + 1] = {0};
     const int32_t most = cfg->n < EXH_VELOCITY_N ? cfg->n : EXH_VELOCITY_N;
@@ -171,8 +171,8 @@ void exh_velocity_foaw_serialize(struct exh_bytes *c, struct exh_velocity_foaw *
     if (s->at > EXH_VELOCITY_N) { s->at = EXH_VELOCITY_N; } /* an index, from bytes */
 }
 
-int exh_velocity_track_setup(struct exh_velocity_track_cfg *cfg, struct exh_velocity_scale s,
-                             uint32_t tf_us)
+int exh_velocity_track_setup(
+    struct exh_velocity_track_cfg *cfg, struct exh_velocity_scale s, uint32_t tf_us)
 {
     const int32_t a_q31 = share_q31(s.T, tf_us); /* 1 - theta */
     if (tf_us > 1000000u) { return -EXH_E_RANGE; }
@@ -183,8 +183,8 @@ int exh_velocity_track_setup(struct exh_velocity_track_cfg *cfg, struct exh_velo
 
 #define TRACK_MAX_CNT_Q32 (INT64_C(1) << 60)
 
-int32_t exh_velocity_track_step(struct exh_velocity_track *s,
-                                const struct exh_velocity_track_cfg *cfg, int32_t cnt)
+int32_t exh_velocity_track_step(
+    struct exh_velocity_track *s, const struct exh_velocity_track_cfg *cfg, int32_t cnt)
 {
     const int32_t moved = s->started ? exh_wrap_diff(cnt, s->cnt) : 0;
     const int64_t moved_q32 =
@@ -197,7 +197,7 @@ int32_t exh_velocity_track_step(struct exh_velocity_track *s,
     s->vel_cnt_q32 =
         exh_clamp64(s->vel_cnt_q32 - exh_mul64_q31(off, cfg->beta_q31), TRACK_MAX_CNT_Q32);
     return exh_sat32(exh_shr_round(exh_mul64_q31(s->vel_cnt_q32, cfg->gain.mant),
-                                   (cfg->gain.shift < 62u ? cfg->gain.shift : 62u) + 1u));
+        (cfg->gain.shift < 62u ? cfg->gain.shift : 62u) + 1u));
 }
 
 void exh_velocity_track_serialize(struct exh_bytes *c, struct exh_velocity_track *s)

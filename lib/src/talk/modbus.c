@@ -147,8 +147,8 @@ static int write_and_read(struct exh_regs *r, const struct request *q, uint8_t *
 
 static uint8_t *object(uint8_t *to, uint32_t id)
 {
-    static const char text[OBJECTS][sizeof VERSION > 7 ? sizeof VERSION : 7] = {"exhand", "exhand",
-                                                                                VERSION};
+    static const char text[OBJECTS][sizeof VERSION > 7 ? sizeof VERSION : 7] = {
+        "exhand", "exhand", VERSION};
     uint8_t *len = to + 1;
     to[0] = (uint8_t)id;
     to += 2;
@@ -197,8 +197,8 @@ static int answer(struct exh_regs *r, const struct request *q, uint8_t *resp)
     }
 }
 
-int exh_modbus_answer(struct exh_regs *r, const uint8_t *req, size_t len_B, uint8_t *resp,
-                      size_t cap_B)
+int exh_modbus_answer(
+    struct exh_regs *r, const uint8_t *req, size_t len_B, uint8_t *resp, size_t cap_B)
 {
     /* Longer than any request: its length is wrong, whatever it says. */
     const struct request q = {req, len_B < 0xFFFFu ? (uint32_t)len_B : 0xFFFFu};

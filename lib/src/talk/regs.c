@@ -132,7 +132,7 @@ static uint32_t head_of(const struct exh_regs *r, enum exh_regs_head h)
 
 /* Blocks of tables are 2 EXH_REGS_VALUES registers apart. */
 int exh_regs_locate(const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at, uint16_t n,
-                    struct exh_regs_span *s)
+    struct exh_regs_span *s)
 {
     const uint32_t which = ((uint32_t)at - EXH_REGS_SIGNAL_AT) >> 13;
     uint32_t values;
@@ -197,8 +197,8 @@ static void read_floats(const struct exh_regs *r, const struct exh_regs_span *s,
     }
 }
 
-int exh_regs_read(const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at, uint16_t n,
-                  uint8_t *to)
+int exh_regs_read(
+    const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at, uint16_t n, uint8_t *to)
 {
     struct exh_regs_span s;
     const int err = exh_regs_locate(r, kind, at, n, &s);
@@ -229,8 +229,8 @@ static uint32_t bits_of(const struct exh_regs *r, enum exh_regs_bits b)
     return 0;
 }
 
-int exh_regs_read_bits(const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at, uint16_t n,
-                       uint8_t *to)
+int exh_regs_read_bits(
+    const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at, uint16_t n, uint8_t *to)
 {
     const uint32_t all = kind == EXH_REGS_COIL ? EXH_COILS : 32u * EXH_BITS;
     if ((uint32_t)at + n > all) { return EXH_MODBUS_ADDRESS; }

@@ -16,8 +16,8 @@ static void stage(struct exh_regs *r, uint32_t i, int32_t raw)
 }
 
 /* The raw value that a binary32 stands for at value i. 0 or exception 3. */
-static int from_float(const struct exh_regs *r, const struct exh_signal *row, uint32_t i,
-                      uint32_t bits, int32_t *raw)
+static int from_float(
+    const struct exh_regs *r, const struct exh_signal *row, uint32_t i, uint32_t bits, int32_t *raw)
 {
     const int32_t now = exh_regs_held(r, i);
     if (bits == exh_float_from_raw(now, row->frac)) {
@@ -40,14 +40,11 @@ static int judge(const struct exh_regs *r, const struct exh_signal *row, uint32_
     return fixed && raw != r->wanted[i] ? EXH_MODBUS_VALUE : 0;
 }
 
-static uint32_t word(const uint8_t *p)
-{
-    return (uint32_t)p[0] << 8 | p[1];
-}
+static uint32_t word(const uint8_t *p) { return (uint32_t)p[0] << 8 | p[1]; }
 
 /* What value i becomes by the bytes of a request. 0 or exception 3. */
 static int written(const struct exh_regs *r, const struct exh_regs_span *s,
-                   const struct exh_signal *row, uint32_t i, const uint8_t *from, int32_t *raw)
+    const struct exh_signal *row, uint32_t i, const uint8_t *from, int32_t *raw)
 {
     const int high = 2 * i >= s->from, low = 2 * i + 1 < s->end;
     const uint32_t at_B =

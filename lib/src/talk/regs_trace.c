@@ -5,7 +5,7 @@
 #define VALUES EXH_REGS_FRAME_VALUES
 
 int exh_regs_trace_locate(const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at,
-                          uint16_t n, struct exh_regs_span *s)
+    uint16_t n, struct exh_regs_span *s)
 {
     uint32_t values = kind == EXH_REGS_INPUT ? EXH_TRACE_HEADS : EXH_REGS_TRACE_SET;
     s->source = kind == EXH_REGS_INPUT ? EXH_REGS_TRACE : EXH_REGS_SET;
@@ -53,8 +53,8 @@ uint32_t exh_regs_trace_value(const struct exh_regs *r, enum exh_regs_source sou
 
 /* What is asked for with these registers written: each value as a whole, with its other half as it
  * stands. */
-static struct exh_trace_request asked_with(const struct exh_regs *r, const struct exh_regs_span *s,
-                                           const uint8_t *from)
+static struct exh_trace_request asked_with(
+    const struct exh_regs *r, const struct exh_regs_span *s, const uint8_t *from)
 {
     struct exh_trace_request what = r->trace->what;
     for (uint32_t at = s->from; at < s->end; at++, from += 2) {
@@ -65,8 +65,8 @@ static struct exh_trace_request asked_with(const struct exh_regs *r, const struc
     return what;
 }
 
-int exh_regs_trace_validate(const struct exh_regs *r, const struct exh_regs_span *s,
-                            const uint8_t *from)
+int exh_regs_trace_validate(
+    const struct exh_regs *r, const struct exh_regs_span *s, const uint8_t *from)
 {
     const struct exh_trace_request what = asked_with(r, s, from);
     for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) {

@@ -12,7 +12,7 @@
 /* --- a record in pieces --- */
 
 void exh_record_out_begin(struct exh_record_out *o, uint8_t type, uint32_t seq, uint32_t tick,
-                          struct exh_record_place payload)
+    struct exh_record_place payload)
 {
     struct exh_bytes c = exh_bytes_writer(o->head, sizeof o->head);
     uint16_t len = payload.len_B;
@@ -27,10 +27,7 @@ void exh_record_out_begin(struct exh_record_out *o, uint8_t type, uint32_t seq, 
     o->crc = 0;
 }
 
-static uint32_t least(uint32_t a, uint32_t b)
-{
-    return a < b ? a : b;
-}
+static uint32_t least(uint32_t a, uint32_t b) { return a < b ? a : b; }
 
 /* Of the payload, up to where its memory wraps. */
 static uint32_t payload_out(struct exh_record_out *o, uint8_t *to, uint32_t n)
@@ -82,15 +79,9 @@ int exh_ring_setup(struct exh_ring *r, void *mem, size_t cap_B)
     return 0;
 }
 
-static uint32_t parts(const struct exh_ring *r)
-{
-    return r->live & 0xFFu;
-}
+static uint32_t parts(const struct exh_ring *r) { return r->live & 0xFFu; }
 
-static uint32_t oldest(const struct exh_ring *r)
-{
-    return r->live >> 8;
-}
+static uint32_t oldest(const struct exh_ring *r) { return r->live >> 8; }
 
 /* The slot of the i-th part, the oldest being 0. */
 static uint32_t slot(const struct exh_ring *r, uint32_t i)
@@ -106,10 +97,7 @@ static uint32_t from_part(const struct exh_ring *r, uint32_t i)
     return head >= start ? head - start : head + r->cap_B - start;
 }
 
-static uint32_t used(const struct exh_ring *r)
-{
-    return parts(r) ? from_part(r, 0) : 0;
-}
+static uint32_t used(const struct exh_ring *r) { return parts(r) ? from_part(r, 0) : 0; }
 
 int exh_ring_due(const struct exh_ring *r)
 {
@@ -117,10 +105,7 @@ int exh_ring_due(const struct exh_ring *r)
 }
 
 /* One store, so that who interrupts this finds the part or does not. */
-static void drop_oldest(struct exh_ring *r)
-{
-    r->live = slot(r, 1) << 8 | (parts(r) - 1);
-}
+static void drop_oldest(struct exh_ring *r) { r->live = slot(r, 1) << 8 | (parts(r) - 1); }
 
 static int lose(struct exh_ring *r)
 {
@@ -138,8 +123,8 @@ static uint32_t copy_in(struct exh_ring *r, uint32_t at, const uint8_t *from, ui
     return at < r->cap_B ? at : at - r->cap_B;
 }
 
-int exh_ring_put(struct exh_ring *r, uint8_t type, uint32_t tick, const void *payload,
-                 uint32_t len_B)
+int exh_ring_put(
+    struct exh_ring *r, uint8_t type, uint32_t tick, const void *payload, uint32_t len_B)
 {
     const uint32_t need = EXH_RING_HEAD_B + len_B;
     const int begins = type == EXH_RECORD_KEYFRAME && exh_ring_due(r);
@@ -168,8 +153,8 @@ struct exh_ring_place exh_ring_first(const struct exh_ring *r)
     return p;
 }
 
-int exh_ring_next(const struct exh_ring *r, struct exh_ring_place *p, uint32_t seq,
-                  struct exh_record_out *o)
+int exh_ring_next(
+    const struct exh_ring *r, struct exh_ring_place *p, uint32_t seq, struct exh_record_out *o)
 {
     uint8_t head[EXH_RING_HEAD_B] = {0};
     struct exh_bytes c = exh_bytes_reader(head, sizeof head);

@@ -57,7 +57,7 @@ int exh_slots_find(struct exh_slot *newest, const void *slot0, const void *slot1
 }
 
 int32_t exh_slots_encode(unsigned *to, const void *slot0, const void *slot1, size_t slot_B,
-                         void *buf, size_t cap_B, size_t image_B)
+    void *buf, size_t cap_B, size_t image_B)
 {
     const size_t room_B = cap_B < slot_B ? cap_B : slot_B;
     struct exh_slot newest = {NULL, 0, 0};

@@ -4,8 +4,8 @@
 
 #include "exhand/error.h"
 
-int exh_trace_setup(struct exh_trace *t, struct exh_trace_frame *frame, uint32_t frames,
-                    uint32_t signals)
+int exh_trace_setup(
+    struct exh_trace *t, struct exh_trace_frame *frame, uint32_t frames, uint32_t signals)
 {
     static const struct exh_trace none;
     static const struct exh_trace_frame empty;

@@ -140,8 +140,8 @@ static int payload_bytes(struct exh_bytes *c, struct exh_wire_packet *p)
 
 /* --- sending --- */
 
-int32_t exh_wire_encode(struct exh_wire_tx *tx, struct exh_wire_packet *p, uint32_t stamp_us,
-                        void *buf, size_t cap_B)
+int32_t exh_wire_encode(
+    struct exh_wire_tx *tx, struct exh_wire_packet *p, uint32_t stamp_us, void *buf, size_t cap_B)
 {
     struct head h = {EXH_WIRE_MAGIC, EXH_WIRE_VERSION, p->type, 0, tx->session, tx->seq, stamp_us};
     struct exh_bytes c = exh_bytes_writer(buf, cap_B);
@@ -166,7 +166,7 @@ int32_t exh_wire_encode(struct exh_wire_tx *tx, struct exh_wire_packet *p, uint3
 
 /* Whole, undamaged, and all its values possible: 0, else the error, counted. */
 static int read_packet(struct exh_wire_rx *rx, struct head *h, struct exh_wire_packet *p,
-                       const uint8_t *buf, size_t len_B)
+    const uint8_t *buf, size_t len_B)
 {
     struct exh_bytes c = exh_bytes_reader(buf, len_B);
     uint32_t crc = 0;
@@ -273,8 +273,8 @@ int exh_wire_poll(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us)
     return 1;
 }
 
-int exh_wire_decode(struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf,
-                    size_t len_B)
+int exh_wire_decode(
+    struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf, size_t len_B)
 {
     struct exh_wire_packet now = {0};
     struct head h = {0, 0, 0, 0, 0, 0, 0};

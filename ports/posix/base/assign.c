@@ -24,15 +24,15 @@ int assign_split(const char *option, const char *text, char name[ASSIGN_NAME_B],
     return 0;
 }
 
-int assign_refused(const char *command, const char *name, double value,
-                   const struct sim_device_row *row)
+int assign_refused(
+    const char *command, const char *name, double value, const struct sim_device_row *row)
 {
     if (row != NULL) {
         cli_complain("--device: %s: %.12g (allowed %.12g..%.12g%s%s): choose a value in that range",
-                     name, value, row->min, row->max, row->unit[0] ? " " : "", row->unit);
+            name, value, row->min, row->max, row->unit[0] ? " " : "", row->unit);
     } else {
         cli_complain("--device: %s: no such value of the device: `exhand %s --params` lists them",
-                     name, command);
+            name, command);
     }
     return 2;
 }
@@ -54,7 +54,7 @@ int assign_step(struct sim_device *d, double hand_npm, double hand_nspm)
         cli_complain("--device: substep: %.6g s is too long for this string, rotor and mass, whose "
                      "oscillation it "
                      "would not follow: give --device substep=%g",
-                     d->substep_s, enough_s);
+            d->substep_s, enough_s);
     } else {
         cli_complain("--device: substep: none is short enough for this string, rotor and mass: a "
                      "heavier rotor, or "

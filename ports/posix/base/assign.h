@@ -13,8 +13,8 @@ int assign_split(const char *option, const char *text, char name[ASSIGN_NAME_B],
 
 /* What sim_device_set() or sim_glove_set() refused, row being what it left there: says so, and
  * which command lists what there is. 2. */
-int assign_refused(const char *command, const char *name, double value,
-                   const struct sim_device_row *row);
+int assign_refused(
+    const char *command, const char *name, double value, const struct sim_device_row *row);
 
 /* NAME=VALUE into the device of this command: 0, or 2 after a line on stderr. */
 int assign_device(struct sim_device *d, const char *command, const char *text);

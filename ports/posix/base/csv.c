@@ -82,7 +82,7 @@ static void header_line(FILE *to, const struct exh_signal_table *t, uint32_t n, 
 }
 
 static void line(FILE *to, const struct exh_signal_table *t, uint32_t n, double t_s,
-                 const int32_t *v, const int16_t *raw)
+    const int32_t *v, const int16_t *raw)
 {
     fprintf(to, "%.9f", t_s);
     for (uint32_t i = 0; i < n; i++) {
@@ -101,7 +101,7 @@ static int write_rows(struct walk *w, FILE *to)
     header_line(to, sc->signals, n, glove);
     while (next_row(w)) {
         line(to, sc->signals, n, (double)w->tick * T.num / T.den, sc->signal,
-             glove ? w->in.glove.raw : NULL);
+            glove ? w->in.glove.raw : NULL);
     }
     return ferror(to) || fflush(to) != 0;
 }
@@ -125,7 +125,7 @@ static int survey(struct logfile *l, unsigned what)
     if (w.malformed || w.unordered) {
         cli_complain("%s: %lu records of a wrong length and %lu frames whose tick does not rise: "
                      "left out",
-                     l->path, (unsigned long)w.malformed, (unsigned long)w.unordered);
+            l->path, (unsigned long)w.malformed, (unsigned long)w.unordered);
     }
     if (w.rows > 0) { return w.malformed || w.unordered; }
     cli_complain("%s: holds no %s", l->path, what & CSV_FALLS ? "fall" : "frame");

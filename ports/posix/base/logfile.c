@@ -42,7 +42,7 @@ static int read_header(struct logfile *l)
     if (exh_record_decode(l->bytes, l->len, &r) == -EXH_E_VERSION) {
         cli_complain("%s: a log of record version %u, this program's is %d: read it with the "
                      "program that made it",
-                     l->path, r.version, EXH_RECORD_VERSION);
+            l->path, r.version, EXH_RECORD_VERSION);
         return 2;
     }
     if (!logfile_next(l, &r) || r.type != EXH_RECORD_HEADER) {
@@ -58,7 +58,7 @@ static int read_header(struct logfile *l)
     if (l->scene == NULL) { return complain(l, "made by a scene this program does not have"); }
     if (l->header.lib_version != EXH_VERSION_NUMBER) {
         cli_complain("%s: library version %lx, this program has %lx: results may differ", l->path,
-                     (unsigned long)l->header.lib_version, (unsigned long)EXH_VERSION_NUMBER);
+            (unsigned long)l->header.lib_version, (unsigned long)EXH_VERSION_NUMBER);
     }
     if (l->header.signal_crc != exh_signal_crc(l->scene->signals) ||
         l->header.signals != exh_signal_count(l->scene->signals) ||
@@ -166,7 +166,7 @@ int logfile_complain(const struct logfile *l)
     /* Bytes between records of which none is missing are a box's words on the same line. */
     if (l->gaps == 0 && l->ended) { return 0; }
     cli_complain("%s: %lu damaged bytes, %lu records missing (%lu reported lost by the writer), %s",
-                 l->path, (unsigned long)l->damaged, (unsigned long)l->gaps, (unsigned long)l->lost,
-                 l->ended ? "end reached" : "cut off before its end");
+        l->path, (unsigned long)l->damaged, (unsigned long)l->gaps, (unsigned long)l->lost,
+        l->ended ? "end reached" : "cut off before its end");
     return 1;
 }

@@ -70,10 +70,7 @@ void words_show(const char *line)
     pthread_mutex_unlock(&lock);
 }
 
-uint32_t words_lost(void)
-{
-    return words.lost;
-}
+uint32_t words_lost(void) { return words.lost; }
 
 void words_end(void)
 {

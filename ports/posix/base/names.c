@@ -7,51 +7,28 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const states[EXH_STATES] = {
-    "no current, drives disabled", "arming, step by step",
-    "forces follow the law",       "runs, a limit holds something back",
-    "the force falls to zero",     "no current, drives disabled, until it is cleared"};
-static const char *const faults[EXH_FAULTS] = {"emergency stop",
-                                               "a drive is not ready",
-                                               "too many ticks were missed",
-                                               "an encoder moved as no hand can",
-                                               "the dead-man switch was let go",
-                                               "a current does not follow what is coded",
-                                               "an encoder stands while current flows",
-                                               "a finger moved too fast for too long",
-                                               "the glove is not believed",
-                                               "a card failed",
-                                               "the link is lost",
-                                               "the supply is out of its range",
-                                               "the watchdog fired",
-                                               "parameters or calibration are damaged",
-                                               "a state that cannot be"};
-static const char *const limits[EXH_LIMITS] = {
-    "a string only pulls",   "the force limit",         "how fast force may change",
-    "the peak current",      "the motor's heat",        "the end of the D/A's range",
-    "the gate is closed",    "the ramp after arming",   "the release law",
+static const char *const states[EXH_STATES] = {"no current, drives disabled",
+    "arming, step by step", "forces follow the law", "runs, a limit holds something back",
+    "the force falls to zero", "no current, drives disabled, until it is cleared"};
+static const char *const faults[EXH_FAULTS] = {"emergency stop", "a drive is not ready",
+    "too many ticks were missed", "an encoder moved as no hand can",
+    "the dead-man switch was let go", "a current does not follow what is coded",
+    "an encoder stands while current flows", "a finger moved too fast for too long",
+    "the glove is not believed", "a card failed", "the link is lost",
+    "the supply is out of its range", "the watchdog fired", "parameters or calibration are damaged",
+    "a state that cannot be"};
+static const char *const limits[EXH_LIMITS] = {"a string only pulls", "the force limit",
+    "how fast force may change", "the peak current", "the motor's heat",
+    "the end of the D/A's range", "the gate is closed", "the ramp after arming", "the release law",
     "velocity into the law", "the passivity controller"};
-static const char *const arms[EXH_ARMS] = {"known answers come out",
-                                           "calibration valid",
-                                           "polarity of motor and encoder",
-                                           "encoders plausible",
-                                           "dead-man switch held, no cause of a fault",
-                                           "the law asks for a small force only",
-                                           "the force limit rises"};
+static const char *const arms[EXH_ARMS] = {"known answers come out", "calibration valid",
+    "polarity of motor and encoder", "encoders plausible",
+    "dead-man switch held, no cause of a fault", "the law asks for a small force only",
+    "the force limit rises"};
 static const char *const commands[] = {"nothing", "run", "off", "clear the fault"};
-static const char *const inputs[] = {"emergency-stop loop",
-                                     "dead-man switch",
-                                     "watchdog",
-                                     "cards",
-                                     NULL,
-                                     NULL,
-                                     NULL,
-                                     NULL,
-                                     "drive of the thumb",
-                                     "drive of the index",
-                                     "drive of the middle",
-                                     "drive of the ring",
-                                     "drive of the little"};
+static const char *const inputs[] = {"emergency-stop loop", "dead-man switch", "watchdog", "cards",
+    NULL, NULL, NULL, NULL, "drive of the thumb", "drive of the index", "drive of the middle",
+    "drive of the ring", "drive of the little"};
 static const char *const fingers[] = {"thumb", "index", "middle", "ring", "little"};
 
 #define LEN(a) ((unsigned)(sizeof(a) / sizeof((a)[0])))
@@ -64,16 +41,12 @@ static const char *command_word(unsigned i)
 
 static const char *input_word(unsigned i)
 {
-    static const char *const word[LEN(inputs)] = {
-        "estop", "deadman", "watchdog", "cards",  "",       "",      "",
-        "",      "drive0",  "drive1",   "drive2", "drive3", "drive4"};
+    static const char *const word[LEN(inputs)] = {"estop", "deadman", "watchdog", "cards", "", "",
+        "", "", "drive0", "drive1", "drive2", "drive3", "drive4"};
     return i < LEN(word) ? word[i] : "";
 }
 
-static const char *finger_word(unsigned i)
-{
-    return i < LEN(fingers) ? fingers[i] : "";
-}
+static const char *finger_word(unsigned i) { return i < LEN(fingers) ? fingers[i] : ""; }
 
 const struct names names_state = {"state", exh_state_name, states, LEN(states)};
 const struct names names_fault = {"fault", exh_fault_name, faults, LEN(faults)};

@@ -14,10 +14,7 @@ static const char *command = ""; /* for cli_complain() */
 void (*cli_complain_by)(const char *line);
 
 /* Between the program and its command. */
-static const char *blank(const char *name)
-{
-    return cli_program[0] && name[0] ? " " : "";
-}
+static const char *blank(const char *name) { return cli_program[0] && name[0] ? " " : ""; }
 
 void cli_complain(const char *format, ...)
 {
@@ -63,7 +60,7 @@ static void help(const struct cli_command *c, const struct cli_more *more)
 static int bad(const struct cli_command *c, const char *what, const char *why)
 {
     cli_complain("%s: %s: `%s%s%s --help` lists the options", what, why, cli_program,
-                 blank(c->name), c->name);
+        blank(c->name), c->name);
     return 2;
 }
 
@@ -74,7 +71,7 @@ static int take_number(const struct cli_option *o, const char *text)
     const double v = whole ? (double)strtoll(text, &end, 10) : strtod(text, &end);
     if (end == text || *end != '\0' || !(v >= o->min && v <= o->max)) {
         cli_complain("--%s: %s (allowed %.15g..%.15g): give a %snumber in that range", o->name,
-                     text, o->min, o->max, whole ? "whole " : "");
+            text, o->min, o->max, whole ? "whole " : "");
         return 2;
     }
     if (whole) {
@@ -99,8 +96,8 @@ static int take(const struct cli_option *o, const char *text)
     return 0;
 }
 
-static const struct cli_option *find(const struct cli_command *c, const struct cli_more *more,
-                                     const char *name, size_t len)
+static const struct cli_option *find(
+    const struct cli_command *c, const struct cli_more *more, const char *name, size_t len)
 {
     for (int i = 0; i < c->options + more->options; i++) {
         const struct cli_option *o = row(c, more, i);
@@ -120,8 +117,8 @@ int cli_listed(const char *names, const char *name, size_t len)
 }
 
 /* One word that starts with --, and its value. *i moves past what was used. */
-static int take_word(const struct cli_command *c, const struct cli_more *more, int argc,
-                     char **argv, int *i)
+static int take_word(
+    const struct cli_command *c, const struct cli_more *more, int argc, char **argv, int *i)
 {
     const char *word = argv[*i];
     const char *equals = strchr(word, '=');
@@ -141,7 +138,7 @@ static int take_word(const struct cli_command *c, const struct cli_more *more, i
 }
 
 int cli_parse_more(const struct cli_command *c, const struct cli_more *more, int argc, char **argv,
-                   const char **operand)
+    const char **operand)
 {
     int n = 0;
     command = c->name;

@@ -41,7 +41,7 @@ struct cli_more {
  * 2 bad usage, said on stderr. */
 int cli_parse(const struct cli_command *c, int argc, char **argv, const char **operand);
 int cli_parse_more(const struct cli_command *c, const struct cli_more *more, int argc, char **argv,
-                   const char **operand);
+    const char **operand);
 
 /* Whether a name is in a list with blanks between. */
 int cli_listed(const char *names, const char *name, size_t len);

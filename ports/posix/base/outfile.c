@@ -33,8 +33,8 @@ int outfile_dir(const char *dir, const char *name)
     return 0;
 }
 
-int outfile_write(const char *dir, const char *name, void (*write)(FILE *f, const void *ctx),
-                  const void *ctx)
+int outfile_write(
+    const char *dir, const char *name, void (*write)(FILE *f, const void *ctx), const void *ctx)
 {
     char path[PATH_B];
     FILE *f;
@@ -51,14 +51,14 @@ int outfile_write(const char *dir, const char *name, void (*write)(FILE *f, cons
     }
     if (f != NULL && fclose(f) != 0 && !failed) {
         cli_complain("%s: can't be closed: %s: give another --out, and calibrate again", path,
-                     strerror(errno));
+            strerror(errno));
         failed = 1;
     }
     return failed;
 }
 
-long outfile_read(const char *option, const char *path, const char *expected, void *to,
-                  size_t cap_B)
+long outfile_read(
+    const char *option, const char *path, const char *expected, void *to, size_t cap_B)
 {
     FILE *f = fopen(path, "rb");
     long len;
@@ -68,8 +68,8 @@ long outfile_read(const char *option, const char *path, const char *expected, vo
     }
     len = (long)fread(to, 1, cap_B, f);
     if (ferror(f)) { /* a directory, as a rule */
-        cli_complain("--%s: %s: can't be read: %s: give the %s", option, path, strerror(errno),
-                     expected);
+        cli_complain(
+            "--%s: %s: can't be read: %s: give the %s", option, path, strerror(errno), expected);
         len = -2;
     }
     fclose(f);

@@ -11,12 +11,12 @@ int outfile_dir(const char *dir, const char *name);
 
 /* DIR/NAME by a function that writes it. 0, or 1 after a line on stderr: nothing is ever
  * written elsewhere. */
-int outfile_write(const char *dir, const char *name, void (*write)(FILE *f, const void *ctx),
-                  const void *ctx);
+int outfile_write(
+    const char *dir, const char *name, void (*write)(FILE *f, const void *ctx), const void *ctx);
 
 /* An image of at most cap bytes that an option names: its length, or -status after a line on
  * stderr that says what file was expected. */
-long outfile_read(const char *option, const char *path, const char *expected, void *to,
-                  size_t cap_B);
+long outfile_read(
+    const char *option, const char *path, const char *expected, void *to, size_t cap_B);
 
 #endif

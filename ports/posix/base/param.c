@@ -12,8 +12,8 @@ double cli_signal_value(const struct exh_signal *row, int32_t raw)
     return (double)raw / (double)(INT64_C(1) << row->frac);
 }
 
-const struct exh_signal *cli_signal_find(const struct exh_signal_table *t, const char *name,
-                                         uint32_t *index)
+const struct exh_signal *cli_signal_find(
+    const struct exh_signal_table *t, const char *name, uint32_t *index)
 {
     const uint32_t n = exh_signal_count(t);
     for (uint32_t i = 0; i < n; i++) {
@@ -36,7 +36,7 @@ void cli_setup_complain(const struct exh_params *p, double rate_Hz, int err)
         const char *end = strstr(row->name, "fc");
         if (end == NULL || end[2] != '\0' || fc_Hz < rate_Hz / 2) { continue; }
         cli_complain("%s: %.6g Hz (below half the rate of %.6g Hz): --set %s=%.4g would do",
-                     row->name, fc_Hz, rate_Hz, row->name, rate_Hz / 4);
+            row->name, fc_Hz, rate_Hz, row->name, rate_Hz / 4);
         named = 1;
     }
     if (!named) { cli_complain("%.6g Hz: %s: see --rate and --set", rate_Hz, exh_error_text(err)); }
@@ -69,8 +69,8 @@ int cli_param_set(struct exh_params *p, const char *name, double value)
     }
     if (err == -EXH_E_RANGE) { /* 12 digits: the ends as they are printed are allowed */
         cli_complain("%s: %.12g (allowed %.12g..%.12g%s%s): choose a value in that range", name,
-                     value, cli_signal_value(row, row->min), cli_signal_value(row, row->max),
-                     row->unit[0] ? " " : "", row->unit);
+            value, cli_signal_value(row, row->min), cli_signal_value(row, row->max),
+            row->unit[0] ? " " : "", row->unit);
     } else if (err < 0) {
         cli_complain("%s: %.12g: %s", name, value, exh_error_text(err));
     }
@@ -86,7 +86,7 @@ void cli_signal_print(FILE *f, const struct exh_signal_table *t)
         const struct exh_signal *r = exh_signal_at(t, i, &instance);
         if (instance > 0) { continue; }
         fprintf(f, "  %-13s %-8s %14.12g  %14.12g .. %-14.12g %-8s %s\n", r->name, r->unit,
-                cli_signal_value(r, r->dflt), cli_signal_value(r, r->min),
-                cli_signal_value(r, r->max), when[r->when], r->help);
+            cli_signal_value(r, r->dflt), cli_signal_value(r, r->min), cli_signal_value(r, r->max),
+            when[r->when], r->help);
     }
 }

@@ -12,8 +12,8 @@
 double cli_signal_value(const struct exh_signal *row, int32_t raw);
 
 /* The row called name (its index to *index unless NULL), or NULL. */
-const struct exh_signal *cli_signal_find(const struct exh_signal_table *t, const char *name,
-                                         uint32_t *index);
+const struct exh_signal *cli_signal_find(
+    const struct exh_signal_table *t, const char *name, uint32_t *index);
 
 /* Stages name = value, to the nearest raw value. 0, or -EXH_E… after a line on
  * stderr that names the parameter, its range and what to do. */

@@ -95,11 +95,11 @@ static void tell_head(const char *name, const struct exh_params *p, const void *
         cli_complain("%s: no image of parameters: give one that was saved", name);
     } else if (version != EXH_PARAMS_VERSION) {
         cli_complain("%s: an image of version %u, this program's is %d: save it anew", name,
-                     version, EXH_PARAMS_VERSION);
+            version, EXH_PARAMS_VERSION);
     } else {
         cli_complain("%s: %u values of table %08" PRIx32 ", this scene has %" PRIu32
                      " of table %08" PRIx32 ": give an image of this scene, of this version",
-                     name, count, table, p->count, exh_signal_crc(p->table));
+            name, count, table, p->count, exh_signal_crc(p->table));
     }
 }
 
@@ -112,14 +112,14 @@ static int32_t value_of(const void *image, size_t len_B, uint32_t i)
     return v;
 }
 
-static void tell_value(const char *name, const struct exh_params *p, uint32_t i, int32_t raw,
-                       int err)
+static void tell_value(
+    const char *name, const struct exh_params *p, uint32_t i, int32_t raw, int err)
 {
     uint16_t instance = 0;
     const struct exh_signal *r = exh_signal_at(p->table, i, &instance);
     if (err == -EXH_E_STATE) {
         cli_complain("%s: %s (instance %u): %.12g: only before it runs: start with it", name,
-                     r->name, instance, cli_signal_value(r, raw));
+            r->name, instance, cli_signal_value(r, raw));
     } else {
         cli_complain(
             "%s: %s (instance %u): %.12g (allowed %.12g..%.12g%s%s): nothing of it is taken", name,

@@ -16,13 +16,8 @@ struct params_file {
     size_t len_B;
 };
 #define PARAMS_FILE_OPTIONS(f) \
-    {"load-params", \
-     CLI_TEXT, \
-     &(f).load, \
-     0, \
-     0, \
-     "FILE", \
-     "an image of parameters, taken before --set"}, \
+    {"load-params", CLI_TEXT, &(f).load, 0, 0, "FILE", \
+        "an image of parameters, taken before --set"}, \
     { \
         "save-params", CLI_TEXT, &(f).save, 0, 0, "FILE", \
             "all parameters as an image, before it runs" \
@@ -30,8 +25,8 @@ struct params_file {
 
 /* Whole or not at all: a file beside it, on disk, then by that name. 0, or 1 after a line on
  * stderr: what was there before is there still. */
-int params_write(const char *path, const void *image,
-                 size_t len_B); /* 0 or an errno, and no line */
+int params_write(
+    const char *path, const void *image, size_t len_B); /* 0 or an errno, and no line */
 int params_save_file(const char *path, const struct exh_params *p);
 
 /* Stages an image whole or nothing of it. 0, or -EXH_E_… after a line on stderr that begins with

@@ -31,11 +31,11 @@ static void help(const struct program *p, FILE *to)
         }
     }
     fprintf(to,
-            "  --version  versions of library, record, board, parameter image, calibration\n"
-            "`%s COMMAND --help` lists the options of one.\n"
-            "Exit status: 0 ok, 1 a check failed, 2 bad usage, 3 something is missing,\n"
-            "130 interrupted.\n",
-            p->name);
+        "  --version  versions of library, record, board, parameter image, calibration\n"
+        "`%s COMMAND --help` lists the options of one.\n"
+        "Exit status: 0 ok, 1 a check failed, 2 bad usage, 3 something is missing,\n"
+        "130 interrupted.\n",
+        p->name);
 }
 
 int program_main(const struct program *p, int argc, char **argv)
@@ -47,9 +47,9 @@ int program_main(const struct program *p, int argc, char **argv)
     if (strcmp(name, "--version") == 0) {
         printf("exhand %d.%d.%d, record %d, board %d, parameters %d, calibration %d, of the glove "
                "%d, wire %d\n",
-               EXH_VERSION_MAJOR, EXH_VERSION_MINOR, EXH_VERSION_PATCH, EXH_RECORD_VERSION,
-               EXH_BOARD_VERSION, EXH_PARAMS_VERSION, EXH_CALIB_VERSION, EXH_GLOVE_CAL_VERSION,
-               EXH_WIRE_VERSION);
+            EXH_VERSION_MAJOR, EXH_VERSION_MINOR, EXH_VERSION_PATCH, EXH_RECORD_VERSION,
+            EXH_BOARD_VERSION, EXH_PARAMS_VERSION, EXH_CALIB_VERSION, EXH_GLOVE_CAL_VERSION,
+            EXH_WIRE_VERSION);
         return cli_finish(0);
     }
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {
@@ -57,8 +57,8 @@ int program_main(const struct program *p, int argc, char **argv)
         return cli_finish(0);
     }
     if (cli_listed(p->moved, name, strlen(name))) {
-        fprintf(stderr, "%s: %s: a study: `exhand-lab %s` has it (make lab)\n", p->name, name,
-                name);
+        fprintf(
+            stderr, "%s: %s: a study: `exhand-lab %s` has it (make lab)\n", p->name, name, name);
         return 2;
     }
     if (name[0] != '\0') { fprintf(stderr, "%s: %s: no such command\n", p->name, name); }

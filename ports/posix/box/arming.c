@@ -7,10 +7,7 @@
 
 #include <stdio.h>
 
-int arming_runs(int32_t state)
-{
-    return state == EXH_STATE_RUN || state == EXH_STATE_LIMIT;
-}
+int arming_runs(int32_t state) { return state == EXH_STATE_RUN || state == EXH_STATE_LIMIT; }
 
 enum arming arming_is(int32_t state)
 {
@@ -20,12 +17,10 @@ enum arming arming_is(int32_t state)
 
 /* What to do about a step, in their order. */
 static const char *const advice[EXH_ARMS] = {"the processor or its memory is broken",
-                                             "calibrate first",
-                                             "see that the motor pulls the string in",
-                                             "the position is lost: start again",
-                                             "close what is open, hold the dead-man",
-                                             "a force is asked for already: begin outside the wall",
-                                             "this came before all of the force was there"};
+    "calibrate first", "see that the motor pulls the string in",
+    "the position is lost: start again", "close what is open, hold the dead-man",
+    "a force is asked for already: begin outside the wall",
+    "this came before all of the force was there"};
 
 static unsigned first_of(uint32_t bits)
 {
@@ -46,6 +41,5 @@ void arming_complain(int32_t arm_step, int32_t present)
         at += (size_t)snprintf(causes + at, sizeof causes - at, " %s", exh_fault_name(k));
     }
     cli_complain("arming: refused at %s%s%s: %s", step < EXH_ARMS ? exh_arm_name(step) : "none",
-                 causes[0] ? ", causes" : "", causes,
-                 step < EXH_ARMS ? advice[step] : "nobody asked");
+        causes[0] ? ", causes" : "", causes, step < EXH_ARMS ? advice[step] : "nobody asked");
 }

@@ -57,7 +57,7 @@ static void say_differed(void)
         const double longest_s = gpio_differed_s((enum gpio_channel)i, &times);
         if (times) {
             cli_complain("--gpio: %s: its two contacts disagreed %lu times, at most for %.3g s",
-                         gpio_channel_name[i], (unsigned long)times, longest_s);
+                gpio_channel_name[i], (unsigned long)times, longest_s);
         }
     }
 }

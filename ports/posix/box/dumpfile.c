@@ -90,8 +90,7 @@ static void told(const struct exh_blackbox_is *is, const char *path)
     char what[NAMES_B];
     names_faults(what, sizeof what, is->cause);
     cli_complain("black box: %s%s at tick %lu: %s: exhand replay --timeline tells it",
-                 is->cause ? "fault " : "halted", is->cause ? what : "", (unsigned long)is->tick,
-                 path);
+        is->cause ? "fault " : "halted", is->cause ? what : "", (unsigned long)is->tick, path);
 }
 
 static void failed(const char *path, const char *why)

@@ -18,7 +18,7 @@ int glove_image_read(struct exh_glove_cal *cal, const char *option, const char *
     err = exh_glove_cal_load(cal, image, (size_t)len, &bad);
     if (err == -EXH_E_RANGE) {
         cli_complain("--%s: %s: %s of %s: outside its range: calibrate again", option, path,
-                     exh_glove_error_text(bad.what), exh_glove_sensor_text(bad.at));
+            exh_glove_error_text(bad.what), exh_glove_sensor_text(bad.at));
     } else if (err < 0) {
         cli_complain("--%s: %s: %s: give the " IMAGE_WANTED, option, path, exh_error_text(err));
     }

@@ -23,8 +23,8 @@ static void nobody(struct exh_glove_cal *cal)
     }
 }
 
-int glove_serial_stage(const struct exh_scene *sc, const struct exh_glove_cal *cal, double rate_Hz,
-                       double glove_Hz)
+int glove_serial_stage(
+    const struct exh_scene *sc, const struct exh_glove_cal *cal, double rate_Hz, double glove_Hz)
 {
     const double every = (double)(long)(rate_Hz / glove_Hz);
     const struct run_setting own[] = {
@@ -55,6 +55,6 @@ int glove_serial_open(struct glove_tty *t, const char *option, const char *path,
                                        : "give a serial line that can be opened";
     if (err == 0) { return 0; }
     cli_complain("--%s: %s: %s: %s", option, path,
-                 err == ENOTTY ? "is no serial line" : strerror(err), what);
+        err == ENOTTY ? "is no serial line" : strerror(err), what);
     return 3;
 }

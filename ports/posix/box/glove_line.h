@@ -17,7 +17,7 @@ int glove_serial_open(struct glove_tty *t, const char *option, const char *path,
 /* A user's calibration, or NULL: nobody's hand (exh_glove_cal_default), every code believed; in
  * parameters of scene glove or bilateral, with all else that suits a stock glove. 0 or -EXH_E...
  * after a line on stderr. */
-int glove_serial_stage(const struct exh_scene *sc, const struct exh_glove_cal *cal, double rate_Hz,
-                       double glove_Hz);
+int glove_serial_stage(
+    const struct exh_scene *sc, const struct exh_glove_cal *cal, double rate_Hz, double glove_Hz);
 
 #endif

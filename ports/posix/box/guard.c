@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "box/guard.h"
 
-static double newton(int32_t raw)
-{
-    return (double)raw / (1 << EXH_Q_FORCE);
-}
+static double newton(int32_t raw) { return (double)raw / (1 << EXH_Q_FORCE); }
 
 void guard_start(struct guard *g, struct exh_scene_board board)
 {
@@ -66,8 +63,8 @@ void guard_print(FILE *f, const struct guard_row *row, int rows)
         print_stiffness(f, r->on_Npm);
         print_stiffness(f, r->off_Npm);
         fprintf(f, " | %5d/%d %3d/%d | %9.1f %7.1f %6.1f | %7.4f %9.3f\n", r->on_oscillating,
-                r->falls, r->off_oscillating, r->falls, 1e3 * r->on.out_J, 1e3 * r->on.bound_J,
-                1e3 * r->off.out_J, r->on.force_Ns > 0 ? 100 * r->on.taken_Ns / r->on.force_Ns : 0,
-                r->on.ticks ? 100 * (double)r->on.acted / (double)r->on.ticks : 0);
+            r->falls, r->off_oscillating, r->falls, 1e3 * r->on.out_J, 1e3 * r->on.bound_J,
+            1e3 * r->off.out_J, r->on.force_Ns > 0 ? 100 * r->on.taken_Ns / r->on.force_Ns : 0,
+            r->on.ticks ? 100 * (double)r->on.acted / (double)r->on.ticks : 0);
     }
 }

@@ -67,13 +67,13 @@ static void keep(struct bilateral_track *t, const struct bilateral_sample *s)
 
 static uint32_t digest_of(uint32_t digest, const struct bilateral_paper *p)
 {
-    const int32_t v[] = {p->q_m_q30,     p->qd_mps_q27, p->f_des_N_q20,
-                         p->i_des_A_q26, p->c,          p->f_mon_N_q20};
+    const int32_t v[] = {
+        p->q_m_q30, p->qd_mps_q27, p->f_des_N_q20, p->i_des_A_q26, p->c, p->f_mon_N_q20};
     return exh_crc32(digest, v, sizeof v);
 }
 
-static void widen(struct bilateral_range *g, const struct bilateral_sample *s, const int32_t *joint,
-                  int first)
+static void widen(
+    struct bilateral_range *g, const struct bilateral_sample *s, const int32_t *joint, int first)
 {
     if (first || s->x_m < g->lo_m) { g->lo_m = s->x_m; }
     if (first || s->x_m > g->hi_m) { g->hi_m = s->x_m; }
@@ -96,10 +96,10 @@ static int one_finger(unsigned f)
     const int under_way =
         phase == SIM_PATH_APPROACH || phase == SIM_PATH_HOLD || phase == SIM_PATH_WITHDRAW;
     const struct bilateral_sample s = {sig->paper[f], sig->more[f].bits,
-                                       plays       ? 1
-                                       : under_way ? (int32_t)plant->path.number
-                                                   : 0,
-                                       phase == SIM_PATH_HOLD, plant->plant.x_m};
+        plays       ? 1
+        : under_way ? (int32_t)plant->path.number
+                    : 0,
+        phase == SIM_PATH_HOLD, plant->plant.x_m};
     widen(&t->range, &s, sig->more[f].joint_turn_q32, run.r->ticks == 1);
     t->freezes += (s.bits & EXH_PRECONTACT_FREEZE) != 0;
     t->frozen_yet |= (s.bits & EXH_PRECONTACT_STANDS) != 0;
@@ -178,7 +178,7 @@ static int fit_scale(const struct bilateral_run_cfg *c, struct bilateral_run *r)
             scale_to(&w, t->touch_m, cli_signal_value(&exh_precontact_rows[0], p->staged[index]));
         if (err == 0) {
             err = exh_params_stage(p, exh_precontact_rows[2].id, (uint16_t)f,
-                                   (int32_t)(t->scale * (1 << exh_precontact_rows[2].frac)));
+                (int32_t)(t->scale * (1 << exh_precontact_rows[2].frac)));
         }
     }
     return err;
@@ -196,9 +196,12 @@ static int set_parameters(const struct bilateral_run_cfg *c)
 {
     const struct sim_device *d = &c->board.device;
     const struct run_setting known[] = {
-        {"step", d->step_m / d->decode}, {"kf", d->kf_npa},
-        {"dac_scale", d->dac_perA},      {"dac_zero", d->dac_zero},
-        {"mon_scale", d->mon_apc},       {"fingers", c->board.exo.fingers},
+        {"step", d->step_m / d->decode},
+        {"kf", d->kf_npa},
+        {"dac_scale", d->dac_perA},
+        {"dac_zero", d->dac_zero},
+        {"mon_scale", d->mon_apc},
+        {"fingers", c->board.exo.fingers},
         {"session", session_of(c)},
     };
     struct exh_params *p = exh_scene_bilateral.params;
@@ -207,7 +210,7 @@ static int set_parameters(const struct bilateral_run_cfg *c)
     exh_scene_bilateral.defaults();
     bilateral_cal_of(&cal, &c->board.glove_par);
     err = c->board.glove_tty ? glove_serial_stage(&exh_scene_bilateral, c->glove_cal, c->rate_Hz,
-                                                  c->board.glove_tty->rate_Hz)
+                                   c->board.glove_tty->rate_Hz)
                              : bilateral_stage_cal(&cal, NULL);
     if (err == 0) { err = images_give(c->images, &exh_scene_bilateral); }
     for (size_t i = 0; err == 0 && i < sizeof known / sizeof known[0]; i++) {
@@ -252,8 +255,8 @@ static void want_materials(const struct bilateral_run_cfg *c, struct peer_cfg *p
 /* The table of outputs is struct bilateral_signals. */
 static void want_trace(const struct bilateral_run_cfg *c, struct peer_cfg *p)
 {
-    static const size_t at[] = {
-        offsetof(struct bilateral_paper, q_m_q30), offsetof(struct bilateral_paper, f_des_N_q20),
+    static const size_t at[] = {offsetof(struct bilateral_paper, q_m_q30),
+        offsetof(struct bilateral_paper, f_des_N_q20),
         offsetof(struct bilateral_paper, i_des_A_q26), offsetof(struct bilateral_paper, c)};
     unsigned f = 0;
     while (f + 1 < BILATERAL_FINGERS && !(c->board.exo.fingers >> f & 1)) { f++; }
@@ -284,11 +287,11 @@ static struct posix_config board_of(const struct bilateral_run_cfg *c)
 {
     struct posix_config b = c->board;
     struct peer_cfg p = {.world = &run.world,
-                         .from_s = c->from_s,
-                         .until_s = c->until_s,
-                         .again_s = c->again_s,
-                         .param_from_s = c->param_from_s,
-                         .hostile = c->hostile};
+        .from_s = c->from_s,
+        .until_s = c->until_s,
+        .again_s = c->again_s,
+        .param_from_s = c->param_from_s,
+        .hostile = c->hostile};
     want_materials(c, &p);
     want_trace(c, &p);
     for (int i = 0; i < c->wants && p.params < PEER_PARAMS; i++) {

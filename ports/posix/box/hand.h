@@ -97,11 +97,11 @@ struct bilateral_finger_is {
 void bilateral_wall(struct exh_wire_plane *to, const struct bilateral_finger_is *w, double x_m);
 
 /* d of it with what it would be told there at t_s; -1e3: nothing. */
-double bilateral_gap_m(const struct peer_world *world, const struct bilateral_finger_is *w,
-                       double x_m, double t_s);
+double bilateral_gap_m(
+    const struct peer_world *world, const struct bilateral_finger_is *w, double x_m, double t_s);
 
 /* The string at which d first is d_m; -1: nowhere. */
-double bilateral_string_m(const struct peer_world *world, const struct bilateral_finger_is *w,
-                          double t_s, double d_m);
+double bilateral_string_m(
+    const struct peer_world *world, const struct bilateral_finger_is *w, double t_s, double d_m);
 
 #endif

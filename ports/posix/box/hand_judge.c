@@ -11,10 +11,7 @@
 #define HELD_S   0.2 /* of the hold's end that is averaged */
 #define PATH_B   1100
 
-static double si(int32_t raw, int frac)
-{
-    return (double)raw / (double)(INT64_C(1) << frac);
-}
+static double si(int32_t raw, int frac) { return (double)raw / (double)(INT64_C(1) << frac); }
 
 struct fall_sample bilateral_si(const struct bilateral_sample *s, size_t tick, struct exh_period T)
 {
@@ -39,14 +36,11 @@ static size_t held_from(const struct bilateral_contact *c, struct exh_period T)
     return c->hold_end - c->first > most ? c->hold_end - most : c->first;
 }
 
-static int beyond(double v, double mean, double most)
-{
-    return v - mean > most || mean - v > most;
-}
+static int beyond(double v, double mean, double most) { return v - mean > most || mean - v > most; }
 
 /* How long until all that follows stays in the bands. */
 static double stays_s(const struct bilateral_track *t, const struct bilateral_contact *c,
-                      struct exh_period T, double force_N, double way_m)
+    struct exh_period T, double force_N, double way_m)
 {
     const size_t from = held_from(c, T);
     size_t last = c->first;
@@ -63,8 +57,8 @@ static double stays_s(const struct bilateral_track *t, const struct bilateral_co
     return (double)(last - c->first) * T.num / T.den;
 }
 
-static double rise_Nps(const struct bilateral_track *t, const struct bilateral_contact *c,
-                       struct exh_period T)
+static double rise_Nps(
+    const struct bilateral_track *t, const struct bilateral_contact *c, struct exh_period T)
 {
     const double rate_Hz = (double)T.den / T.num;
     const size_t ms = rate_Hz > 1000 ? (size_t)(rate_Hz / 1000) : 1;
@@ -77,8 +71,8 @@ static double rise_Nps(const struct bilateral_track *t, const struct bilateral_c
     return most;
 }
 
-static void judge_contact(const struct bilateral_run *r, const struct bilateral_track *t,
-                          struct bilateral_contact *c)
+static void judge_contact(
+    const struct bilateral_run *r, const struct bilateral_track *t, struct bilateral_contact *c)
 {
     const struct bilateral_sample *s = &t->at[c->first];
     c->t_s = (double)c->first * r->T.num / r->T.den;
@@ -155,16 +149,16 @@ static double line_of(const struct fall_log *log, const char *plot)
 
 /* Where each approach froze its q_lim is its own: positions are counted from there, or places that
  * differ would be read as softness. Before the freeze q_lim moves, and no pair is taken. */
-static struct fall_sample past_lim(const struct bilateral_sample *s, size_t tick,
-                                   struct exh_period T)
+static struct fall_sample past_lim(
+    const struct bilateral_sample *s, size_t tick, struct exh_period T)
 {
     struct fall_sample f = bilateral_si(s, tick, T);
     f.q_m -= si(s->raw.q_lim_m_q30, EXH_Q_POS);
     return f;
 }
 
-double bilateral_stiffness_Npm(const struct bilateral_run *r, unsigned f, int approach,
-                               const char *plot)
+double bilateral_stiffness_Npm(
+    const struct bilateral_run *r, unsigned f, int approach, const char *plot)
 {
     const struct bilateral_track *t = &r->finger[f];
     struct fall_sample *sample = calloc(t->n + 1, sizeof *sample);

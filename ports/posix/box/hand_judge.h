@@ -31,12 +31,12 @@ struct bilateral_contact {
 struct fall_sample bilateral_si(const struct bilateral_sample *s, size_t tick, struct exh_period T);
 
 /* Contacts of finger f, one per approach, at most cap: how many approaches there were. */
-int bilateral_judge(const struct bilateral_run *r, unsigned f, struct bilateral_contact *c,
-                    int cap);
+int bilateral_judge(
+    const struct bilateral_run *r, unsigned f, struct bilateral_contact *c, int cap);
 
 /* The paper's line through the pairs of all approaches (approach 0) or of one; plot: files for
  * force_position.gp, prefix or NULL. 0: no line. */
-double bilateral_stiffness_Npm(const struct bilateral_run *r, unsigned f, int approach,
-                               const char *plot);
+double bilateral_stiffness_Npm(
+    const struct bilateral_run *r, unsigned f, int approach, const char *plot);
 
 #endif

@@ -25,7 +25,7 @@ double peer_gap_m(const struct exh_wire_plane *p, const int32_t tip_m_q30[3])
 }
 
 void peer_look(const struct peer_world *w, const struct exh_wire_state *in, double t_s,
-               struct exh_wire_planes *out)
+    struct exh_wire_planes *out)
 {
     if (w->scene) {
         world_frame(w->scene, in, t_s, out, NULL);
@@ -96,8 +96,8 @@ static void take(struct peer *p, const void *buf, size_t len_B)
     }
 }
 
-static void put_spoiled(struct peer *p, struct sim_link *link, const uint8_t *good, size_t len_B,
-                        double t_s)
+static void put_spoiled(
+    struct peer *p, struct sim_link *link, const uint8_t *good, size_t len_B, double t_s)
 {
     uint8_t buf[EXH_WIRE_MAX_B + 1];
     for (int k = 0; k < p->cfg.hostile; k++) {

@@ -27,7 +27,7 @@ double peer_gap_m(const struct exh_wire_plane *p, const int32_t tip_m_q30[3]);
 
 /* What the fingers of this state are about to touch. */
 void peer_look(const struct peer_world *w, const struct exh_wire_state *in, double t_s,
-               struct exh_wire_planes *out);
+    struct exh_wire_planes *out);
 
 /* It is there from from_s to until_s, and again, started anew, from again_s on (0: not): else
  * packets to it are lost. It sets the parameters until each was acknowledged. */

@@ -12,10 +12,7 @@
 #define SENSORS EXH_GLOVE_SENSORS
 
 /* Nearest. */
-static int32_t fixed(double v, int frac)
-{
-    return (int32_t)floor(ldexp(v, frac) + 0.5);
-}
+static int32_t fixed(double v, int frac) { return (int32_t)floor(ldexp(v, frac) + 0.5); }
 
 /* --- the glove --- */
 
@@ -55,12 +52,12 @@ static const signed char bends[BILATERAL_FINGERS][3] = {
 
 /* Joints and tip when it has drawn so much string out. */
 static void finger_at(const struct bilateral_finger_is *w, double x_m,
-                      int32_t joint_turn_q32[EXH_HAND_JOINTS], struct exh_vec3 *tip_m_q30)
+    int32_t joint_turn_q32[EXH_HAND_JOINTS], struct exh_vec3 *tip_m_q30)
 {
     const double rest = w->arm_m[1] + w->arm_m[2], square = w->arm_m[0] * w->arm_m[0] + rest * rest;
     int32_t turn_q32[SENSORS];
-    const struct exh_hand_par par = {exh_hand_rows[0].dflt, exh_hand_rows[1].dflt,
-                                     exh_hand_rows[2].dflt, exh_hand_rows[3].dflt};
+    const struct exh_hand_par par = {
+        exh_hand_rows[0].dflt, exh_hand_rows[1].dflt, exh_hand_rows[2].dflt, exh_hand_rows[3].dflt};
     struct exh_hand_finger hand;
     for (int i = 0; i < SENSORS; i++) { turn_q32[i] = fixed(sim_pose[w->pose].deg[i] / 360, 32); }
     for (int j = 0; j < 3; j++) {
@@ -95,8 +92,8 @@ void bilateral_wall(struct exh_wire_plane *to, const struct bilateral_finger_is 
     }
 }
 
-double bilateral_gap_m(const struct peer_world *world, const struct bilateral_finger_is *w,
-                       double x_m, double t_s)
+double bilateral_gap_m(
+    const struct peer_world *world, const struct bilateral_finger_is *w, double x_m, double t_s)
 {
     struct exh_wire_state in = {.fingers = (uint8_t)(1u << w->f)};
     struct exh_wire_planes out;
@@ -109,8 +106,8 @@ double bilateral_gap_m(const struct peer_world *world, const struct bilateral_fi
     return peer_gap_m(&out.plane[w->f], in.tip_m_q30[w->f]);
 }
 
-double bilateral_string_m(const struct peer_world *world, const struct bilateral_finger_is *w,
-                          double t_s, double d_m)
+double bilateral_string_m(
+    const struct peer_world *world, const struct bilateral_finger_is *w, double t_s, double d_m)
 {
     double lo, hi, x = 0;
     while (x <= TOP_M && bilateral_gap_m(world, w, x, t_s) < d_m) { x += STEP_M; }

@@ -19,8 +19,8 @@
 
 /* The order of 23 angles (four of each finger, then palm and wrist; -1: the index's abduction,
  * which this glove does not have) in that of 22. */
-static const signed char place[23] = {0,  1,  2,  3,  4,  5,  6,  -1, 7,  8,  9, 10,
-                                      11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21};
+static const signed char place[23] = {
+    0, 1, 2, 3, 4, 5, 6, -1, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21};
 
 struct timed {
     double (*row)[SENSORS];
@@ -119,15 +119,15 @@ static int allocate(struct hand_record *h, long rows)
 }
 
 static void put(struct hand_record *h, long n, const double row_rad[SENSORS], double sign,
-                const struct sim_exo_par *exo)
+    const struct sim_exo_par *exo)
 {
     for (unsigned i = 0; i < SIM_FINGERS; i++) {
         h->string_m[i][n] = sim_path_string(row_rad, i, sign, exo->finger[i].arm_m);
     }
 }
 
-static int even(struct hand_record *h, const struct recording *r, double row_hz,
-                const struct sim_exo_par *exo)
+static int even(
+    struct hand_record *h, const struct recording *r, double row_hz, const struct sim_exo_par *exo)
 {
     const double sign = sim_path_sign((const double(*)[SENSORS])r->row, r->rows);
     const int err = allocate(h, r->rows);
@@ -169,8 +169,8 @@ static int is_timed(FILE *f)
     return yes;
 }
 
-static int read_rows(struct hand_record *h, const char *path, double row_hz,
-                     const struct sim_exo_par *exo)
+static int read_rows(
+    struct hand_record *h, const char *path, double row_hz, const struct sim_exo_par *exo)
 {
     struct recording r;
     int err = recording_read(&r, path, RECORDING_GUESS);
@@ -185,8 +185,8 @@ static int read_rows(struct hand_record *h, const char *path, double row_hz,
     return err;
 }
 
-int hand_record_read(struct hand_record *h, const char *path, double row_hz,
-                     const struct sim_exo_par *exo)
+int hand_record_read(
+    struct hand_record *h, const char *path, double row_hz, const struct sim_exo_par *exo)
 {
     struct timed timed = {NULL, NULL, 0, 0};
     FILE *f = fopen(path, "rb");

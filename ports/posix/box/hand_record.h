@@ -20,8 +20,8 @@ struct hand_record {
 
 /* row_hz: of rows without a clock. Arms: of the fingers of exo. 0, or after a line on stderr 2, 3
  * if it is not there. */
-int hand_record_read(struct hand_record *h, const char *path, double row_hz,
-                     const struct sim_exo_par *exo);
+int hand_record_read(
+    struct hand_record *h, const char *path, double row_hz, const struct sim_exo_par *exo);
 void hand_record_free(struct hand_record *h);
 
 /* The fingers of exo do what was recorded; h must outlive the run. */

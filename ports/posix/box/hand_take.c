@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const bilateral_finger_name[BILATERAL_FINGERS] = {"thumb", "index", "middle", "ring",
-                                                              "little"};
+const char *const bilateral_finger_name[BILATERAL_FINGERS] = {
+    "thumb", "index", "middle", "ring", "little"};
 
 void bilateral_defaults(struct bilateral_options *o)
 {
@@ -153,8 +153,8 @@ int bilateral_take_setting(void *ctx, const char *text)
 }
 
 /* The name of a row of the fingers, their paths, the glove's chain or the motor's device. */
-static int set_device(struct bilateral_options *o, const char *name, double value,
-                      const struct sim_device_row **row)
+static int set_device(
+    struct bilateral_options *o, const char *name, double value, const struct sim_device_row **row)
 {
     struct sim_exo_par *e = &o->run.board.exo;
     int err = sim_finger_set(&e->finger[0], name, value, row);
@@ -187,7 +187,7 @@ static void print_rows(const char *title, const struct sim_device_row *row, int 
     printf("\n%s\n", title);
     for (int i = 0; i < n; i++) {
         printf("  %-15s %-8s %12.9g  %12.9g .. %-12.9g %-7s %s\n", row[i].name, row[i].unit,
-               row[i].value, row[i].min, row[i].max, row[i].sure, row[i].help);
+            row[i].value, row[i].min, row[i].max, row[i].sure, row[i].help);
     }
 }
 

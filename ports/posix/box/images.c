@@ -23,8 +23,8 @@ static int add(struct images *im, const char *path)
     long len;
     if (im->n == EXH_FINGERS || strlen(path) >= sizeof im->at[0].path) {
         cli_complain("--calibration: %s: %s", path,
-                     im->n == EXH_FINGERS ? "more than one a finger (5): leave some out"
-                                          : "too long a name");
+            im->n == EXH_FINGERS ? "more than one a finger (5): leave some out"
+                                 : "too long a name");
         return 2;
     }
     len = outfile_read("calibration", path, EXPECTED, im->at[im->n].byte, sizeof im->at[0].byte);
@@ -106,9 +106,8 @@ static void say_whose(const struct images *im, const struct exh_scene *sc, int i
     if (exh_calib_load(&c, im->at[i].byte, im->at[i].len_B, NULL) < 0) { return; }
     cli_complain("%s: made for device %lu, finger %lu, on day %lu, good for %lu days; here is "
                  "device_id %ld, day %ld",
-                 im->at[i].path, (unsigned long)c.device_id, (unsigned long)c.finger,
-                 (unsigned long)c.day, (unsigned long)c.valid_days, (long)sc->params->active[id],
-                 (long)sc->params->active[day]);
+        im->at[i].path, (unsigned long)c.device_id, (unsigned long)c.finger, (unsigned long)c.day,
+        (unsigned long)c.valid_days, (long)sc->params->active[id], (long)sc->params->active[day]);
 }
 
 int images_complain(const struct images *im, const struct exh_scene *sc)
@@ -118,7 +117,7 @@ int images_complain(const struct images *im, const struct exh_scene *sc)
     if (im == NULL || k == NULL || k->refused == 0 || k->image_at >= im->n) { return 0; }
     if (k->point_at) { snprintf(point, sizeof point, ", point %d", k->point_at + 1); }
     cli_complain("--calibration: %s: %s%s: %s: nothing was started", im->at[k->image_at].path,
-                 k->what, point, exh_error_text(k->refused));
+        k->what, point, exh_error_text(k->refused));
     say_whose(im, sc, k->image_at);
     return 1;
 }

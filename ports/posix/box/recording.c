@@ -44,10 +44,7 @@ static int bad(const struct reader *in, int column, const char *what)
     return 2;
 }
 
-static int is_separator(int c)
-{
-    return c == ',' || c == ';' || c == ' ' || c == '\t';
-}
+static int is_separator(int c) { return c == ',' || c == ';' || c == ' ' || c == '\t'; }
 
 /* The next field of the line, without blanks around; 0 at the end of the file. A longer one
  * is cut off, which makes it no number. */
@@ -173,12 +170,12 @@ static int settle_unit(struct reader *in, struct recording *r)
     if (codes && (in->lo < -32768 || in->hi > 32767 || !in->whole)) {
         cli_complain("%s: %.9g..%.9g: codes are whole numbers -32768..32767: --unit says what else "
                      "they are",
-                     in->path, in->lo, in->hi);
+            in->path, in->lo, in->hi);
         return 2;
     }
     if (!codes && (in->lo * unit < -PI || in->hi * unit > PI)) {
         cli_complain("%s: %.9g..%.9g: angles are within half a turn: --unit says what they are",
-                     in->path, in->lo, in->hi);
+            in->path, in->lo, in->hi);
         return 2;
     }
     for (long n = 0; !codes && n < r->rows; n++) {

@@ -70,10 +70,7 @@ static void before(uint32_t tick, struct exh_scene_in *in)
     dumpfile_before(tick, in);
 }
 
-static double si(int32_t raw, int frac)
-{
-    return (double)raw / (double)(INT64_C(1) << frac);
-}
+static double si(int32_t raw, int frac) { return (double)raw / (double)(INT64_C(1) << frac); }
 
 /* The mass is held until the box runs; one that will not is no experiment, unless somebody else
  * commands it. */
@@ -162,7 +159,7 @@ static int other_rate(const struct run_cfg *c, const struct exh_scene *sc)
     if (only_Hz && c->rate_Hz != only_Hz) {
         cli_complain("rate: %lu Hz: this controller was made for %lu Hz (MODEL_RATE): give --rate "
                      "%lu, or one made for another",
-                     (unsigned long)c->rate_Hz, (unsigned long)only_Hz, (unsigned long)only_Hz);
+            (unsigned long)c->rate_Hz, (unsigned long)only_Hz, (unsigned long)only_Hz);
         return 1;
     }
     return 0;
@@ -175,7 +172,7 @@ static int complain(const struct run_cfg *c, const struct exh_scene *sc)
         cli_complain("%s: no input of the slot or parameter is named so (--custom --params lists "
                      "them): name the "
                      "model's port otherwise, or MODEL_MAP=%s=NAME",
-                     cli_scene_more_unknown(), cli_scene_more_unknown());
+            cli_scene_more_unknown(), cli_scene_more_unknown());
         return 1;
     }
     return images_complain(c->images, sc);
@@ -257,7 +254,7 @@ int run_drop(const struct run_cfg *c, struct run *r)
         } else if (err == -EXH_E_RATE) {
             if (!other_rate(c, run.scene)) {
                 cli_complain("rate: %lu Hz (allowed 1..%lu): choose one in that range",
-                             (unsigned long)c->rate_Hz, (unsigned long)exh_board_info.rate_max_Hz);
+                    (unsigned long)c->rate_Hz, (unsigned long)exh_board_info.rate_max_Hz);
             }
         } else if (err < 0 && !complain(c, run.scene)) {
             cli_setup_complain(run.scene->params, (double)c->rate_Hz, err);

@@ -7,8 +7,12 @@
 #include <string.h>
 
 const struct table2_row table2_paper[TABLE2_ROWS] = {
-    {90, 1500, 0, 1374},    {100, 2000, 0, 1506},     {200, 2000, 15, 7203},
-    {500, 6000, 20, 11977}, {1000, 10000, 40, 18936}, {2000, 20000, 60, 50004},
+    {90, 1500, 0, 1374},
+    {100, 2000, 0, 1506},
+    {200, 2000, 15, 7203},
+    {500, 6000, 20, 11977},
+    {1000, 10000, 40, 18936},
+    {2000, 20000, 60, 50004},
 };
 
 const struct table2_row *table2_at(double rate_Hz)
@@ -87,7 +91,7 @@ static void write_fall(const struct fall_log *log, const char *prefix, struct ta
     for (size_t i = log->start[0]; !bad && i < end; i++) {
         const struct fall_sample *s = &log->sample[i];
         bad = fprintf(f, "%.9f,%.9g,%.9g,%.9g,%.9g,%d,%.9g\n", s->t_s, s->q_m, s->qd_mps,
-                      s->f_des_N, s->i_des_A, s->c, s->f_mon_N) < 0;
+                  s->f_des_N, s->i_des_A, s->c, s->f_mon_N) < 0;
     }
     if (f != NULL && fclose(f) != 0) { bad = 1; }
     if (bad) {
@@ -96,8 +100,8 @@ static void write_fall(const struct fall_log *log, const char *prefix, struct ta
     }
 }
 
-static void judge_stiffness(const struct run *run, const char *plot_prefix, enum table2_ask ask,
-                            struct table2_result *r)
+static void judge_stiffness(
+    const struct run *run, const char *plot_prefix, enum table2_ask ask, struct table2_result *r)
 {
     struct fall_opt opt = fall_opt_default;
     struct fall_stiffness s;
@@ -133,8 +137,8 @@ static void judge_stiffness(const struct run *run, const char *plot_prefix, enum
     fall_stiffness_free(&s);
 }
 
-struct table2_result table2_measure_more(const struct run_cfg *c, const char *plot_prefix,
-                                         enum table2_ask ask, table2_judge *more)
+struct table2_result table2_measure_more(
+    const struct run_cfg *c, const char *plot_prefix, enum table2_ask ask, table2_judge *more)
 {
     struct table2_result r;
     struct run run;
@@ -158,8 +162,8 @@ struct table2_result table2_measure_more(const struct run_cfg *c, const char *pl
     return r;
 }
 
-struct table2_result table2_measure(const struct run_cfg *c, const char *plot_prefix,
-                                    enum table2_ask ask)
+struct table2_result table2_measure(
+    const struct run_cfg *c, const char *plot_prefix, enum table2_ask ask)
 {
     return table2_measure_more(c, plot_prefix, ask, NULL);
 }

@@ -48,14 +48,14 @@ enum table2_ask {
 };
 
 /* Runs and judges; with a plot prefix also writes what the force-over-position picture needs. */
-struct table2_result table2_measure(const struct run_cfg *c, const char *plot_prefix,
-                                    enum table2_ask ask);
+struct table2_result table2_measure(
+    const struct run_cfg *c, const char *plot_prefix, enum table2_ask ask);
 
 /* Judges a run besides: what it finds goes to reading_Npm. */
-typedef void table2_judge(const struct fall_log *log, const struct sim_device *d,
-                          struct table2_result *r);
-struct table2_result table2_measure_more(const struct run_cfg *c, const char *plot_prefix,
-                                         enum table2_ask ask, table2_judge *more);
+typedef void table2_judge(
+    const struct fall_log *log, const struct sim_device *d, struct table2_result *r);
+struct table2_result table2_measure_more(
+    const struct run_cfg *c, const char *plot_prefix, enum table2_ask ask, table2_judge *more);
 
 /* The result is void: said on stderr. */
 void table2_failed(struct table2_result *r, const char *what, const char *why);

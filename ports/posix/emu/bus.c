@@ -64,27 +64,12 @@ static void out(uint16_t port, unsigned width_B, uint16_t value)
     emu_out(box, port, width_B, value);
 }
 
-uint8_t exh_io_in8(uint16_t port)
-{
-    return (uint8_t)in(port, 1);
-}
+uint8_t exh_io_in8(uint16_t port) { return (uint8_t)in(port, 1); }
 
-void exh_io_out8(uint16_t port, uint8_t value)
-{
-    out(port, 1, value);
-}
+void exh_io_out8(uint16_t port, uint8_t value) { out(port, 1, value); }
 
-uint16_t exh_io_in16(uint16_t port)
-{
-    return (uint16_t)in(port, 2);
-}
+uint16_t exh_io_in16(uint16_t port) { return (uint16_t)in(port, 2); }
 
-void exh_io_out16(uint16_t port, uint16_t value)
-{
-    out(port, 2, value);
-}
+void exh_io_out16(uint16_t port, uint16_t value) { out(port, 2, value); }
 
-uint32_t exh_io_time_us(void)
-{
-    return box ? (uint32_t)(box->time_ns / 1000) : 0;
-}
+uint32_t exh_io_time_us(void) { return box ? (uint32_t)(box->time_ns / 1000) : 0; }

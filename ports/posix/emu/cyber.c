@@ -30,10 +30,7 @@ static uint8_t noise(struct emu_cyber *g)
     return (uint8_t)(g->noise >> 24);
 }
 
-static int has_status(const struct emu_cyber *g)
-{
-    return g->forced ? g->forced == 1 : g->status;
-}
+static int has_status(const struct emu_cyber *g) { return g->forced ? g->forced == 1 : g->status; }
 
 static void say_garbage(struct emu_cyber *g)
 {

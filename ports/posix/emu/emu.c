@@ -36,10 +36,7 @@ void emu_box_open(struct emu_box *b, const struct emu_config *c)
 
 /* --- what is wrong --- */
 
-void emu_enter(struct emu_box *b, enum emu_phase phase)
-{
-    b->phase = (uint8_t)phase;
-}
+void emu_enter(struct emu_box *b, enum emu_phase phase) { b->phase = (uint8_t)phase; }
 
 static uint8_t is_wrong(const struct emu_box *b, unsigned card, enum emu_kind kind)
 {
@@ -181,23 +178,15 @@ void emu_hasten(struct emu_box *b)
 
 const char *emu_kind_text(unsigned kind)
 {
-    static const char *const text[EMU_KINDS] = {"well",
-                                                "absent",
-                                                "stuck busy",
-                                                "lost conversion",
-                                                "FIFO overflow",
-                                                "wrong read order",
-                                                "stuck encoder line",
-                                                "noisy encoder line",
-                                                "D/A never updates",
-                                                "D/A silently never updates",
-                                                "EEPROM garbage"};
+    static const char *const text[EMU_KINDS] = {"well", "absent", "stuck busy", "lost conversion",
+        "FIFO overflow", "wrong read order", "stuck encoder line", "noisy encoder line",
+        "D/A never updates", "D/A silently never updates", "EEPROM garbage"};
     return kind < EMU_KINDS ? text[kind] : "?";
 }
 
 const char *emu_phase_text(unsigned phase)
 {
-    static const char *const text[EMU_PHASES] = {"detect",    "self-test",  "calibration",
-                                                 "tick read", "tick write", "safe"};
+    static const char *const text[EMU_PHASES] = {
+        "detect", "self-test", "calibration", "tick read", "tick write", "safe"};
     return phase < EMU_PHASES ? text[phase] : "?";
 }

@@ -77,8 +77,8 @@ static int16_t code_of(const struct emu_mm32xat *c, int32_t v_uV)
 {
     const unsigned range = c->reg[RANGE] & 0xFu;
     if (!(range & RANGE_10V) && range & RANGE_UNI) { return -1; } /* there is no such range */
-    return emu_ad_code_gain(v_uV, (range & 3) + (range & RANGE_10V ? 0 : 1),
-                            range & RANGE_UNI ? 1 : 0);
+    return emu_ad_code_gain(
+        v_uV, (range & 3) + (range & RANGE_10V ? 0 : 1), range & RANGE_UNI ? 1 : 0);
 }
 
 static unsigned fifo_size(const struct emu_mm32xat *c)
@@ -106,8 +106,8 @@ static void interrupt_if(struct emu_mm32xat *c, int scan_over)
     }
 }
 
-static void convert(struct emu_mm32xat *c, const struct emu_pins *pins,
-                    const struct emu_mm32xat_wrong *w)
+static void convert(
+    struct emu_mm32xat *c, const struct emu_pins *pins, const struct emu_mm32xat_wrong *w)
 {
     const unsigned settled = c->next_ns < c->wait_ns ? c->settled_channel : c->channel;
     if (w->lost && !c->lost_of_scan) {
@@ -151,7 +151,7 @@ static int paced(const struct emu_mm32xat *c)
 }
 
 void emu_mm32xat_advance(struct emu_mm32xat *c, const struct emu_pins *pins,
-                         const struct emu_mm32xat_wrong *w, uint64_t now_ns)
+    const struct emu_mm32xat_wrong *w, uint64_t now_ns)
 {
     for (;;) {
         const int scans = c->scan_left && !w->busy;
@@ -258,8 +258,8 @@ static void out_timer(struct emu_mm32xat *c, unsigned i, uint8_t value)
     }
 }
 
-static void out_paged(struct emu_mm32xat *c, const struct emu_mm32xat_wrong *w, unsigned i,
-                      uint8_t value)
+static void out_paged(
+    struct emu_mm32xat *c, const struct emu_mm32xat_wrong *w, unsigned i, uint8_t value)
 {
     if (c->page == 0) {
         out_timer(c, i, value);
@@ -291,7 +291,7 @@ static void wait_from(struct emu_mm32xat *c, uint64_t now_ns)
 }
 
 uint8_t emu_mm32xat_in(struct emu_mm32xat *c, const struct emu_pins *pins,
-                       const struct emu_mm32xat_wrong *w, unsigned offset, uint64_t now_ns)
+    const struct emu_mm32xat_wrong *w, unsigned offset, uint64_t now_ns)
 {
     const unsigned stuck = w->busy ? BUSY : 0;
     emu_mm32xat_advance(c, pins, w, now_ns);
@@ -334,8 +334,7 @@ static void out_interrupt(struct emu_mm32xat *c, uint8_t value, uint64_t now_ns)
 }
 
 void emu_mm32xat_out(struct emu_mm32xat *c, const struct emu_pins *pins,
-                     const struct emu_mm32xat_wrong *w, unsigned offset, uint8_t value,
-                     uint64_t now_ns)
+    const struct emu_mm32xat_wrong *w, unsigned offset, uint8_t value, uint64_t now_ns)
 {
     emu_mm32xat_advance(c, pins, w, now_ns);
     if (now_ns < c->reset_ns) { return; }

@@ -74,12 +74,11 @@ void emu_mm32xat_reset(struct emu_mm32xat *c, const struct emu_mm32xat_config *c
 
 /* Everything due up to now_ns. */
 void emu_mm32xat_advance(struct emu_mm32xat *c, const struct emu_pins *pins,
-                         const struct emu_mm32xat_wrong *w, uint64_t now_ns);
+    const struct emu_mm32xat_wrong *w, uint64_t now_ns);
 
 uint8_t emu_mm32xat_in(struct emu_mm32xat *c, const struct emu_pins *pins,
-                       const struct emu_mm32xat_wrong *w, unsigned offset, uint64_t now_ns);
+    const struct emu_mm32xat_wrong *w, unsigned offset, uint64_t now_ns);
 void emu_mm32xat_out(struct emu_mm32xat *c, const struct emu_pins *pins,
-                     const struct emu_mm32xat_wrong *w, unsigned offset, uint8_t value,
-                     uint64_t now_ns);
+    const struct emu_mm32xat_wrong *w, unsigned offset, uint8_t value, uint64_t now_ns);
 
 #endif

@@ -7,10 +7,7 @@
 #define DA_UV_REST 2557
 #define DA_CODES   3249
 
-static int32_t limit(int32_t v, int32_t lo, int32_t hi)
-{
-    return v < lo ? lo : v > hi ? hi : v;
-}
+static int32_t limit(int32_t v, int32_t lo, int32_t hi) { return v < lo ? lo : v > hi ? hi : v; }
 
 /* Division of what may be negative, rounded down; d > 0. */
 static int32_t floor_div(int32_t n, int32_t d)
@@ -43,10 +40,7 @@ int16_t emu_ad_code_gain(int32_t v_uV, unsigned gain, int unipolar)
     return (int16_t)limit(code, -32768, 32767);
 }
 
-int16_t emu_ad_code(int32_t v_uV)
-{
-    return emu_ad_code_gain(v_uV, 0, 0);
-}
+int16_t emu_ad_code(int32_t v_uV) { return emu_ad_code_gain(v_uV, 0, 0); }
 
 int32_t emu_ad_uV(int16_t code)
 {

@@ -140,7 +140,7 @@ static int32_t da_uV(const struct emu_s526_config *c, unsigned ch, uint16_t code
 }
 
 static void update_outputs(struct emu_s526 *c, struct emu_pins *pins, unsigned card,
-                           const struct emu_s526_wrong *w, uint64_t now_ns)
+    const struct emu_s526_wrong *w, uint64_t now_ns)
 {
     if (!w->da_dead) { c->da_done_ns = now_ns + c->cfg.update_ns; }
     if (w->da_dead || w->da_mute) { return; }
@@ -161,7 +161,7 @@ static void reset_outputs(struct emu_s526 *c, struct emu_pins *pins, unsigned ca
 }
 
 static void out_dac(struct emu_s526 *c, struct emu_pins *pins, unsigned card,
-                    const struct emu_s526_wrong *w, uint16_t value, uint64_t now_ns)
+    const struct emu_s526_wrong *w, uint16_t value, uint64_t now_ns)
 {
     c->dac = value;
     if (value & DA_RESET && !w->da_dead && !w->da_mute) { reset_outputs(c, pins, card); }
@@ -170,8 +170,8 @@ static void out_dac(struct emu_s526 *c, struct emu_pins *pins, unsigned card,
 
 /* --- A/D --- */
 
-static int16_t converted(const struct emu_s526 *c, const struct emu_pins *pins, unsigned card,
-                         unsigned ch)
+static int16_t converted(
+    const struct emu_s526 *c, const struct emu_pins *pins, unsigned card, unsigned ch)
 {
     int32_t code;
     if (ch == EMU_S526_REF_0V) {
@@ -186,7 +186,7 @@ static int16_t converted(const struct emu_s526 *c, const struct emu_pins *pins, 
 }
 
 static void out_adc(struct emu_s526 *c, const struct emu_pins *pins, unsigned card,
-                    struct emu_s526_wrong *w, uint16_t value, uint64_t now_ns)
+    struct emu_s526_wrong *w, uint16_t value, uint64_t now_ns)
 {
     uint64_t takes_ns = value & AD_SETTLE ? c->cfg.settle_ns : 0;
     c->adc = value;
@@ -241,7 +241,7 @@ static void sync(struct emu_s526 *c, const struct emu_s526_wrong *w, uint64_t no
 
 /* Where the lines are, in steps of the mode: 1, 2 or 4 to a period. */
 static int32_t place(struct emu_s526_counter *n, struct emu_pins *pins, unsigned card, unsigned i,
-                     const struct emu_s526_wrong *w, uint32_t *state)
+    const struct emu_s526_wrong *w, uint32_t *state)
 {
     const unsigned clock = n->mode >> 9 & 3;
     int32_t at = pins->enc_cnt[card][i];
@@ -263,7 +263,7 @@ static int32_t place(struct emu_s526_counter *n, struct emu_pins *pins, unsigned
 }
 
 static void count(struct emu_s526 *c, struct emu_pins *pins, unsigned card, unsigned i,
-                  const struct emu_s526_wrong *w)
+    const struct emu_s526_wrong *w)
 {
     struct emu_s526_counter *n = &c->counter[i];
     const unsigned enable = n->mode >> 7 & 3;
@@ -279,7 +279,7 @@ static void count(struct emu_s526 *c, struct emu_pins *pins, unsigned card, unsi
 }
 
 static void set_mode(struct emu_s526 *c, struct emu_pins *pins, unsigned card, unsigned i,
-                     const struct emu_s526_wrong *w, uint16_t mode)
+    const struct emu_s526_wrong *w, uint16_t mode)
 {
     struct emu_s526_counter *n = &c->counter[i];
     count(c, pins, card, i, w);
@@ -289,7 +289,7 @@ static void set_mode(struct emu_s526 *c, struct emu_pins *pins, unsigned card, u
 
 /* The load comes now from one preload register, now from the other: nobody knows which. */
 static void control(struct emu_s526 *c, struct emu_pins *pins, unsigned card, unsigned i,
-                    const struct emu_s526_wrong *w, uint16_t value)
+    const struct emu_s526_wrong *w, uint16_t value)
 {
     struct emu_s526_counter *n = &c->counter[i];
     count(c, pins, card, i, w);
@@ -300,7 +300,7 @@ static void control(struct emu_s526 *c, struct emu_pins *pins, unsigned card, un
 }
 
 static uint16_t in_counter(struct emu_s526 *c, struct emu_pins *pins, unsigned card,
-                           const struct emu_s526_wrong *w, unsigned i, unsigned word)
+    const struct emu_s526_wrong *w, unsigned i, unsigned word)
 {
     struct emu_s526_counter *n = &c->counter[i];
     count(c, pins, card, i, w);
@@ -316,7 +316,7 @@ static uint16_t in_counter(struct emu_s526 *c, struct emu_pins *pins, unsigned c
 }
 
 static void out_counter(struct emu_s526 *c, struct emu_pins *pins, unsigned card,
-                        const struct emu_s526_wrong *w, unsigned i, unsigned word, uint16_t value)
+    const struct emu_s526_wrong *w, unsigned i, unsigned word, uint16_t value)
 {
     struct emu_s526_counter *n = &c->counter[i];
     switch (word) {
@@ -347,8 +347,8 @@ void emu_s526_dark(struct emu_pins *pins, unsigned card)
     pins->dout[card] = 0;
 }
 
-void emu_s526_reset(struct emu_s526 *c, const struct emu_s526_config *cfg, struct emu_pins *pins,
-                    unsigned card)
+void emu_s526_reset(
+    struct emu_s526 *c, const struct emu_s526_config *cfg, struct emu_pins *pins, unsigned card)
 {
     memset(c, 0, sizeof *c);
     c->cfg = *cfg;
@@ -359,7 +359,7 @@ void emu_s526_reset(struct emu_s526 *c, const struct emu_s526_config *cfg, struc
 }
 
 uint16_t emu_s526_in(struct emu_s526 *c, struct emu_pins *pins, unsigned card,
-                     struct emu_s526_wrong *w, unsigned offset, uint64_t now_ns)
+    struct emu_s526_wrong *w, unsigned offset, uint64_t now_ns)
 {
     sync(c, w, now_ns);
     if (offset & 1 || offset >= END) { return ALL_ONES; }
@@ -382,13 +382,13 @@ uint16_t emu_s526_in(struct emu_s526 *c, struct emu_pins *pins, unsigned card,
 }
 
 void emu_s526_out(struct emu_s526 *c, struct emu_pins *pins, unsigned card,
-                  struct emu_s526_wrong *w, unsigned offset, uint16_t value, uint64_t now_ns)
+    struct emu_s526_wrong *w, unsigned offset, uint16_t value, uint64_t now_ns)
 {
     sync(c, w, now_ns);
     if (offset & 1 || offset >= END) { return; }
     if (offset >= COUNTERS && offset < COUNTERS_END) {
-        out_counter(c, pins, card, w, (offset - COUNTERS) >> 3, (offset - COUNTERS) >> 1 & 3,
-                    value);
+        out_counter(
+            c, pins, card, w, (offset - COUNTERS) >> 3, (offset - COUNTERS) >> 1 & 3, value);
         return;
     }
     switch (offset) {

@@ -75,13 +75,13 @@ struct emu_s526 {
     uint32_t noise; /* state of a generator */
 };
 
-void emu_s526_reset(struct emu_s526 *c, const struct emu_s526_config *cfg, struct emu_pins *pins,
-                    unsigned card);
+void emu_s526_reset(
+    struct emu_s526 *c, const struct emu_s526_config *cfg, struct emu_pins *pins, unsigned card);
 
 uint16_t emu_s526_in(struct emu_s526 *c, struct emu_pins *pins, unsigned card,
-                     struct emu_s526_wrong *w, unsigned offset, uint64_t now_ns);
+    struct emu_s526_wrong *w, unsigned offset, uint64_t now_ns);
 void emu_s526_out(struct emu_s526 *c, struct emu_pins *pins, unsigned card,
-                  struct emu_s526_wrong *w, unsigned offset, uint16_t value, uint64_t now_ns);
+    struct emu_s526_wrong *w, unsigned offset, uint16_t value, uint64_t now_ns);
 
 /* Without power: no output, no line driven. */
 void emu_s526_dark(struct emu_pins *pins, unsigned card);

@@ -18,10 +18,10 @@ static int calibrate(int argc, char **argv)
 static const struct program_command command[] = {
     {"advise", "freeze: where q_lim stands still, how far to look; gains: stable k, b", cli_advise},
     {"bilateral", "hand, glove, link and world: contacts as in the paper's second experiment",
-     cli_bilateral},
+        cli_bilateral},
     {"bringup", "first power-up, step by step, rehearsed on the simulated device", cli_bringup},
     {"calibrate", "known masses, F0 and home: tables of force and current; or --glove, poses",
-     calibrate},
+        calibrate},
     {"drop", "the paper's falling-mass experiment on the simulated device", cli_drop},
     {"glove", "glove codes to stable angles and fingertips; the paper's Table I", cli_glove},
     {"csv", "a log as comma-separated values", cli_csv},

@@ -30,8 +30,8 @@ enum fall_status fall_check_log(const struct fall_log *log)
 }
 
 /* The next contact of a fall at or after `from`; 0 if there is none. */
-static int next_contact(const struct fall_log *log, size_t fall, size_t from,
-                        struct fall_contact *out)
+static int next_contact(
+    const struct fall_log *log, size_t fall, size_t from, struct fall_contact *out)
 {
     const size_t end = fall_end(log, fall);
     size_t i = from;
@@ -62,8 +62,8 @@ static size_t scan(const struct fall_log *log, size_t min_samples, struct fall_c
     return n;
 }
 
-enum fall_status fall_dissect(const struct fall_log *log, size_t min_samples,
-                              struct fall_contacts *out)
+enum fall_status fall_dissect(
+    const struct fall_log *log, size_t min_samples, struct fall_contacts *out)
 {
     *out = (struct fall_contacts){NULL, 0};
     const enum fall_status status = fall_check_log(log);

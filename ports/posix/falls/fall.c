@@ -31,7 +31,4 @@ const char *fall_status_text(enum fall_status status)
 }
 
 /* Never a null pointer for an empty list; calloc refuses a product that wraps. */
-void *fall_alloc(size_t n, size_t size_B)
-{
-    return calloc(n ? n : 1, size_B);
-}
+void *fall_alloc(size_t n, size_t size_B) { return calloc(n ? n : 1, size_B); }

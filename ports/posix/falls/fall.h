@@ -93,10 +93,7 @@ extern const struct fall_opt fall_opt_default;
 #define FALL_VALUE_MAX 1e9
 
 /* False for NaN too: a NaN compares false with everything. */
-static inline int fall_sane(double x)
-{
-    return x > -FALL_VALUE_MAX && x < FALL_VALUE_MAX;
-}
+static inline int fall_sane(double x) { return x > -FALL_VALUE_MAX && x < FALL_VALUE_MAX; }
 
 /* fall.c: an empty list has a pointer, too; calloc refuses a product that wraps. */
 void *fall_alloc(size_t n, size_t size_B);

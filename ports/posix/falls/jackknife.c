@@ -11,8 +11,8 @@
  * within 1e-4 from 10 degrees on. */
 static double t_quantile(size_t degrees)
 {
-    static const double exact[] = {12.7062, 4.3027, 3.1824, 2.7764, 2.5706,
-                                   2.4469,  2.3646, 2.3060, 2.2622};
+    static const double exact[] = {
+        12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.3646, 2.3060, 2.2622};
     const double z = 1.959963985, z2 = z * z, n = (double)degrees;
     if (degrees <= sizeof exact / sizeof exact[0]) { return exact[degrees - 1]; }
     return z + z * (z2 + 1) / (4 * n) + z * ((5 * z2 + 16) * z2 + 3) / (96 * n * n) +
@@ -76,19 +76,17 @@ static int has_line(const struct fall_fit *fit)
 }
 
 static void intervals(const struct fall_fit *fit, const struct spread *of_a,
-                      const struct spread *of_slope, struct fall_interval *a,
-                      struct fall_interval *b)
+    const struct spread *of_slope, struct fall_interval *a, struct fall_interval *b)
 {
     const double slope = slope_mpN(fit), by = reach(of_slope), by_a = reach(of_a);
     *a = (struct fall_interval){FALL_OK, fit->a_Npm - by_a, fit->a_Npm + by_a, of_a->n};
-    *b = (struct fall_interval){FALL_OK, inverse_or_0(slope + by), inverse_or_0(slope - by),
-                                of_a->n};
+    *b = (struct fall_interval){
+        FALL_OK, inverse_or_0(slope + by), inverse_or_0(slope - by), of_a->n};
     if (!(b->hi_Npm > 0.0)) { b->status = FALL_UNBOUNDED; }
 }
 
 enum fall_status fall_jackknife(const struct fall_pairs *sorted, size_t falls,
-                                enum fall_force force, struct fall_interval *a,
-                                struct fall_interval *b)
+    enum fall_force force, struct fall_interval *a, struct fall_interval *b)
 {
     struct fall_pairs rest = {NULL, 0}, averaged = {NULL, 0};
     struct spread of_a = {0, 0, 0, 0}, of_slope = {0, 0, 0, 0};

@@ -21,7 +21,6 @@ struct fall_interval {
  * It covers the mean of the estimator, which is not k: `make coverage` shows both, and
  * that the percentiles of a bootstrap over ten falls, which this replaces, do not. */
 enum fall_status fall_jackknife(const struct fall_pairs *sorted, size_t falls,
-                                enum fall_force force, struct fall_interval *a,
-                                struct fall_interval *b);
+    enum fall_force force, struct fall_interval *a, struct fall_interval *b);
 
 #endif

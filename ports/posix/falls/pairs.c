@@ -17,7 +17,7 @@ void fall_pairs_free(struct fall_pairs *pairs)
 }
 
 enum fall_status fall_pool(const struct fall_log *log, const struct fall_contacts *contacts,
-                           size_t lag, struct fall_pairs *out)
+    size_t lag, struct fall_pairs *out)
 {
     size_t n = 0;
 
@@ -40,8 +40,8 @@ enum fall_status fall_pool(const struct fall_log *log, const struct fall_contact
 
 /* Merges [lo, mid) and [mid, hi); of two equal forces the left one goes first,
  * which is what makes the sort stable. */
-static void merge(const struct fall_pair *from, struct fall_pair *to, size_t lo, size_t mid,
-                  size_t hi)
+static void merge(
+    const struct fall_pair *from, struct fall_pair *to, size_t lo, size_t mid, size_t hi)
 {
     size_t left = lo, right = mid;
 
@@ -73,8 +73,8 @@ static enum fall_status sort_by_force(struct fall_pairs *p)
     return FALL_OK;
 }
 
-enum fall_status fall_band(const struct fall_pairs *in, double lo_N, double hi_N,
-                           struct fall_pairs *out)
+enum fall_status fall_band(
+    const struct fall_pairs *in, double lo_N, double hi_N, struct fall_pairs *out)
 {
     if (fall_pairs_alloc(out, in->n) != FALL_OK) { return FALL_NO_MEMORY; }
     for (size_t i = 0; i < in->n; i++) {
@@ -103,15 +103,15 @@ static struct fall_pair window(const struct fall_pair *first, enum fall_force fo
 }
 
 /* `out` has room for as many pairs as `sorted` holds. */
-void fall_average_into(const struct fall_pairs *sorted, enum fall_force force,
-                       struct fall_pairs *out)
+void fall_average_into(
+    const struct fall_pairs *sorted, enum fall_force force, struct fall_pairs *out)
 {
     out->n = sorted->n < FALL_WINDOW ? 0 : sorted->n - (FALL_WINDOW - 1);
     for (size_t i = 0; i < out->n; i++) { out->at[i] = window(&sorted->at[i], force); }
 }
 
-enum fall_status fall_average(const struct fall_pairs *sorted, enum fall_force force,
-                              struct fall_pairs *out)
+enum fall_status fall_average(
+    const struct fall_pairs *sorted, enum fall_force force, struct fall_pairs *out)
 {
     if (fall_pairs_alloc(out, sorted->n) != FALL_OK) { return FALL_NO_MEMORY; }
     fall_average_into(sorted, force, out);

@@ -51,7 +51,7 @@ static enum fall_rest_class judge(double travel_m, double force_N, const struct 
 }
 
 static void rest_of_fall(const struct fall_log *log, const struct fall_contact *contact,
-                         const struct fall_rest_opt *opt, struct fall_rest *out)
+    const struct fall_rest_opt *opt, struct fall_rest *out)
 {
     const size_t first = log->start[contact->fall], end = fall_end(log, contact->fall);
     struct span w = {0.0, 0.0, 0.0, 0.0, 0, 0};
@@ -90,7 +90,7 @@ static int rest_opt_ok(const struct fall_rest_opt *o)
 }
 
 enum fall_status fall_rest(const struct fall_log *log, const struct fall_contacts *contacts,
-                           const struct fall_rest_opt *opt, struct fall_rest *out)
+    const struct fall_rest_opt *opt, struct fall_rest *out)
 {
     const enum fall_status status = fall_check_log(log);
 

@@ -46,6 +46,6 @@ struct fall_rest {
  * incomplete; so that a slow rate can have 3 at all, it is four ticks long at least.
  * BUZZ and AT_REST both count as come to rest. */
 enum fall_status fall_rest(const struct fall_log *log, const struct fall_contacts *contacts,
-                           const struct fall_rest_opt *opt, struct fall_rest *out);
+    const struct fall_rest_opt *opt, struct fall_rest *out);
 
 #endif

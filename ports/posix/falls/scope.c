@@ -53,8 +53,8 @@ static void widen(const struct fall_log *log, struct fall_contacts *c)
     }
 }
 
-enum fall_status fall_dissect_scope(const struct fall_log *log, const struct fall_opt *opt,
-                                    struct fall_contacts *out)
+enum fall_status fall_dissect_scope(
+    const struct fall_log *log, const struct fall_opt *opt, struct fall_contacts *out)
 {
     const enum fall_status status = fall_dissect(log, opt->min_samples, out);
     if (status != FALL_OK) { return status; }

@@ -15,8 +15,8 @@ static int opt_ok(const struct fall_opt *opt)
            fall_sane(opt->step_m);
 }
 
-enum fall_status fall_stiffness(const struct fall_log *log, const struct fall_opt *opt,
-                                struct fall_stiffness *out)
+enum fall_status fall_stiffness(
+    const struct fall_log *log, const struct fall_opt *opt, struct fall_stiffness *out)
 {
     struct fall_contacts contacts;
 
@@ -61,7 +61,7 @@ static enum fall_status write_pairs(const char *path, const struct fall_pair *at
 }
 
 enum fall_status fall_write_plot(const struct fall_stiffness *s, enum fall_direction direction,
-                                 const struct fall_plot_paths *paths)
+    const struct fall_plot_paths *paths)
 {
     const struct fall_fit *fit = &s->fit;
     struct fall_pair end[2] = {{fit->q_min_m, fit->f_min_N, 0}, {fit->q_max_m, fit->f_max_N, 0}};

@@ -16,8 +16,8 @@ struct fall_stiffness {
 };
 
 /* The whole chain. OK also when there is no line: look at fit.status. */
-enum fall_status fall_stiffness(const struct fall_log *log, const struct fall_opt *opt,
-                                struct fall_stiffness *out);
+enum fall_status fall_stiffness(
+    const struct fall_log *log, const struct fall_opt *opt, struct fall_stiffness *out);
 void fall_stiffness_free(struct fall_stiffness *s);
 
 /* --- files for plot/force_position.gp --- */
@@ -33,6 +33,6 @@ struct fall_plot_paths {
 /* The line spans the averaged data in the direction's own free variable: q for A,
  * force for B. Without a line its file holds the header only. */
 enum fall_status fall_write_plot(const struct fall_stiffness *s, enum fall_direction direction,
-                                 const struct fall_plot_paths *paths);
+    const struct fall_plot_paths *paths);
 
 #endif

@@ -27,7 +27,7 @@ void bench_start(struct bench *b, struct plant *p, const struct sim_device *d, u
 }
 
 void bench_prepare(struct bench *b, const struct plant *p, struct sim_random *r,
-                   enum bench_place place, double mass_kg)
+    enum bench_place place, double mass_kg)
 {
     b->place = place;
     if (place == BENCH_MASS) { b->device.mass_kg = mass_kg; }
@@ -38,10 +38,7 @@ void bench_prepare(struct bench *b, const struct plant *p, struct sim_random *r,
     b->to_m = DRAWN_M + 1e-3 * (2 * sim_random_unit(r) - 1);
 }
 
-int bench_ready(const struct bench *b)
-{
-    return !b->moving;
-}
+int bench_ready(const struct bench *b) { return !b->moving; }
 
 /* The hand draws the string from where it is to where it is wanted. */
 static void guide(struct bench *b, struct plant *p)

@@ -41,7 +41,7 @@ void bench_start(struct bench *b, struct plant *p, const struct sim_device *d, u
 
 /* The person prepares another place; ready when it is done, after about a second. */
 void bench_prepare(struct bench *b, const struct plant *p, struct sim_random *r,
-                   enum bench_place place, double mass_kg);
+    enum bench_place place, double mass_kg);
 int bench_ready(const struct bench *b);
 
 /* As plant_advance(), with the hand, the end and the stand in the string's way. */

@@ -15,8 +15,8 @@ static inline int64_t sim_floor(double v)
 }
 
 /* The 24-bit counter at this string; grid: the encoder's phase, counts; jitter: counts. */
-static inline uint32_t sim_encoder_raw(const struct sim_device *d, double q_m, double grid,
-                                       double jitter)
+static inline uint32_t sim_encoder_raw(
+    const struct sim_device *d, double q_m, double grid, double jitter)
 {
     const int64_t cnt = sim_floor(q_m * d->decode / d->step_m + grid + d->enc_start + jitter);
     return (uint32_t)((uint64_t)cnt & 0xFFFFFF);
@@ -30,8 +30,8 @@ static inline int16_t sim_monitor_code(const struct sim_device *d, double mon_A)
 }
 
 /* and with its noise. */
-static inline int16_t sim_monitor_raw(const struct sim_device *d, double mon_A,
-                                      struct sim_random *r)
+static inline int16_t sim_monitor_raw(
+    const struct sim_device *d, double mon_A, struct sim_random *r)
 {
     return sim_monitor_code(d, mon_A + d->mon_noise_a * sim_random_bell(r));
 }

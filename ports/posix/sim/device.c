@@ -47,11 +47,11 @@ const struct sim_device_row sim_device_row[] = {
     {"rail", "v", 24, 0, 100, "paper", "the drives' supply without load"},
     {"rail_ohm", "ohm", 0.1, 0, 10, "ours", "it falls by this times the sum of the currents"},
     {"rail_scale", "v", 4 * 10 / 32768.0, 1e-6, 1, "ours",
-     "volt per code of its monitor, through 1:4"},
+        "volt per code of its monitor, through 1:4"},
 
     {"observe", "s", 5, 0.6, 100, "ours", "each fall is observed this long from first contact"},
     {"substep", "s", 250e-6, 1e-7, 1e-3, "ours",
-     "longest integration step; unless given, shorter where string and rotor want it"},
+        "longest integration step; unless given, shorter where string and rotor want it"},
 };
 const int sim_device_rows = (int)(sizeof sim_device_row / sizeof sim_device_row[0]);
 
@@ -69,7 +69,7 @@ void sim_rows_default(void *values, const struct sim_device_row *rows, int n)
 }
 
 int sim_rows_set(void *values, const struct sim_device_row *rows, int n, const char *name,
-                 double value, const struct sim_device_row **row)
+    double value, const struct sim_device_row **row)
 {
     unsigned char *to = values;
     *row = NULL;
@@ -90,8 +90,8 @@ struct sim_device sim_device_default(void)
     return d;
 }
 
-int sim_device_set(struct sim_device *d, const char *name, double value,
-                   const struct sim_device_row **row)
+int sim_device_set(
+    struct sim_device *d, const char *name, double value, const struct sim_device_row **row)
 {
     return sim_rows_set(d, sim_device_row, sim_device_rows, name, value, row);
 }

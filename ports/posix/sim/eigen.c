@@ -3,10 +3,7 @@
 
 #include <string.h>
 
-static double size_of(double v)
-{
-    return v < 0 ? -v : v;
-}
+static double size_of(double v) { return v < 0 ? -v : v; }
 
 double sim_sqrt(double v)
 {
@@ -79,30 +76,18 @@ struct z {
     double re, im;
 };
 
-static struct z sum(struct z a, struct z b)
-{
-    return (struct z){a.re + b.re, a.im + b.im};
-}
+static struct z sum(struct z a, struct z b) { return (struct z){a.re + b.re, a.im + b.im}; }
 
-static struct z less(struct z a, struct z b)
-{
-    return (struct z){a.re - b.re, a.im - b.im};
-}
+static struct z less(struct z a, struct z b) { return (struct z){a.re - b.re, a.im - b.im}; }
 
 static struct z times(struct z a, struct z b)
 {
     return (struct z){a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
 }
 
-static struct z conjugate(struct z a)
-{
-    return (struct z){a.re, -a.im};
-}
+static struct z conjugate(struct z a) { return (struct z){a.re, -a.im}; }
 
-static double square(struct z a)
-{
-    return a.re * a.re + a.im * a.im;
-}
+static double square(struct z a) { return a.re * a.re + a.im * a.im; }
 
 static struct z z_sqrt(struct z a)
 {

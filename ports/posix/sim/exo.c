@@ -20,10 +20,7 @@ struct sim_exo_par sim_exo_default(void)
     return p;
 }
 
-static int used(const struct sim_exo *e, unsigned i)
-{
-    return (int)(e->fingers >> i & 1);
-}
+static int used(const struct sim_exo *e, unsigned i) { return (int)(e->fingers >> i & 1); }
 
 /* --- the fingers --- */
 
@@ -45,7 +42,7 @@ static void keep_point(struct sim_exo *e, double t_s)
 }
 
 int sim_exo_start(struct sim_exo *e, const struct sim_exo_par *p, const struct sim_device *d,
-                  uint64_t seed, int gloved)
+    uint64_t seed, int gloved)
 {
     double later_s = 0;
     if (p->fingers >> SIM_FINGERS) { return -1; }
@@ -60,7 +57,7 @@ int sim_exo_start(struct sim_exo *e, const struct sim_exo_par *p, const struct s
         later_s += p->apart_s;
         /* A seed of its own: what it does does not hang on which others there are. */
         sim_finger_start(&e->finger[i], &p->finger[i], &path, &p->record[i], d,
-                         seed ^ UINT64_C(0x9E6C63D0876A9A47) * (i + 1));
+            seed ^ UINT64_C(0x9E6C63D0876A9A47) * (i + 1));
     }
     keep_point(e, 0);
     return 0;
@@ -101,7 +98,7 @@ void sim_exo_latch(struct sim_exo *e, const double ref_A[SIM_FINGERS])
 /* --- the glove --- */
 
 void sim_exo_glove(struct sim_exo *e, struct sim_glove *g, const struct sim_glove_par *p,
-                   uint64_t seed, const double rest_rad[SIM_GLOVE_SENSORS])
+    uint64_t seed, const double rest_rad[SIM_GLOVE_SENSORS])
 {
     double at_rad[SIM_GLOVE_SENSORS];
     memcpy(at_rad, rest_rad, sizeof at_rad);
@@ -136,8 +133,8 @@ static void feed(struct sim_exo *e, struct sim_glove *g)
     e->points--;
 }
 
-void sim_exo_frame(struct sim_exo *e, struct sim_glove *g, double tick_s,
-                   int16_t raw[SIM_GLOVE_SENSORS])
+void sim_exo_frame(
+    struct sim_exo *e, struct sim_glove *g, double tick_s, int16_t raw[SIM_GLOVE_SENSORS])
 {
     for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
         const double held_s = sim_glove_held_s(&g->par, i, tick_s);

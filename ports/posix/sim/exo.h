@@ -34,7 +34,7 @@ struct sim_exo {
 
 /* 0, or -1: more fingers than there are. gloved: the way is kept for a glove. */
 int sim_exo_start(struct sim_exo *e, const struct sim_exo_par *p, const struct sim_device *d,
-                  uint64_t seed, int gloved);
+    uint64_t seed, int gloved);
 
 /* To until_s, all of them. */
 void sim_exo_advance(struct sim_exo *e, double until_s);
@@ -47,11 +47,11 @@ void sim_exo_latch(struct sim_exo *e, const double ref_A[SIM_FINGERS]);
 
 /* The glove on this hand: what does not bend with the fingers in use rests as in rest_rad. */
 void sim_exo_glove(struct sim_exo *e, struct sim_glove *g, const struct sim_glove_par *p,
-                   uint64_t seed, const double rest_rad[SIM_GLOVE_SENSORS]);
+    uint64_t seed, const double rest_rad[SIM_GLOVE_SENSORS]);
 
 /* The frame of the tick that now is, every channel held in its time; in the order of ticks,
  * a scan apart. */
-void sim_exo_frame(struct sim_exo *e, struct sim_glove *g, double tick_s,
-                   int16_t raw[SIM_GLOVE_SENSORS]);
+void sim_exo_frame(
+    struct sim_exo *e, struct sim_glove *g, double tick_s, int16_t raw[SIM_GLOVE_SENSORS]);
 
 #endif

@@ -13,10 +13,7 @@ static double start_height(const struct sim_device *d, struct sim_random *r)
     return -d->height_m + d->height_jitter_m * (2 * sim_random_unit(r) - 1);
 }
 
-static double longer(double a, double b)
-{
-    return a > b ? a : b;
-}
+static double longer(double a, double b) { return a > b ? a : b; }
 
 /* The instant of release is not tied to the tick: up to 50 ms of chance, or half a tick. */
 static void hold(struct fall *f, struct sim_random *r, double t_s)
@@ -27,7 +24,7 @@ static void hold(struct fall *f, struct sim_random *r, double t_s)
 }
 
 void fall_start(struct fall *f, struct plant *p, const struct sim_device *d, struct sim_random *r,
-                int falls, double T_s)
+    int falls, double T_s)
 {
     const struct plant rest = {0};
     *p = rest;
@@ -39,10 +36,7 @@ void fall_start(struct fall *f, struct plant *p, const struct sim_device *d, str
     hold(f, r, 0);
 }
 
-static int waits(const struct fall *f)
-{
-    return f->waits && f->phase == FALL_HOLD;
-}
+static int waits(const struct fall *f) { return f->waits && f->phase == FALL_HOLD; }
 
 /* Nothing else ends a fall in which there is no force: it would be metres deep, and the lift out of
  * it faster than an encoder can be. */
@@ -72,8 +66,8 @@ static void lift(const struct fall *f, struct plant *p, double t_s)
     p->v_mps = p->w_mps = 0;
 }
 
-static void end_of_phase(struct fall *f, struct plant *p, const struct sim_device *d,
-                         struct sim_random *r, double t_s)
+static void end_of_phase(
+    struct fall *f, struct plant *p, const struct sim_device *d, struct sim_random *r, double t_s)
 {
     if (f->phase == FALL_HOLD) {
         f->phase = FALL_FREE;
@@ -94,8 +88,8 @@ static void end_of_phase(struct fall *f, struct plant *p, const struct sim_devic
     }
 }
 
-int fall_step(struct fall *f, struct plant *p, const struct sim_device *d, struct sim_random *r,
-              double t_s)
+int fall_step(
+    struct fall *f, struct plant *p, const struct sim_device *d, struct sim_random *r, double t_s)
 {
     const enum fall_phase before = f->phase;
     if (f->phase == FALL_FREE && f->contact_s < 0 && p->q_m >= 0 && !f->waits) {

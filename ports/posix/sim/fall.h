@@ -26,7 +26,7 @@ struct fall {
 /* T_s: it holds for a tick and watches for two more than it must, whatever the rate,
  * so that the controller sees every fall whole and a tick between any two. */
 void fall_start(struct fall *f, struct plant *p, const struct sim_device *d, struct sim_random *r,
-                int falls, double T_s);
+    int falls, double T_s);
 
 /* The box does not run any more: a hand catches the mass soon, lifts it, and holds it until
  * fall_ready(). */
@@ -40,7 +40,7 @@ double fall_next_s(const struct fall *f);
 
 /* At time t, after the plant got there: moves the hand, changes phase when due.
  * Returns 1 when the mass was let go at this moment. */
-int fall_step(struct fall *f, struct plant *p, const struct sim_device *d, struct sim_random *r,
-              double t_s);
+int fall_step(
+    struct fall *f, struct plant *p, const struct sim_device *d, struct sim_random *r, double t_s);
 
 #endif

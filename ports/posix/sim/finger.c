@@ -38,8 +38,8 @@ struct sim_finger_par sim_finger_default(void)
     return p;
 }
 
-int sim_finger_set(struct sim_finger_par *p, const char *name, double value,
-                   const struct sim_device_row **row)
+int sim_finger_set(
+    struct sim_finger_par *p, const char *name, double value, const struct sim_device_row **row)
 {
     return sim_rows_set(p, sim_finger_row, sim_finger_rows, name, value, row);
 }
@@ -49,17 +49,14 @@ static struct sim_path_load load_of(const struct sim_finger_par *p, const struct
 {
     const double rub = d->mu_motor < 0.9 ? (1 + d->mu_mass) / (1 - d->mu_motor) : 1;
     const struct sim_path_load load = {p->learned * (p->mass_kg + rub * d->rotor_kg),
-                                       p->learned * rub * d->viscous_nspm,
-                                       p->learned * rub * d->coulomb_n,
-                                       p->learned * p->mass_kg,
-                                       p->k_Npm,
-                                       p->b_Nspm};
+        p->learned * rub * d->viscous_nspm, p->learned * rub * d->coulomb_n,
+        p->learned * p->mass_kg, p->k_Npm, p->b_Nspm};
     return load;
 }
 
 void sim_finger_start(struct sim_finger *f, const struct sim_finger_par *par,
-                      const struct sim_path_par *path, const struct sim_path_record *record,
-                      const struct sim_device *d, uint64_t seed)
+    const struct sim_path_par *path, const struct sim_path_record *record,
+    const struct sim_device *d, uint64_t seed)
 {
     const struct sim_finger none = {.par = *par};
     const struct sim_path_load load = load_of(par, d);
@@ -77,20 +74,11 @@ void sim_finger_start(struct sim_finger *f, const struct sim_finger_par *par,
     f->servo_s = sim_random_unit(&f->rng) / d->servo_hz;
 }
 
-void sim_finger_latch(struct sim_finger *f, double ref_A)
-{
-    f->latched_A = ref_A;
-}
+void sim_finger_latch(struct sim_finger *f, double ref_A) { f->latched_A = ref_A; }
 
-void sim_finger_safe(struct sim_finger *f)
-{
-    f->latched_A = f->ref_A = 0;
-}
+void sim_finger_safe(struct sim_finger *f) { f->latched_A = f->ref_A = 0; }
 
-static double earlier(double a, double b)
-{
-    return a < b ? a : b;
-}
+static double earlier(double a, double b) { return a < b ? a : b; }
 
 void sim_finger_advance(struct sim_finger *f, double until_s)
 {

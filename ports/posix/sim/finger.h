@@ -32,8 +32,8 @@ extern const int sim_finger_rows;
 struct sim_finger_par sim_finger_default(void);
 
 /* Sets one by name, as sim_device_set() does. */
-int sim_finger_set(struct sim_finger_par *p, const char *name, double value,
-                   const struct sim_device_row **row);
+int sim_finger_set(
+    struct sim_finger_par *p, const char *name, double value, const struct sim_device_row **row);
 
 struct sim_finger {
     struct sim_device device; /* with the finger as its mass */
@@ -51,8 +51,8 @@ struct sim_finger {
 
 /* At rest where its path begins, the string just taut, at 0 s. */
 void sim_finger_start(struct sim_finger *f, const struct sim_finger_par *par,
-                      const struct sim_path_par *path, const struct sim_path_record *record,
-                      const struct sim_device *d, uint64_t seed);
+    const struct sim_path_par *path, const struct sim_path_record *record,
+    const struct sim_device *d, uint64_t seed);
 
 /* The D/A output changes now. */
 void sim_finger_latch(struct sim_finger *f, double ref_A);

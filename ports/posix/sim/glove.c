@@ -29,9 +29,9 @@ const struct sim_device_row sim_glove_row[] = {
     {"noise", "v", 0.0061, 0, 1, "paper", "peak to peak: normal, clipped at 3 standard deviations"},
 
     {"interval", "s", 4e-6, 1e-6, 1e-3, "card",
-     "from channel to channel; it has 4, 5, 10, 15, 20 us"},
+        "from channel to channel; it has 4, 5, 10, 15, 20 us"},
     {"settle", "s", 0.36e-6, 0, 1e-3, "ours",
-     "time constant of the multiplexer: a step of full scale settles to one code in 4 us"},
+        "time constant of the multiplexer: a step of full scale settles to one code in 4 us"},
     {"span", "v", 10, 1, 10, "paper", "the card's range, either side of 0, in 16 bits"},
 };
 const int sim_glove_rows = (int)(sizeof sim_glove_row / sizeof sim_glove_row[0]);
@@ -75,14 +75,14 @@ struct sim_glove_par sim_glove_default(void)
     return p;
 }
 
-int sim_glove_set(struct sim_glove_par *p, const char *name, double value,
-                  const struct sim_device_row **row)
+int sim_glove_set(
+    struct sim_glove_par *p, const char *name, double value, const struct sim_device_row **row)
 {
     return sim_rows_set(p, sim_glove_row, sim_glove_rows, name, value, row);
 }
 
 void sim_glove_start(struct sim_glove *g, const struct sim_glove_par *p, uint64_t seed,
-                     const double angle_rad[SIM_GLOVE_SENSORS])
+    const double angle_rad[SIM_GLOVE_SENSORS])
 {
     memset(g, 0, sizeof *g);
     g->par = *p;
@@ -99,10 +99,7 @@ void sim_glove_move(struct sim_glove *g, unsigned i, const struct sim_curve *x)
     sim_lag_follow(&g->angle_rad[i], x);
 }
 
-static double limit(double v, double most)
-{
-    return v > most ? most : v < -most ? -most : v;
-}
+static double limit(double v, double most) { return v > most ? most : v < -most ? -most : v; }
 
 /* Of a share of the excitation. */
 static double amplified(const struct sim_glove_par *p, double share)

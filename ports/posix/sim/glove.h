@@ -35,8 +35,8 @@ extern const int sim_glove_rows;
 struct sim_glove_par sim_glove_default(void);
 
 /* Sets one by name, as sim_device_set() does. */
-int sim_glove_set(struct sim_glove_par *p, const char *name, double value,
-                  const struct sim_device_row **row);
+int sim_glove_set(
+    struct sim_glove_par *p, const char *name, double value, const struct sim_device_row **row);
 
 /* One sensor: its output, as a share of the live part of the excitation, is a straight line
  * through these. */
@@ -67,7 +67,7 @@ struct sim_glove {
 
 /* Settled at these angles; the multiplexer at rest on channel 0. */
 void sim_glove_start(struct sim_glove *g, const struct sim_glove_par *p, uint64_t seed,
-                     const double angle_rad[SIM_GLOVE_SENSORS]);
+    const double angle_rad[SIM_GLOVE_SENSORS]);
 
 /* From x->start_s on, the joint of sensor i moves so. */
 void sim_glove_move(struct sim_glove *g, unsigned i, const struct sim_curve *x);

@@ -36,15 +36,9 @@ static double turned_sin(double x, long quarter)
     return q & 2 ? -v : v;
 }
 
-double sim_sin(double x)
-{
-    return turned_sin(x, 0);
-}
+double sim_sin(double x) { return turned_sin(x, 0); }
 
-double sim_cos(double x)
-{
-    return turned_sin(x, 1);
-}
+double sim_cos(double x) { return turned_sin(x, 1); }
 
 static double poly_at(const double c[SIM_CURVE_TERMS], double s)
 {

@@ -50,10 +50,7 @@ struct linear_plant linear_two_mass(const struct sim_device *d)
 #define FLOW (LINEAR_PLANT + 1)
 typedef double flow_matrix[FLOW][FLOW];
 
-static double size_of(double v)
-{
-    return v < 0 ? -v : v;
-}
+static double size_of(double v) { return v < 0 ? -v : v; }
 
 /* c = a b */
 static void multiply(flow_matrix c, flow_matrix a, flow_matrix b, int n)
@@ -135,12 +132,8 @@ static const struct tick *tick_of(const struct linear_plant *p, double T_s, doub
 {
     static struct tick last;
     if (memcmp(&last.p, p, sizeof *p) != 0 || last.T_s != T_s || last.part_s != part_s) {
-        last = (struct tick){*p,
-                             T_s,
-                             part_s,
-                             linear_flow(p, T_s),
-                             linear_flow(p, part_s),
-                             linear_flow(p, T_s - part_s)};
+        last = (struct tick){*p, T_s, part_s, linear_flow(p, T_s), linear_flow(p, part_s),
+            linear_flow(p, T_s - part_s)};
     }
     return &last;
 }
@@ -182,7 +175,7 @@ double linear_rho(const struct sim_device *d, double T_s, double k_Npm, double b
 {
     static struct matrix M;
     const struct linear_plant p = linear_two_mass(d);
-    const struct linear_wall w = {T_s, k_Npm, b_Nspm,
-                                  d->delay_tick * T_s + d->delay_s + 0.5 / d->servo_hz, window};
+    const struct linear_wall w = {
+        T_s, k_Npm, b_Nspm, d->delay_tick * T_s + d->delay_s + 0.5 / d->servo_hz, window};
     return linear_monodromy(&M, &p, &w) == 0 ? eigen_radius(&M) : -1;
 }

@@ -12,7 +12,7 @@ const struct sim_device_row sim_link_row[] = {
     {"jitter_kind", "", 0, 0, 3, "ours", "0 none, 1 uniform, 2 normal, 3 normal with memory"},
     {"jitter", "s", 0, 0, 10, "ours", "at most so much more or less; a delay is never below 0"},
     {"memory", "", 0.9, 0, 0.9999, "ours",
-     "correlation of one packet's jitter with the next one's"},
+        "correlation of one packet's jitter with the next one's"},
     {"loss", "", 0, 0, 1, "ours", "share of packets that never arrive"},
     {"duplicate", "", 0, 0, 1, "ours", "share that arrives twice"},
     {"duplicate_after", "s", 0.001, 0, 10, "ours", "the second so much later"},
@@ -39,8 +39,8 @@ struct sim_link_par sim_link_default(void)
     return p;
 }
 
-int sim_link_set(struct sim_link_par *p, const char *name, double value,
-                 const struct sim_device_row **row)
+int sim_link_set(
+    struct sim_link_par *p, const char *name, double value, const struct sim_device_row **row)
 {
     return sim_rows_set(p, sim_link_row, sim_link_rows, name, value, row);
 }
@@ -66,10 +66,7 @@ static double normal(struct sim_random *r)
     return (sum - 6 * 65535) * (1.0 / 65536);
 }
 
-static double within_one(double v)
-{
-    return v > 1 ? 1 : v < -1 ? -1 : v;
-}
+static double within_one(double v) { return v > 1 ? 1 : v < -1 ? -1 : v; }
 
 /* Of jitter_s. Both draws every time: the kinds share one sequence. */
 static double jitter(struct sim_link_way *w)
@@ -143,7 +140,7 @@ static void enqueue(struct sim_link_way *w, double t_s, double due_s, const void
 }
 
 void sim_link_start(struct sim_link_way *w, const struct sim_link_par *p,
-                    const struct sim_trace *trace, uint64_t seed)
+    const struct sim_trace *trace, uint64_t seed)
 {
     struct sim_random r = {seed};
     w->par = *p;

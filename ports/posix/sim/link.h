@@ -43,8 +43,8 @@ extern const int sim_link_rows;
 struct sim_link_par sim_link_default(void);
 
 /* Sets one by name, as sim_device_set() does. */
-int sim_link_set(struct sim_link_par *p, const char *name, double value,
-                 const struct sim_device_row **row);
+int sim_link_set(
+    struct sim_link_par *p, const char *name, double value, const struct sim_device_row **row);
 
 /* sent + doubled = arrived + lost + in_hole + overflow + on their way. */
 struct sim_link_counts {
@@ -86,7 +86,7 @@ struct sim_link {
 
 /* Empty, at 0 s. trace: the caller's, or NULL. */
 void sim_link_start(struct sim_link_way *w, const struct sim_link_par *p,
-                    const struct sim_trace *trace, uint64_t seed);
+    const struct sim_trace *trace, uint64_t seed);
 
 /* Takes a packet at t_s, not before the last: its length, whatever becomes of it, or -1:
  * longer than any may be. */

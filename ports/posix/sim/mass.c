@@ -12,8 +12,8 @@ static void start(struct sim_mass *m, const struct sim_device *d, uint64_t seed)
     m->grid = sim_random_unit(&m->rng);
 }
 
-void sim_mass_fall(struct sim_mass *m, const struct sim_device *d, uint64_t seed, int falls,
-                   double T_s)
+void sim_mass_fall(
+    struct sim_mass *m, const struct sim_device *d, uint64_t seed, int falls, double T_s)
 {
     start(m, d, seed);
     fall_start(&m->fall, &m->plant, d, &m->rng, falls, T_s);
@@ -35,10 +35,7 @@ void sim_mass_put(struct sim_mass *m, double x_m, double q_m)
     m->plant.q_m = q_m;
 }
 
-static double earlier(double a, double b)
-{
-    return a < b ? a : b;
-}
+static double earlier(double a, double b) { return a < b ? a : b; }
 
 /* The plant by itself, up to the next event. */
 static void advance_plant(struct sim_mass *m, double dt_s)
@@ -71,15 +68,9 @@ void sim_mass_advance(struct sim_mass *m, double until_s)
     }
 }
 
-void sim_mass_latch(struct sim_mass *m, double ref_A)
-{
-    m->latched_A = ref_A;
-}
+void sim_mass_latch(struct sim_mass *m, double ref_A) { m->latched_A = ref_A; }
 
-void sim_mass_safe(struct sim_mass *m)
-{
-    m->latched_A = m->ref_A = 0;
-}
+void sim_mass_safe(struct sim_mass *m) { m->latched_A = m->ref_A = 0; }
 
 void sim_mass_read(struct sim_mass *m, double jitter_cnt, uint32_t *enc_raw, int16_t *mon_raw)
 {

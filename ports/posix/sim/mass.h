@@ -24,8 +24,8 @@ struct sim_mass {
 };
 
 /* So many falls, watched by a controller of period T_s; at 0 s. */
-void sim_mass_fall(struct sim_mass *m, const struct sim_device *d, uint64_t seed, int falls,
-                   double T_s);
+void sim_mass_fall(
+    struct sim_mass *m, const struct sim_device *d, uint64_t seed, int falls, double T_s);
 
 /* A bench, with what is wrong with it (enum bench_wrong). */
 void sim_mass_bench(struct sim_mass *m, const struct sim_device *d, uint64_t seed, unsigned wrong);

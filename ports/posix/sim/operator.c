@@ -8,39 +8,34 @@
 /* Thumb: rotation, MPJ, IJ, abduction; index, middle with abduction to the index, ring,
  * little: MPJ, PIJ, DIJ, abduction; palm arch, wrist pitch, wrist yaw. */
 const struct sim_pose sim_pose[] = {
-    {"flat", "hand flat on the table, fingers together", {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
-                                                          0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}},
-    {"fist", "make a fist, thumb beside it", {0,  0,  45, 0, 90, 90, 70, 90, 90, 70, 0,
-                                              90, 90, 70, 0, 90, 90, 70, 0,  20, 0,  0}},
-    {"spread",
-     "hand flat, fingers and thumb as far apart as they go",
-     {0, 0, 0, 50, 0, 0, 0, 0, 0, 0, 30, 0, 0, 0, 30, 0, 0, 0, 40, 0, 0, 0}},
-    {"hook",
-     "fingers straight at the knuckles, rolled up beyond them",
-     {0, 0, 0, 0, 0, 90, 90, 0, 90, 90, 0, 0, 90, 90, 0, 0, 90, 90, 0, 0, 0, 0}},
-    {"table",
-     "fingers straight, at a right angle to the palm",
-     {0, 0, 0, 0, 90, 0, 0, 90, 0, 0, 0, 90, 0, 0, 0, 90, 0, 0, 0, 0, 0, 0}},
-    {"thumb_out",
-     "hand flat, thumb stretched back and out",
-     {-60, -30, 0, 50, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}},
-    {"thumb_in", "hand flat, thumb bent across the palm", {60, 30, 90, 0, 0, 0, 0, 0, 0, 0, 0,
-                                                           0,  0,  0,  0, 0, 0, 0, 0, 0, 0, 0}},
-    {"cup", "the palm as hollow as it goes", {30, 0,  20, 20, 30, 20, 10, 30, 20, 10, 0,
-                                              30, 20, 10, 0,  30, 20, 10, 0,  40, 0,  0}},
-    {"pinch",
-     "tips of thumb and index together, the others open",
-     {40, 10, 30, 30, 50, 45, 25, 10, 10, 5, 10, 10, 10, 5, 5, 10, 10, 5, 10, 10, 0, 0}},
-    {"point", "the index straight, the others a fist", {20, 10, 45, 0, 0,  0,  0,  90, 90, 70, 0,
-                                                        90, 90, 70, 0, 90, 90, 70, 0,  20, 0,  0}},
-    {"wrist_up", "hand flat, bent up at the wrist", {0, 0, 0, 0, 0, 0, 0, 0, 0, 0,  0,
-                                                     0, 0, 0, 0, 0, 0, 0, 0, 0, 40, 0}},
-    {"wrist_down", "hand flat, bent down at the wrist", {0, 0, 0, 0, 0, 0, 0, 0, 0, 0,   0,
-                                                         0, 0, 0, 0, 0, 0, 0, 0, 0, -30, 0}},
-    {"wrist_in", "hand flat, turned in at the wrist", {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
-                                                       0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -30}},
-    {"wrist_out", "hand flat, turned out at the wrist", {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
-                                                         0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 10}},
+    {"flat", "hand flat on the table, fingers together",
+        {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}},
+    {"fist", "make a fist, thumb beside it",
+        {0, 0, 45, 0, 90, 90, 70, 90, 90, 70, 0, 90, 90, 70, 0, 90, 90, 70, 0, 20, 0, 0}},
+    {"spread", "hand flat, fingers and thumb as far apart as they go",
+        {0, 0, 0, 50, 0, 0, 0, 0, 0, 0, 30, 0, 0, 0, 30, 0, 0, 0, 40, 0, 0, 0}},
+    {"hook", "fingers straight at the knuckles, rolled up beyond them",
+        {0, 0, 0, 0, 0, 90, 90, 0, 90, 90, 0, 0, 90, 90, 0, 0, 90, 90, 0, 0, 0, 0}},
+    {"table", "fingers straight, at a right angle to the palm",
+        {0, 0, 0, 0, 90, 0, 0, 90, 0, 0, 0, 90, 0, 0, 0, 90, 0, 0, 0, 0, 0, 0}},
+    {"thumb_out", "hand flat, thumb stretched back and out",
+        {-60, -30, 0, 50, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}},
+    {"thumb_in", "hand flat, thumb bent across the palm",
+        {60, 30, 90, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}},
+    {"cup", "the palm as hollow as it goes",
+        {30, 0, 20, 20, 30, 20, 10, 30, 20, 10, 0, 30, 20, 10, 0, 30, 20, 10, 0, 40, 0, 0}},
+    {"pinch", "tips of thumb and index together, the others open",
+        {40, 10, 30, 30, 50, 45, 25, 10, 10, 5, 10, 10, 10, 5, 5, 10, 10, 5, 10, 10, 0, 0}},
+    {"point", "the index straight, the others a fist",
+        {20, 10, 45, 0, 0, 0, 0, 90, 90, 70, 0, 90, 90, 70, 0, 90, 90, 70, 0, 20, 0, 0}},
+    {"wrist_up", "hand flat, bent up at the wrist",
+        {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 40, 0}},
+    {"wrist_down", "hand flat, bent down at the wrist",
+        {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -30, 0}},
+    {"wrist_in", "hand flat, turned in at the wrist",
+        {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -30}},
+    {"wrist_out", "hand flat, turned out at the wrist",
+        {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 10}},
 };
 const int sim_poses = (int)(sizeof sim_pose / sizeof sim_pose[0]);
 
@@ -75,12 +70,8 @@ static void move_to(struct sim_operator *o, struct sim_glove *g, int pose, doubl
     const double u = 1 / o->par.move_s, u3 = u * u * u;
     for (int i = 0; i < SIM_GLOVE_SENSORS; i++) {
         const double to = pose_rad(o, pose, i), way = to - o->at_rad[i];
-        const struct sim_curve x = {
-            start_s,
-            {o->at_rad[i], 0, 0, 10 * way * u3, -15 * way * u3 * u, 6 * way * u3 * u * u},
-            0,
-            0,
-            0};
+        const struct sim_curve x = {start_s,
+            {o->at_rad[i], 0, 0, 10 * way * u3, -15 * way * u3 * u, 6 * way * u3 * u * u}, 0, 0, 0};
         sim_glove_move(g, (unsigned)i, &x);
         o->at_rad[i] = to;
     }
@@ -132,7 +123,7 @@ static void play(struct sim_operator *o, struct sim_glove *g)
 }
 
 void sim_operator_start(struct sim_operator *o, const struct sim_operator_par *p,
-                        struct sim_glove *g, const struct sim_glove_par *gp, uint64_t seed)
+    struct sim_glove *g, const struct sim_glove_par *gp, uint64_t seed)
 {
     memset(o, 0, sizeof *o);
     o->par = *p;
@@ -175,18 +166,15 @@ void sim_operator_advance(struct sim_operator *o, struct sim_glove *g, double t_
     }
 }
 
-void sim_operator_go(struct sim_operator *o, int pose)
-{
-    o->asked = pose;
-}
+void sim_operator_go(struct sim_operator *o, int pose) { o->asked = pose; }
 
 int sim_operator_at_rest(const struct sim_operator *o, double t_s)
 {
     return o->asked < 0 && t_s >= o->end_s;
 }
 
-void sim_operator_frame(struct sim_operator *o, struct sim_glove *g, double tick_s,
-                        int16_t raw[SIM_GLOVE_SENSORS])
+void sim_operator_frame(
+    struct sim_operator *o, struct sim_glove *g, double tick_s, int16_t raw[SIM_GLOVE_SENSORS])
 {
     for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
         const double held_s = sim_glove_held_s(&g->par, i, tick_s);

@@ -55,7 +55,7 @@ struct sim_operator {
 
 /* Puts the hand into the glove and starts both, at 0 s. */
 void sim_operator_start(struct sim_operator *o, const struct sim_operator_par *p,
-                        struct sim_glove *g, const struct sim_glove_par *gp, uint64_t seed);
+    struct sim_glove *g, const struct sim_glove_par *gp, uint64_t seed);
 
 /* Everything it begins at or before t_s; to be called before the glove is asked for t_s. */
 void sim_operator_advance(struct sim_operator *o, struct sim_glove *g, double t_s);
@@ -65,7 +65,7 @@ void sim_operator_go(struct sim_operator *o, int pose);
 int sim_operator_at_rest(const struct sim_operator *o, double t_s);
 
 /* The frame of this tick: moves the hand, converts all 22 channels, each in its time. */
-void sim_operator_frame(struct sim_operator *o, struct sim_glove *g, double tick_s,
-                        int16_t raw[SIM_GLOVE_SENSORS]);
+void sim_operator_frame(
+    struct sim_operator *o, struct sim_glove *g, double tick_s, int16_t raw[SIM_GLOVE_SENSORS]);
 
 #endif

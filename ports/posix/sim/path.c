@@ -16,13 +16,13 @@ const struct sim_device_row sim_path_row[] = {
     {"believed", "m", 0.030, 0, 0.08, "ours", "string out where the object is believed to be"},
     {"push", "m", 0.015, 0.001, 0.08, "ours", "it aims so far beyond: times K, the pressing force"},
     {"speed", "m_per_s", 0.87, 0.001, 3, "paper",
-     "where the object is believed to be, if it is not there"},
+        "where the object is believed to be, if it is not there"},
     {"first", "s", 0.7, 0.01, 100, "ours", "rest before the first approach: armed by then"},
     {"hold", "s", 1, 0, 100, "ours", "pressed for so long"},
     {"back", "s", 0.5, 0.02, 10, "ours", "the withdrawal takes"},
     {"rest", "s", 1, 0.01, 100, "ours", "rest between two approaches"},
     {"vary", "", 0.1, 0, 0.5, "ours",
-     "all but `believed` and `first` vary by +- this from one to the next"},
+        "all but `believed` and `first` vary by +- this from one to the next"},
     {"approaches", "", 0, 0, 1e9, "ours", "how many; 0: for ever"},
 };
 const int sim_path_rows = (int)(sizeof sim_path_row / sizeof sim_path_row[0]);
@@ -39,8 +39,8 @@ struct sim_path_par sim_path_default(void)
     return p;
 }
 
-int sim_path_set(struct sim_path_par *p, const char *name, double value,
-                 const struct sim_device_row **row)
+int sim_path_set(
+    struct sim_path_par *p, const char *name, double value, const struct sim_device_row **row)
 {
     return sim_rows_set(p, sim_path_row, sim_path_rows, name, value, row);
 }
@@ -186,12 +186,9 @@ static void play(struct sim_path *p)
     const double a = control(r, n - 1), b = control(r, n), c = control(r, n + 1),
                  d = control(r, n + 2), hz = r->row_hz;
     const struct sim_curve x = {(double)(n + 1) / hz,
-                                {(a + 4 * b + c) / 6, (c - a) / 2 * hz,
-                                 (a - 2 * b + c) / 2 * hz * hz,
-                                 (d - a + 3 * (b - c)) / 6 * hz * hz * hz, 0, 0},
-                                0,
-                                0,
-                                0};
+        {(a + 4 * b + c) / 6, (c - a) / 2 * hz, (a - 2 * b + c) / 2 * hz * hz,
+            (d - a + 3 * (b - c)) / 6 * hz * hz * hz, 0, 0},
+        0, 0, 0};
     follow(p, &x, p->load.out_kg, p->load.out_Nspm, 0); /* one load all along: no jump in it */
     p->number++;
     p->end_s = (double)(p->number + 1) / hz;
@@ -213,8 +210,8 @@ static void next_row(struct sim_path *p)
 static const signed char bends[5][3] = {
     {1, 2, 2}, {4, 5, 6}, {7, 8, 9}, {11, 12, 13}, {15, 16, 17}};
 
-double sim_path_string(const double row_rad[SIM_SENSORS], unsigned finger, double sign,
-                       const double arm_m[3])
+double sim_path_string(
+    const double row_rad[SIM_SENSORS], unsigned finger, double sign, const double arm_m[3])
 {
     double sum = 0;
     for (int j = 0; j < 3; j++) {
@@ -238,8 +235,7 @@ double sim_path_sign(const double (*row_rad)[SIM_SENSORS], long rows)
 /* --- both --- */
 
 void sim_path_start(struct sim_path *p, const struct sim_path_par *par,
-                    const struct sim_path_load *load, const struct sim_path_record *record,
-                    uint64_t seed)
+    const struct sim_path_load *load, const struct sim_path_record *record, uint64_t seed)
 {
     memset(p, 0, sizeof *p);
     p->par = *par;

@@ -37,8 +37,8 @@ extern const int sim_path_rows;
 struct sim_path_par sim_path_default(void);
 
 /* Sets one by name, as sim_device_set() does. */
-int sim_path_set(struct sim_path_par *p, const char *name, double value,
-                 const struct sim_device_row **row);
+int sim_path_set(
+    struct sim_path_par *p, const char *name, double value, const struct sim_device_row **row);
 
 /* The paper's three speeds, m/s of string where the object is believed to be: "slow",
  * "natural", "fast"; 0: no such name. */
@@ -82,8 +82,7 @@ struct sim_path {
 
 /* At rest at its start, at 0 s. record: NULL or rows 0: approaches. */
 void sim_path_start(struct sim_path *p, const struct sim_path_par *par,
-                    const struct sim_path_load *load, const struct sim_path_record *record,
-                    uint64_t seed);
+    const struct sim_path_load *load, const struct sim_path_record *record, uint64_t seed);
 
 /* Everything that begins at or before t_s; and when the next thing begins. */
 void sim_path_advance(struct sim_path *p, double t_s);
@@ -95,8 +94,8 @@ double sim_path_wanted(const struct sim_path *p, double t_s);
 
 /* The 22 angles of a row (rad, in the glove's order), flexion of finger 0..4 counted up or, sign
  * -1, down, as string; a joint bent backwards draws none in. */
-double sim_path_string(const double row_rad[SIM_SENSORS], unsigned finger, double sign,
-                       const double arm_m[3]);
+double sim_path_string(
+    const double row_rad[SIM_SENSORS], unsigned finger, double sign, const double arm_m[3]);
 
 /* 1 or -1: how the flexion of these rows is counted. */
 double sim_path_sign(const double (*row_rad)[SIM_SENSORS], long rows);

@@ -82,7 +82,7 @@ static double tension(const struct sim_device *d, double stretch_m, double openi
 
 /* The hand NULL: there is none, and the mass has its weight; t_s: the middle of the step. */
 static inline void step_string(struct plant *p, const struct sim_device *d, const struct step *s,
-                               const struct plant_hand *hand, double t_s)
+    const struct plant_hand *hand, double t_s)
 {
     const double x = p->x_m + s->half_s * p->v_mps, q = p->q_m + s->half_s * p->w_mps;
     const double half_mass = s->h_mass / 2, half_rotor = s->h_rotor / 2;
@@ -93,12 +93,12 @@ static inline void step_string(struct plant *p, const struct sim_device *d, cons
     }
     v = shrink((p->v_mps + half_mass * (push_N - T)) * s->damp_mass, half_mass * d->mu_mass * T);
     w = shrink((p->w_mps + half_rotor * (T - pull_N)) * s->damp_rotor,
-               half_rotor * (d->coulomb_n + d->mu_motor * T));
+        half_rotor * (d->coulomb_n + d->mu_motor * T));
     T = tension(d, x - q, v - w);
     if (hand) { push_N -= hand->b_Nspm * v; }
     p->v_mps = shrink(p->v_mps + s->h_mass * (push_N - T), s->h_mass * d->mu_mass * T);
     p->w_mps = shrink(p->w_mps + s->h_rotor * (T - pull_N - d->viscous_nspm * w),
-                      s->h_rotor * (d->coulomb_n + d->mu_motor * T));
+        s->h_rotor * (d->coulomb_n + d->mu_motor * T));
     p->x_m = x + s->half_s * p->v_mps;
     p->q_m = q + s->half_s * p->w_mps;
 }
@@ -140,8 +140,8 @@ int plant_step_will_do(const struct sim_device *d, double hand_npm, double hand_
 
 double plant_step_that_will_do(const struct sim_device *d, double hand_npm, double hand_nspm)
 {
-    static const double step_s[] = {1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5,
-                                    5e-6, 2e-6, 1e-6, 5e-7, 2e-7, 1e-7};
+    static const double step_s[] = {
+        1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6, 2e-6, 1e-6, 5e-7, 2e-7, 1e-7};
     for (unsigned i = 0; i < sizeof step_s / sizeof step_s[0]; i++) {
         if (step_ok(d, hand_npm, hand_nspm, step_s[i])) { return step_s[i]; }
     }
@@ -165,7 +165,7 @@ static inline void stop(double *x_m, double *v_mps, double end_m)
 }
 
 void plant_advance_hand(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
-                        const struct plant_hand *hand)
+    const struct plant_hand *hand)
 {
     const int n = steps_in(d, dt_s);
     const struct step s = step_of(d, dt_s / n, ref_A, hand->b_Nspm);

@@ -28,8 +28,8 @@ struct plant {
 
 /* Advances by dt_s >= 0 with the current loop's reference held. held: the mass and
  * the string are in the experimenter's hand and do not move. */
-void plant_advance(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
-                   int held);
+void plant_advance(
+    struct plant *p, const struct sim_device *d, double dt_s, double ref_A, int held);
 
 /* A hand moves the mass, which is then a finger: instead of its weight the force
  *   k (target - x) + b (target' - x').
@@ -41,7 +41,7 @@ struct plant_hand {
     double end_m;
 };
 void plant_advance_hand(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
-                        const struct plant_hand *hand);
+    const struct plant_hand *hand);
 
 /* Whether sub-steps of substep_s are short enough: half of what keeps them stable, that is, at
  * least six of them a period of string and rotor, which then come 5 % too soon, and at least one in

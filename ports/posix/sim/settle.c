@@ -39,8 +39,8 @@ struct run {
 
 struct settle_case settle_case_at(int i)
 {
-    static const double step[4] = {0.85667488385450287, 0.73389185662712, 0.6287067210378087,
-                                   0.53859725722361089};
+    static const double step[4] = {
+        0.85667488385450287, 0.73389185662712, 0.6287067210378087, 0.53859725722361089};
     double v[4];
     for (int k = 0; k < 4; k++) {
         v[k] = 0.5 + i * step[k];
@@ -54,10 +54,7 @@ static double clamp(double v, double low, double high)
     return v < low ? low : v > high ? high : v;
 }
 
-static double size_of(double v)
-{
-    return v < 0 ? -v : v;
-}
+static double size_of(double v) { return v < 0 ? -v : v; }
 
 static void widen(struct span *s, double v)
 {
@@ -108,10 +105,7 @@ static void tick(struct run *r)
     r->tick_s += r->w->T_s;
 }
 
-static double earlier(double a, double b)
-{
-    return a < b ? a : b;
-}
+static double earlier(double a, double b) { return a < b ? a : b; }
 
 /* To the next event, which then has happened; whether it was a tick. */
 static int advance(struct run *r)
@@ -136,8 +130,8 @@ static int advance(struct run *r)
     return 1;
 }
 
-static void start(struct run *r, const struct sim_device *d, const struct settle_wall *w,
-                  struct settle_case c)
+static void start(
+    struct run *r, const struct sim_device *d, const struct settle_wall *w, struct settle_case c)
 {
     memset(r, 0, sizeof *r);
     r->d = d;
@@ -173,8 +167,8 @@ static enum settle_end judge(const struct run *r)
                : SETTLE_REST;
 }
 
-enum settle_end settle_run(const struct sim_device *d, const struct settle_wall *w,
-                           struct settle_case c)
+enum settle_end settle_run(
+    const struct sim_device *d, const struct settle_wall *w, struct settle_case c)
 {
     const double window_s = WINDOW_S > 4 * w->T_s ? WINDOW_S : 4 * w->T_s;
     struct run r;

@@ -35,7 +35,7 @@ struct settle_case settle_case_at(int i);
 
 /* observe_s of the device is how long it is watched from the first contact; what has stuck before
  * that is at rest at once. */
-enum settle_end settle_run(const struct sim_device *d, const struct settle_wall *w,
-                           struct settle_case c);
+enum settle_end settle_run(
+    const struct sim_device *d, const struct settle_wall *w, struct settle_case c);
 
 #endif

@@ -7,10 +7,7 @@
 #define SPARE_N 1e-9
 #define SPARE   1.00001 /* exp is no better than 1e-12, and times are differences */
 
-static double size_of(double v)
-{
-    return v < 0 ? -v : v;
-}
+static double size_of(double v) { return v < 0 ? -v : v; }
 
 static int friction_holds(const struct plant *p, const struct sim_device *d, double ref_A)
 {
@@ -21,8 +18,8 @@ static int friction_holds(const struct plant *p, const struct sim_device *d, dou
 
 /* As plant.c has it, a share of each is left behind a step; what the current adds to the monitor is
  * the rest at most. */
-static int currents_settled(const struct plant *p, const struct sim_device *d, double ref_A,
-                            double longest_s)
+static int currents_settled(
+    const struct plant *p, const struct sim_device *d, double ref_A, double longest_s)
 {
     const double keep_cur = sim_exp_neg(TWO_PI * d->current_hz * longest_s);
     const double keep_mon = d->mon_lag_s > 0 ? sim_exp_neg(longest_s / d->mon_lag_s) : 0;

@@ -48,10 +48,7 @@ struct reader {
     double first_ns, first_stamp; /* of the first arrival */
 };
 
-static int is_blank(const char *text)
-{
-    return text[strspn(text, " \t\r\n")] == '\0';
-}
+static int is_blank(const char *text) { return text[strspn(text, " \t\r\n")] == '\0'; }
 
 static int put(struct sim_trace *t, struct reader *in, double delay_s)
 {
@@ -126,8 +123,8 @@ static void settle(struct sim_trace *t, const struct reader *in)
 
 /* --- all of it --- */
 
-static int refuse(struct sim_trace *t, char *why, size_t why_B, const char *path, long line,
-                  const char *what)
+static int refuse(
+    struct sim_trace *t, char *why, size_t why_B, const char *path, long line, const char *what)
 {
     if (line > 0) {
         snprintf(why, why_B, "%s: line %ld: %s", path, line, what);
@@ -138,8 +135,8 @@ static int refuse(struct sim_trace *t, char *why, size_t why_B, const char *path
     return -1;
 }
 
-int sim_trace_read(struct sim_trace *t, const char *path, enum sim_trace_kind kind, char *why,
-                   size_t why_B)
+int sim_trace_read(
+    struct sim_trace *t, const char *path, enum sim_trace_kind kind, char *why, size_t why_B)
 {
     struct reader in = {kind, 0, 0, 0};
     const char *what = NULL;

@@ -30,8 +30,8 @@ struct sim_trace {
 
 /* 0, or -1 and in why what is wrong, with the line. A path that ends in .xz goes through
  * `xz -dc`. */
-int sim_trace_read(struct sim_trace *t, const char *path, enum sim_trace_kind kind, char *why,
-                   size_t why_B);
+int sim_trace_read(
+    struct sim_trace *t, const char *path, enum sim_trace_kind kind, char *why, size_t why_B);
 void sim_trace_free(struct sim_trace *t);
 
 /* In the format above, 9 digits; 0, or -1 with errno. */

@@ -194,7 +194,7 @@ static int bad(const char *where)
     cli_complain("--modbus: %s: give tcp:ADDRESS:PORT (as tcp:127.0.0.1:%d; this machine's, a port "
                  "0..65535) or "
                  "rtu:DEVICE:BAUD (as rtu:/dev/ttyUSB0:115200; 300..4000000)",
-                 where, PORT);
+        where, PORT);
     return 2;
 }
 
@@ -219,9 +219,9 @@ static int open_tcp(const char *where, const char *host, int port)
     server.listener = modbus_tcp_listen(server.ctx, CLIENTS);
     if (server.listener < 0) {
         return complain(where, modbus_strerror(errno),
-                        errno == EADDRINUSE ? "another program serves there: give another port"
-                        : errno == EACCES   ? "ports below 1024 are the system's: give another"
-                                            : "give an address of this machine");
+            errno == EADDRINUSE ? "another program serves there: give another port"
+            : errno == EACCES   ? "ports below 1024 are the system's: give another"
+                                : "give an address of this machine");
     }
     memset(&at, 0, sizeof at);
     (void)getsockname(server.listener, (struct sockaddr *)&at, &len);
@@ -241,8 +241,8 @@ static int open_rtu(const char *where, const char *device, int baud)
     (void)modbus_set_byte_timeout(server.ctx, 0, 50000);
     if (modbus_connect(server.ctx) < 0) {
         return complain(where, modbus_strerror(errno),
-                        errno == EACCES ? "only who may open it: the group dialout, as a rule"
-                                        : "give a serial line that is here");
+            errno == EACCES ? "only who may open it: the group dialout, as a rule"
+                            : "give a serial line that is here");
     }
     printf("modbus: rtu:%s:%d, address %d, 8E1\n", device, baud, ADDRESS);
     fflush(stdout);

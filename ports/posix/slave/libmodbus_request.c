@@ -18,10 +18,7 @@ void request_close(void)
     map = NULL;
 }
 
-unsigned request_be16(const uint8_t *p)
-{
-    return (unsigned)p[0] << 8 | p[1];
-}
+unsigned request_be16(const uint8_t *p) { return (unsigned)p[0] << 8 | p[1]; }
 
 static int function_known(uint8_t function)
 {
@@ -41,10 +38,7 @@ static unsigned length_of(const uint8_t *pdu, unsigned got)
     }
 }
 
-static int between(unsigned v, unsigned most)
-{
-    return v >= 1 && v <= most;
-}
+static int between(unsigned v, unsigned most) { return v >= 1 && v <= most; }
 
 int request_shape(const uint8_t *pdu, unsigned len)
 {

@@ -41,10 +41,7 @@ struct exh_regs *mail_take(void)
     return &mail.regs;
 }
 
-void mail_give(void)
-{
-    pthread_mutex_unlock(&lock);
-}
+void mail_give(void) { pthread_mutex_unlock(&lock); }
 
 /* What the registers show; the lock is held. */
 static void copy_values(void)

@@ -72,7 +72,7 @@ static void report(const struct world_stats *s)
 {
     printf("frames %lu  rays %lu  hits %lu  bodies asked %lu  put aside by their ball %lu  "
            "objects asleep %lu\n",
-           s->frames, s->rays, s->hits, s->tests, s->culled, s->slept);
+        s->frames, s->rays, s->hits, s->tests, s->culled, s->slept);
 }
 
 int run_alone(struct run *r)
@@ -83,13 +83,13 @@ int run_alone(struct run *r)
     a.run = r;
     view_start(&a.view, world_scene(r->world));
     if (r->video && mkdir(r->video, 0777) != 0 && errno != EEXIST) {
-        cli_complain("--video: %s: %s: give a directory that can be made", r->video,
-                     strerror(errno));
+        cli_complain(
+            "--video: %s: %s: give a directory that can be made", r->video, strerror(errno));
         return 2;
     }
     if (r->png || r->video) {
-        const struct picture_want want = {"world", (int)r->width, (int)r->height, 1,
-                                          (int)r->samples};
+        const struct picture_want want = {
+            "world", (int)r->width, (int)r->height, 1, (int)r->samples};
         char why[600];
         a.picture = picture_open(&want, why, sizeof why);
         if (a.picture == NULL) {

@@ -53,19 +53,19 @@ static int object(char *to, size_t to_B, struct sim_random *r, int k, double hal
     int n;
     switch (k % 3) {
     case 0:
-        n = snprintf(to, to_B, "sphere o%d at %.4f %.4f %.4f radius %.4f material m\n", k, x, y, z,
-                     a);
+        n = snprintf(
+            to, to_B, "sphere o%d at %.4f %.4f %.4f radius %.4f material m\n", k, x, y, z, a);
         break;
     case 1:
         n = snprintf(to, to_B,
-                     "box o%d at %.4f %.4f %.4f rpy 20 30 %.1f size %.4f 0.03 0.02 material m\n", k,
-                     x, y, z, 1e4 * a, 2 * a);
+            "box o%d at %.4f %.4f %.4f rpy 20 30 %.1f size %.4f 0.03 0.02 material m\n", k, x, y, z,
+            1e4 * a, 2 * a);
         break;
     default:
         n = snprintf(to, to_B,
-                     "capsule o%d at %.4f %.4f %.4f rpy 50 %.1f 0 radius 0.01 length %.4f "
-                     "material m\n",
-                     k, x, y, z, 1e4 * a, 2 * a);
+            "capsule o%d at %.4f %.4f %.4f rpy 50 %.1f 0 radius 0.01 length %.4f "
+            "material m\n",
+            k, x, y, z, 1e4 * a, 2 * a);
     }
     if (moving) {
         n += snprintf(to + n, to_B - (size_t)n, "motion o%d sine move 0.02 0 0 hz 0.5\n", k);
@@ -117,7 +117,7 @@ static struct world *mesh_world(char *why, size_t why_B)
         snprintf(why, why_B, "/tmp: no file can be made there");
     } else {
         snprintf(text, sizeof text, "%smesh ball at 0.0 0.13 -0.07 file %s material m\n",
-                 frame_of_all, name);
+            frame_of_all, name);
         w = world_load("bench", text, why, why_B);
     }
     if (f) { fclose(f); }
@@ -210,8 +210,8 @@ static void row(const char *name, struct world *w, const struct picture_want *wa
     struct world_stats on, off;
     const double a = frames_per_s(w, 1, &on), b = frames_per_s(w, 0, &off);
     printf("%-26s %9.0f %9.0f %7.1f %5.1f %9.0f %7.1f", name, a, 5 * a,
-           (double)(on.tests - on.culled) / (double)on.rays,
-           100 * (double)on.hits / (double)on.rays, 5 * b, (double)off.tests / (double)off.rays);
+        (double)(on.tests - on.culled) / (double)on.rays, 100 * (double)on.hits / (double)on.rays,
+        5 * b, (double)off.tests / (double)off.rays);
     world_cull(w, 1);
     drawn(w, want);
     putchar('\n');
@@ -224,11 +224,9 @@ static int rows(const struct run *r, const struct picture_want *want)
         const char *name;
         int n, moving;
         double half_m;
-    } kind[] = {{"1 object", 1, 0, 0.1},
-                {"10 objects at hand", 10, 0, 0.12},
-                {"1000 objects within 1 m", 1000, 0, 1},
-                {"1000 objects, all moving", 1000, 1, 1},
-                {"1000 objects at hand", 1000, 0, 0.2}};
+    } kind[] = {{"1 object", 1, 0, 0.1}, {"10 objects at hand", 10, 0, 0.12},
+        {"1000 objects within 1 m", 1000, 0, 1}, {"1000 objects, all moving", 1000, 1, 1},
+        {"1000 objects at hand", 1000, 0, 0.2}};
     char why[700];
     struct world *w;
     for (size_t i = 0; i < sizeof kind / sizeof kind[0]; i++) {
@@ -259,8 +257,8 @@ static int rows(const struct run *r, const struct picture_want *want)
 
 int run_bench(struct run *r)
 {
-    const struct picture_want want = {"world", (int)r->width, (int)r->height, 1,
-                                      r->samples < 0 ? 0 : (int)r->samples};
+    const struct picture_want want = {
+        "world", (int)r->width, (int)r->height, 1, r->samples < 0 ? 0 : (int)r->samples};
     char why[600];
     struct picture *p = picture_open(&want, why, sizeof why);
     if (p == NULL) { printf("without pictures: %s\n", why); }
@@ -272,7 +270,7 @@ int run_bench(struct run *r)
         "processor's time, all threads together, and of pictures also by the clock on the wall.\n",
         want.width, want.height);
     printf("%-26s %9s %9s %7s %5s %9s %7s %8s %8s %8s %8s\n", "", "frames", "rays", "bodies",
-           "hits", "rays un-", "bodies", "pictures", "wall", "turning", "wall");
+        "hits", "rays un-", "bodies", "pictures", "wall", "turning", "wall");
     printf("%-26s %9s %9s %7s %5s %9s %7s\n", "", "", "", "a ray", "%", "culled", "a ray");
     return rows(r, p ? &want : NULL);
 }

@@ -20,8 +20,8 @@ static void paint(struct draw_item *i, double r, double g, double b, double opaq
 
 static void objects(const struct scene *s, double t_s, struct draw_list *list)
 {
-    static const enum draw_kind kind[] = {DRAW_SQUARE, DRAW_SPHERE, DRAW_BOX, DRAW_CAPSULE,
-                                          DRAW_MESH};
+    static const enum draw_kind kind[] = {
+        DRAW_SQUARE, DRAW_SPHERE, DRAW_BOX, DRAW_CAPSULE, DRAW_MESH};
     for (int k = 0; k < s->objects; k++) {
         const struct scene_object *o = &s->object[k];
         const double *c = s->material[o->material].colour;
@@ -64,8 +64,8 @@ static void state_colour(const struct exh_wire_state *in, int f, struct draw_ite
 }
 
 /* The collision plane as a disc around P_C, and dots along the ray from P_F to it. */
-static void plane(const struct draw_moment *m, const struct pose *hand, int f,
-                  struct draw_list *list)
+static void plane(
+    const struct draw_moment *m, const struct pose *hand, int f, struct draw_list *list)
 {
     const struct exh_wire_plane *p = &m->out.plane[f];
     const struct v3 n = m3_by(&hand->turn, from_q30(p->normal_q30));
@@ -87,7 +87,7 @@ static void plane(const struct draw_moment *m, const struct pose *hand, int f,
 /* A box that stands on the nail's side of the fingertip: the force is its height. Around it, as
  * glass, the highest force of the material that is touched. */
 static void bar(const struct scene *s, const struct draw_moment *m, const struct finger *f,
-                const struct pose *hand, int which, struct draw_list *list)
+    const struct pose *hand, int which, struct draw_list *list)
 {
     const struct v3 up = v3_times(m3_by(&hand->turn, f->pad), -1);
     const struct v3 foot = v3_along(pose_by(hand, f->tip), FINGER_PAD_M, up);
@@ -141,6 +141,6 @@ void draw_write(FILE *to, const struct draw_list *list)
     for (int k = 0; k < list->items; k++) {
         const struct draw_item *i = &list->item[k];
         fprintf(to, "item %d %d %d %.6f %.6f %.6f\n", (int)i->kind, (int)i->what, i->which,
-                i->at.at.x, i->at.at.y, i->at.at.z);
+            i->at.at.x, i->at.at.y, i->at.at.z);
     }
 }

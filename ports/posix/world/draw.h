@@ -80,8 +80,8 @@ void draw_free(struct draw_list *list);
 void draw_write(FILE *to, const struct draw_list *list);
 
 /* Parts of world_draw(). */
-struct draw_item *draw_add(struct draw_list *list, enum draw_kind kind, enum draw_what what,
-                           int which);
+struct draw_item *draw_add(
+    struct draw_list *list, enum draw_kind kind, enum draw_what what, int which);
 void draw_hand(const struct world *w, const struct draw_moment *m, struct draw_list *list);
 void draw_numbers(const struct world *w, const struct draw_moment *m, struct draw_list *list);
 

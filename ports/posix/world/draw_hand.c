@@ -6,7 +6,7 @@
 #define KNUCKLE_M 0.0130
 
 static struct draw_item *capsule(struct draw_list *list, const struct pose *hand, int which,
-                                 struct v3 from, struct v3 to, double radius, const float colour[4])
+    struct v3 from, struct v3 to, double radius, const float colour[4])
 {
     const struct v3 a = pose_by(hand, from), b = pose_by(hand, to), way = v3_sub(b, a);
     struct draw_item *i = draw_add(list, DRAW_CAPSULE, DRAW_HAND, which);
@@ -25,11 +25,8 @@ static struct draw_item *capsule(struct draw_list *list, const struct pose *hand
 static void palm(struct draw_list *list, const struct pose *hand, const struct hand *h)
 {
     static const float shell[4] = {0.42F, 0.45F, 0.50F, 1}, joint[4] = {0.20F, 0.22F, 0.26F, 1};
-    const struct v3 heel[5] = {{0.012, 0.030, 0.030},
-                               {-0.004, 0.026, 0.022},
-                               {-0.006, 0.009, 0.018},
-                               {-0.006, -0.009, 0.018},
-                               {-0.004, -0.027, 0.022}};
+    const struct v3 heel[5] = {{0.012, 0.030, 0.030}, {-0.004, 0.026, 0.022},
+        {-0.006, 0.009, 0.018}, {-0.006, -0.009, 0.018}, {-0.004, -0.027, 0.022}};
     for (int f = 0; f < FINGERS; f++) {
         const struct v3 base = h->base[f].at;
         const struct v3 stop = v3_along(heel[f], f == 0 ? 0.85 : 0.88, v3_sub(base, heel[f]));

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct draw_item *draw_add(struct draw_list *list, enum draw_kind kind, enum draw_what what,
-                           int which)
+struct draw_item *draw_add(
+    struct draw_list *list, enum draw_kind kind, enum draw_what what, int which)
 {
     static struct draw_item nowhere;
     struct draw_item *i;

@@ -7,11 +7,8 @@
 #include <string.h>
 
 enum { WHITE, GREY, BLUE, AMBER, RED };
-static const float ink[][4] = {{0.97F, 0.97F, 0.97F, 1},
-                               {0.74F, 0.77F, 0.81F, 1},
-                               {0.52F, 0.79F, 1, 1},
-                               {1, 0.78F, 0.30F, 1},
-                               {1, 0.46F, 0.42F, 1}};
+static const float ink[][4] = {{0.97F, 0.97F, 0.97F, 1}, {0.74F, 0.77F, 0.81F, 1},
+    {0.52F, 0.79F, 1, 1}, {1, 0.78F, 0.30F, 1}, {1, 0.46F, 0.42F, 1}};
 
 #ifdef __GNUC__
 __attribute__((format(printf, 6, 7)))
@@ -33,8 +30,8 @@ say(struct draw_list *l, int x, int y, int colour, int how, const char *format, 
     va_end(args);
 }
 
-static void rect(struct draw_list *l, int x, int y, int w, int h, float r, float g, float b,
-                 float opaque)
+static void rect(
+    struct draw_list *l, int x, int y, int w, int h, float r, float g, float b, float opaque)
 {
     const struct draw_rect q = {x, y, w, h, opaque < 1, {r, g, b, opaque}};
     if (l->rects < (int)(sizeof l->rect / sizeof l->rect[0])) { l->rect[l->rects++] = q; }
@@ -101,14 +98,10 @@ static void link_state(const struct draw_moment *m, struct draw_list *l)
 static void keys(struct draw_list *l)
 {
     static const char *const text[] = {"arrows, mouse    turn the view",
-                                       "+ -, wheel       nearer, farther",
-                                       "1 .. 5           bend thumb .. little",
-                                       "0                bend all; shift opens",
-                                       "w a s d r f      carry the hand",
-                                       "space            pause",
-                                       "b                back to the start",
-                                       "h                this help",
-                                       "q, esc           leave"};
+        "+ -, wheel       nearer, farther", "1 .. 5           bend thumb .. little",
+        "0                bend all; shift opens", "w a s d r f      carry the hand",
+        "space            pause", "b                back to the start",
+        "h                this help", "q, esc           leave"};
     const int n = (int)(sizeof text / sizeof text[0]);
     rect(l, -330, 12, 318, 20 * n + 16, 0.07F, 0.09F, 0.12F, 0.72F);
     for (int i = 0; i < n; i++) {

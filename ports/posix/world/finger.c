@@ -50,8 +50,8 @@ static struct angle sum(struct angle a, struct angle b)
     return c;
 }
 
-void finger_at(struct finger *f, const struct hand *h, unsigned which,
-               const int32_t joint_turn_q32[3])
+void finger_at(
+    struct finger *f, const struct hand *h, unsigned which, const int32_t joint_turn_q32[3])
 {
     const struct pose *b = &h->base[which];
     const struct angle q0 = angle(joint_turn_q32[0]), q2 = angle(joint_turn_q32[2]);

@@ -36,7 +36,7 @@ struct finger {
 };
 
 /* One finger (0 thumb .. 4 little) at the angles q0, q1, q2; P_F within 1e-15 m. */
-void finger_at(struct finger *f, const struct hand *h, unsigned which,
-               const int32_t joint_turn_q32[3]);
+void finger_at(
+    struct finger *f, const struct hand *h, unsigned which, const int32_t joint_turn_q32[3]);
 
 #endif

@@ -28,7 +28,7 @@ static int open_window(struct picture *p, const struct picture_want *want, int s
     SDL_GL_SetAttribute(SDL_GL_MULTISAMPLEBUFFERS, samples > 1);
     SDL_GL_SetAttribute(SDL_GL_MULTISAMPLESAMPLES, samples > 1 ? samples : 0);
     p->window = SDL_CreateWindow(want->title, SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED,
-                                 want->width, want->height, how);
+        want->width, want->height, how);
     if (p->window) { p->context = SDL_GL_CreateContext(p->window); }
     if (p->context) { return 0; }
     if (p->window) { SDL_DestroyWindow(p->window); }
@@ -48,9 +48,9 @@ static int open_all(struct picture *p, const struct picture_want *want, char *er
     }
     if (open_window(p, want, want->samples) && open_window(p, want, 0)) {
         snprintf(error, error_B,
-                 "no OpenGL 2.1: %s: install libgl1-mesa-dri and libegl1, or use "
-                 "--headless without --png and --video",
-                 SDL_GetError());
+            "no OpenGL 2.1: %s: install libgl1-mesa-dri and libegl1, or use "
+            "--headless without --png and --video",
+            SDL_GetError());
         return 1;
     }
     p->headless = want->headless;
@@ -98,7 +98,7 @@ static struct gl_patch both(const struct gl_patch *a, const struct gl_patch *b)
     if (a->x1 <= a->x0) { return *b; }
     if (b->x1 <= b->x0) { return *a; }
     return (struct gl_patch){a->x0 < b->x0 ? a->x0 : b->x0, a->y0 < b->y0 ? a->y0 : b->y0,
-                             a->x1 > b->x1 ? a->x1 : b->x1, a->y1 > b->y1 ? a->y1 : b->y1};
+        a->x1 > b->x1 ? a->x1 : b->x1, a->y1 > b->y1 ? a->y1 : b->y1};
 }
 
 /* Numbers not older than they may be; fresh: all of now. */
@@ -140,10 +140,7 @@ static void paint(struct picture *p, const struct draw_list *list, int fresh)
     }
 }
 
-void picture_paint(struct picture *p, const struct draw_list *list)
-{
-    paint(p, list, 0);
-}
+void picture_paint(struct picture *p, const struct draw_list *list) { paint(p, list, 0); }
 
 void picture_show(struct picture *p)
 {
@@ -172,7 +169,7 @@ static int write_png(FILE *f, const unsigned char *pixel, int width, int height)
     }
     png_init_io(png, f);
     png_set_IHDR(png, info, (png_uint_32)width, (png_uint_32)height, 8, PNG_COLOR_TYPE_RGB,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+        PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_write_info(png, info);
     for (int y = height - 1; y >= 0; y--) { /* OpenGL counts from below */
         png_write_row(png, pixel + (size_t)y * (size_t)width * 3);
@@ -182,8 +179,8 @@ static int write_png(FILE *f, const unsigned char *pixel, int width, int height)
     return 0;
 }
 
-int picture_save(struct picture *p, const struct draw_list *list, const char *path, char *error,
-                 size_t error_B)
+int picture_save(
+    struct picture *p, const struct draw_list *list, const char *path, char *error, size_t error_B)
 {
     unsigned char *pixel;
     FILE *f = fopen(path, "wb");

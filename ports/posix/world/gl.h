@@ -61,7 +61,7 @@ extern const struct v3 gl_light; /* towards the lamp */
 
 /* One thing as one form; its shadow on `floor` if that is not NULL. */
 void gl_batch_add(struct gl_batch *g, struct gl_forms *f, const struct draw_item *i, int form,
-                  struct v3 eye, const struct draw_item *floor);
+    struct v3 eye, const struct draw_item *floor);
 void gl_batch_send(struct gl_batch *g);
 void gl_batch_bind(const struct gl_batch *g);
 void gl_batch_paint(struct gl_batch *g, GLenum kind, int from, int to); /* indices */
@@ -103,8 +103,8 @@ struct gl_solid {
 int gl_solid_open(struct gl_solid *g, char *error, size_t error_B);
 void gl_solid_close(struct gl_solid *g);
 /* Puts a part together; returns where on the screen it will be. */
-struct gl_patch gl_solid_fill(struct gl_solid *g, const struct draw_list *list, int part, int width,
-                              int height);
+struct gl_patch gl_solid_fill(
+    struct gl_solid *g, const struct draw_list *list, int part, int width, int height);
 /* Paints it: first what hides, then what can be seen through. */
 void gl_solid_paint(struct gl_solid *g, const struct draw_list *list);
 
@@ -130,8 +130,8 @@ struct gl_layers {
 int gl_layers_fit(struct gl_layers *g, int width, int height);
 void gl_layers_close(struct gl_layers *g);
 void gl_layer_on(const struct gl_layers *g, int layer); /* -1: the window */
-void gl_layer_copy(const struct gl_layers *g, int from, int to, GLbitfield what,
-                   const struct gl_patch *p);
+void gl_layer_copy(
+    const struct gl_layers *g, int from, int to, GLbitfield what, const struct gl_patch *p);
 int gl_layers_moved(struct gl_layers *g, const struct draw_list *list);
 int gl_layers_old(struct gl_layers *g, const struct draw_list *list);
 void gl_layers_panels(const struct gl_layers *g, int from, int to, const struct draw_list *list);
@@ -160,6 +160,6 @@ void gl_text_paint(struct gl_text *g, const struct draw_list *list, int width, i
 
 /* Compiles and links; attributes are numbered as listed. 0 with the reason if it fails. */
 GLuint gl_program(const char *vertex, const char *fragment, const char *const *attribute, int n,
-                  char *error, size_t error_B);
+    char *error, size_t error_B);
 
 #endif

@@ -42,8 +42,8 @@ static void lit(const struct brush *b, struct v3 p, struct v3 n, float c[4])
     }
 }
 
-static void paint(const struct brush *b, const struct gl_corner *k, struct v3 p, struct v3 n,
-                  float c[4])
+static void paint(
+    const struct brush *b, const struct gl_corner *k, struct v3 p, struct v3 n, float c[4])
 {
     for (int i = 0; i < 4; i++) { c[i] = b->item->colour[i]; }
     switch (b->item->what) {
@@ -104,10 +104,7 @@ static int is_round(const struct draw_item *i)
     return i->kind == DRAW_SPHERE || i->kind == DRAW_CAPSULE;
 }
 
-static int is_long(const struct draw_item *i)
-{
-    return i->kind == DRAW_CAPSULE && i->size.z > 0;
-}
+static int is_long(const struct draw_item *i) { return i->kind == DRAW_CAPSULE && i->size.z > 0; }
 
 /* The frame of a round body's form: x to the eye, but z along its axis; of a flat one z to the eye,
  * or of its outline to the lamp and x along the axis. */
@@ -161,7 +158,7 @@ static struct gl_form seen_of(const struct gl_form *f, const struct draw_item *i
 }
 
 void gl_batch_add(struct gl_batch *g, struct gl_forms *f, const struct draw_item *i, int form,
-                  struct v3 eye, const struct draw_item *floor)
+    struct v3 eye, const struct draw_item *floor)
 {
     struct brush b = {.item = i, .eye = eye, .floor = floor};
     const struct gl_form m = seen_of(&f->form[form], i);
@@ -180,17 +177,17 @@ void gl_batch_paint(struct gl_batch *g, GLenum kind, int from, int to)
 {
     if (to <= from) { return; }
     glDrawElements(kind, to - from, GL_UNSIGNED_INT,
-                   (const void *)(uintptr_t)((size_t)from * sizeof *g->index));
+        (const void *)(uintptr_t)((size_t)from * sizeof *g->index));
 }
 
 void gl_batch_send(struct gl_batch *g)
 {
     glBindBuffer(GL_ARRAY_BUFFER, g->buffer[0]);
-    glBufferData(GL_ARRAY_BUFFER, g->vertices * (GLsizeiptr)sizeof *g->vertex, g->vertex,
-                 GL_STREAM_DRAW);
+    glBufferData(
+        GL_ARRAY_BUFFER, g->vertices * (GLsizeiptr)sizeof *g->vertex, g->vertex, GL_STREAM_DRAW);
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, g->buffer[1]);
     glBufferData(GL_ELEMENT_ARRAY_BUFFER, g->indices * (GLsizeiptr)sizeof *g->index, g->index,
-                 GL_STREAM_DRAW);
+        GL_STREAM_DRAW);
 }
 
 void gl_batch_bind(const struct gl_batch *g)
@@ -199,10 +196,10 @@ void gl_batch_bind(const struct gl_batch *g)
     glBindBuffer(GL_ARRAY_BUFFER, g->buffer[0]);
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, g->buffer[1]);
     glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof *g->vertex, (const void *)0);
-    glVertexAttribPointer(1, 4, GL_FLOAT, GL_FALSE, sizeof *g->vertex,
-                          (const void *)(3 * sizeof(float)));
-    glVertexAttribPointer(2, 2, GL_FLOAT, GL_FALSE, sizeof *g->vertex,
-                          (const void *)(7 * sizeof(float)));
+    glVertexAttribPointer(
+        1, 4, GL_FLOAT, GL_FALSE, sizeof *g->vertex, (const void *)(3 * sizeof(float)));
+    glVertexAttribPointer(
+        2, 2, GL_FLOAT, GL_FALSE, sizeof *g->vertex, (const void *)(7 * sizeof(float)));
 }
 
 void gl_batch_close(struct gl_batch *g)

@@ -98,8 +98,8 @@ static void make_disc(struct gl_forms *m, int steps, double radius)
 }
 
 /* A ring of `steps` quads between two radii, w at each. */
-static void make_ring(struct gl_forms *m, int steps, double in, double w_in, double out,
-                      double w_out)
+static void make_ring(
+    struct gl_forms *m, int steps, double in, double w_in, double out, double w_out)
 {
     const struct v3 up = v3(0, 0, 1);
     for (int s = 0; s <= steps; s++) {

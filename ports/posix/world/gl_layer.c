@@ -19,8 +19,8 @@ static int make(struct gl_layer *l, int width, int height)
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, l->buffer[0]);
     glBindRenderbuffer(GL_RENDERBUFFER, l->buffer[1]);
     glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH24_STENCIL8, width, height);
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER,
-                              l->buffer[1]);
+    glFramebufferRenderbuffer(
+        GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, l->buffer[1]);
     return glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE;
 }
 
@@ -67,8 +67,8 @@ void gl_layer_on(const struct gl_layers *g, int layer)
     glBindFramebuffer(GL_FRAMEBUFFER, layer < 0 ? 0 : g->layer[layer].frame);
 }
 
-void gl_layer_copy(const struct gl_layers *g, int from, int to, GLbitfield what,
-                   const struct gl_patch *p)
+void gl_layer_copy(
+    const struct gl_layers *g, int from, int to, GLbitfield what, const struct gl_patch *p)
 {
     const int x0 = p->x0 < 0 ? 0 : p->x0, x1 = p->x1 > g->width ? g->width : p->x1;
     const int y0 = p->y0 < 0 ? 0 : p->y0, y1 = p->y1 > g->height ? g->height : p->y1;

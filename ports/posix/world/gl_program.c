@@ -17,7 +17,7 @@ static GLuint shader(GLenum kind, const char *text, char *error, size_t error_B)
 }
 
 GLuint gl_program(const char *vertex, const char *fragment, const char *const *attribute, int n,
-                  char *error, size_t error_B)
+    char *error, size_t error_B)
 {
     const GLuint v = shader(GL_VERTEX_SHADER, vertex, error, error_B);
     const GLuint f = v ? shader(GL_FRAGMENT_SHADER, fragment, error, error_B) : 0;

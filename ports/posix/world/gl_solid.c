@@ -58,8 +58,8 @@ static const char mesh_text[] =
     "}\n";
 int gl_solid_open(struct gl_solid *g, char *error, size_t error_B)
 {
-    static const char *const batch[] = {"place", "ink", "where"}, *const mesh[] = {"place",
-                                                                                   "normal"};
+    static const char *const batch[] = {"place", "ink", "where"}, *const mesh[] = {
+                                                                      "place", "normal"};
     static const char *const text[GL_PROGRAMS] = {plain_text, floor_text, shade_text};
     gl_forms_make(&g->forms);
     for (int i = 0; i < GL_PROGRAMS; i++) {
@@ -140,8 +140,8 @@ static void mesh(struct gl_solid *g, const struct draw_item *i)
         (k < 2 ? glEnableVertexAttribArray : glDisableVertexAttribArray)(k);
     }
     glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(struct mesh_vertex), (const void *)0);
-    glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(struct mesh_vertex),
-                          (const void *)(3 * sizeof(float)));
+    glVertexAttribPointer(
+        1, 3, GL_FLOAT, GL_FALSE, sizeof(struct mesh_vertex), (const void *)(3 * sizeof(float)));
     glDrawArrays(GL_TRIANGLES, 0, 3 * i->mesh->triangles);
 }
 
@@ -288,8 +288,8 @@ static void set_view(float e[16], const struct draw_list *l, double width, doubl
     const struct v3 y = v3_cross(z, x);
     const double sx = f * height / width, a = (lo + hi) / (lo - hi), b = 2 * lo * hi / (lo - hi);
     const double ex = -v3_dot(x, l->eye), ey = -v3_dot(y, l->eye), ez = -v3_dot(z, l->eye);
-    const double m[16] = {sx * x.x, f * y.x, a * z.x, -z.x, sx * x.y, f * y.y, a * z.y,    -z.y,
-                          sx * x.z, f * y.z, a * z.z, -z.z, sx * ex,  f * ey,  a * ez + b, -ez};
+    const double m[16] = {sx * x.x, f * y.x, a * z.x, -z.x, sx * x.y, f * y.y, a * z.y, -z.y,
+        sx * x.z, f * y.z, a * z.z, -z.z, sx * ex, f * ey, a * ez + b, -ez};
     for (int i = 0; i < 16; i++) { e[i] = (float)m[i]; }
 }
 
@@ -315,13 +315,13 @@ static struct gl_patch reach(const struct gl_solid *g, int width, int height)
     y0 = y0 < -1 ? -1 : y0;
     x1 = x1 > 1 ? 1 : x1;
     y1 = y1 > 1 ? 1 : y1;
-    return (struct gl_patch){
-        (int)((x0 + 1) * 0.5F * (float)width) - 2, (int)((y0 + 1) * 0.5F * (float)height) - 2,
-        (int)((x1 + 1) * 0.5F * (float)width) + 3, (int)((y1 + 1) * 0.5F * (float)height) + 3};
+    return (struct gl_patch){(int)((x0 + 1) * 0.5F * (float)width) - 2,
+        (int)((y0 + 1) * 0.5F * (float)height) - 2, (int)((x1 + 1) * 0.5F * (float)width) + 3,
+        (int)((y1 + 1) * 0.5F * (float)height) + 3};
 }
 
-static void fill(struct gl_solid *g, const struct draw_list *l, const struct draw_item *floor,
-                 int mark[])
+static void fill(
+    struct gl_solid *g, const struct draw_list *l, const struct draw_item *floor, int mark[])
 {
     struct gl_batch *b = &g->batch;
     b->vertices = b->indices = 0;
@@ -346,8 +346,8 @@ static void section(struct gl_solid *g, int program, int which)
 }
 
 /* Once a pixel, where the floor is seen. */
-static void paint_shadows(struct gl_solid *g, const struct draw_list *l,
-                          const struct draw_item *floor)
+static void paint_shadows(
+    struct gl_solid *g, const struct draw_list *l, const struct draw_item *floor)
 {
     glEnable(GL_STENCIL_TEST);
     glStencilFunc(GL_EQUAL, 0, 0xFF);
@@ -370,8 +370,8 @@ static int has_meshes(const struct gl_solid *g, const struct draw_list *l)
     return 0;
 }
 
-struct gl_patch gl_solid_fill(struct gl_solid *g, const struct draw_list *l, int part, int width,
-                              int height)
+struct gl_patch gl_solid_fill(
+    struct gl_solid *g, const struct draw_list *l, int part, int width, int height)
 {
     const struct draw_item *floor = floor_of(l);
     const struct gl_patch all = {0, 0, width, height};

@@ -31,8 +31,8 @@ static const char lettered_text[] = "#version 120\n"
                                     "void main() { gl_FragColor = c * texture2D(atlas, t).a; }\n";
 
 /* Letters of one size into the atlas, from *x, *y on. */
-static int letters(struct gl_text *g, unsigned char *atlas, int size, int *x, int *y, char *error,
-                   size_t error_B)
+static int letters(
+    struct gl_text *g, unsigned char *atlas, int size, int *x, int *y, char *error, size_t error_B)
 {
     const SDL_Color white = {255, 255, 255, 255};
     TTF_Font *font = TTF_OpenFont(WORLD_FONT, size_px[size]);
@@ -80,8 +80,8 @@ static int make_atlas(struct gl_text *g, char *error, size_t error_B)
         glGenTextures(1, &g->texture);
         glBindTexture(GL_TEXTURE_2D, g->texture);
         glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-        glTexImage2D(GL_TEXTURE_2D, 0, GL_ALPHA, ATLAS, ATLAS, 0, GL_ALPHA, GL_UNSIGNED_BYTE,
-                     atlas);
+        glTexImage2D(
+            GL_TEXTURE_2D, 0, GL_ALPHA, ATLAS, ATLAS, 0, GL_ALPHA, GL_UNSIGNED_BYTE, atlas);
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     }
@@ -127,7 +127,7 @@ static void corner(struct gl_text *g, float x, float y, float u, float v, const 
 }
 
 static void patch(struct gl_text *g, int x, int y, int w, int h, const struct gl_glyph *l,
-                  const float top[4], const float low[4])
+    const float top[4], const float low[4])
 {
     const float x0 = (float)x, y0 = (float)y, x1 = (float)(x + w), y1 = (float)(y + h);
     const float u0 = l ? l->u0 : 0, v0 = l ? l->v0 : 0, u1 = l ? l->u1 : 0, v1 = l ? l->v1 : 0;
@@ -193,7 +193,7 @@ void gl_text_paint(struct gl_text *g, const struct draw_list *list, int width, i
     for (int i = 0; i < list->rects; i++) {
         const struct draw_rect *r = &list->rect[i];
         patch(g, r->x < 0 ? width + r->x : r->x, r->y < 0 ? height + r->y : r->y, r->w, r->h, NULL,
-              r->colour, r->colour);
+            r->colour, r->colour);
     }
     flush(g, 0, width, height);
     for (int i = 0; i < list->texts; i++) { line(g, &list->text[i], width, height); }

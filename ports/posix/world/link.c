@@ -27,14 +27,14 @@ static int part(const char *text, char host[128], char port[16])
 }
 
 static int look_up(const char *text, const char *host_if_none, int passive, struct addrinfo **to,
-                   char *error, size_t error_B)
+    char *error, size_t error_B)
 {
     const struct addrinfo want = {.ai_socktype = SOCK_DGRAM, .ai_flags = passive ? AI_PASSIVE : 0};
     char host[128], port[16];
     int err;
     if (part(text, host, port)) {
-        snprintf(error, error_B, "%.60s: give it as ADDRESS:PORT, such as 127.0.0.1:" LINK_PORT,
-                 text);
+        snprintf(
+            error, error_B, "%.60s: give it as ADDRESS:PORT, such as 127.0.0.1:" LINK_PORT, text);
         return 1;
     }
     err = getaddrinfo(host[0] ? host : host_if_none, port, &want, to);
@@ -44,8 +44,8 @@ static int look_up(const char *text, const char *host_if_none, int passive, stru
     return err != 0;
 }
 
-static int open_socket(struct link *l, const char *listen, const struct addrinfo *peer, char *error,
-                       size_t error_B)
+static int open_socket(
+    struct link *l, const char *listen, const struct addrinfo *peer, char *error, size_t error_B)
 {
     struct addrinfo *own = NULL;
     const int family = peer ? peer->ai_family : AF_INET;
@@ -54,7 +54,7 @@ static int open_socket(struct link *l, const char *listen, const struct addrinfo
     if (l->fd < 0 || fcntl(l->fd, F_SETFL, O_NONBLOCK) != 0 ||
         (own && bind(l->fd, own->ai_addr, own->ai_addrlen) != 0)) {
         snprintf(error, error_B, "%.60s: %s: choose another address or port",
-                 listen ? listen : "socket", strerror(errno));
+            listen ? listen : "socket", strerror(errno));
         freeaddrinfo(own);
         return 1;
     }
@@ -63,7 +63,7 @@ static int open_socket(struct link *l, const char *listen, const struct addrinfo
 }
 
 int link_open(struct link *l, const char *listen, const char *peer, uint32_t session, char *error,
-              size_t error_B)
+    size_t error_B)
 {
     struct addrinfo *to = NULL;
     int bad;
@@ -125,15 +125,13 @@ static void say_what_differs(const struct link *l)
         l->say("the peer is a world, too: give the address of a controller");
     }
     if (l->differs & EXH_WIRE_LIB) {
-        snprintf(
-            text, sizeof text,
+        snprintf(text, sizeof text,
             "the controller has version %#lx of the library, this world %#lx: build both of one",
             (unsigned long)l->theirs.lib_version, (unsigned long)ours.lib_version);
         l->say(text);
     }
     if (l->differs & EXH_WIRE_TABLE) {
-        snprintf(
-            text, sizeof text,
+        snprintf(text, sizeof text,
             "the controller's table of parameters is %08lx, this world's %08lx: build both of one",
             (unsigned long)l->theirs.table_crc, (unsigned long)ours.table_crc);
         l->say(text);

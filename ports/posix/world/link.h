@@ -74,7 +74,7 @@ struct link {
 
 /* listen: "[ADDRESS:]PORT" or NULL; peer: "HOST:PORT" or NULL. 0, or 1 with the reason. */
 int link_open(struct link *l, const char *listen, const char *peer, uint32_t session, char *error,
-              size_t error_B);
+    size_t error_B);
 void link_close(struct link *l);
 
 /* The scene's materials, each checked against its row, are what the controller is to have: asked
@@ -84,13 +84,13 @@ void link_materials(struct link *l, const struct scene *s);
 
 /* One value of one material; 1: refused. */
 int link_want(struct link *l, const char *name, const struct exh_signal *row, unsigned instance,
-              double value);
+    double value);
 
 /* Asks for a trace when the controller has said HELLO and till it answers, and again of one that
  * has started anew; its frames are lines of a CSV. 0, 1 (no file) or 2 (no such signal) with the
  * reason. */
-int link_trace_open(struct link *l, const struct link_trace_want *want, char *error,
-                    size_t error_B);
+int link_trace_open(
+    struct link *l, const struct link_trace_want *want, char *error, size_t error_B);
 
 /* Says what was missed. 1: the file could not be written. */
 int link_trace_close(struct link *l);

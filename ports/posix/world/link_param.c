@@ -17,7 +17,7 @@ static void say(const struct link *l, const struct link_want *w, double value, c
     char text[400];
     if (l->say == NULL) { return; }
     snprintf(text, sizeof text, "material %s: %s %.9g %s: %s", w->name, w->row->name, value,
-             w->row->unit, what);
+        w->row->unit, what);
     l->say(text);
 }
 
@@ -26,8 +26,8 @@ static double value_of(const struct link_want *w)
     return (double)w->param.value / (double)(INT64_C(1) << w->row->frac);
 }
 
-int link_want(struct link *l, const char *name, const struct exh_signal *row, unsigned instance,
-              double value)
+int link_want(
+    struct link *l, const char *name, const struct exh_signal *row, unsigned instance, double value)
 {
     const double one = (double)(INT64_C(1) << row->frac), raw = value * one;
     struct link_want w = {{row->id, (uint16_t)instance, 0}, row, "", 0, 0};
@@ -36,7 +36,7 @@ int link_want(struct link *l, const char *name, const struct exh_signal *row, un
     if (!(raw >= row->min && raw <= row->max)) {
         char why[120];
         snprintf(why, sizeof why, "not between %.9g and %.9g: not sent, the controller's own holds",
-                 row->min / one, row->max / one);
+            row->min / one, row->max / one);
         say(l, &w, value, why);
         l->refused++;
         return 1;
@@ -113,8 +113,8 @@ int link_params_hold(struct link *l, int64_t now_us)
         if (!l->want[i].answered) {
             char why[120];
             snprintf(why, sizeof why,
-                     "no answer (%d of %d are without): the controller's own holds till then",
-                     l->waiting, l->wants);
+                "no answer (%d of %d are without): the controller's own holds till then",
+                l->waiting, l->wants);
             say(l, &l->want[i], value_of(&l->want[i]), why);
             break;
         }

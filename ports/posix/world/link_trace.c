@@ -35,8 +35,8 @@ static int pick(struct link_trace *t, const char *names, char *error, size_t err
         const int32_t i = index_of(t->table, at, len);
         if (i < 0 || t->signals == EXH_TRACE_SIGNALS) {
             snprintf(error, error_B, "--trace-signals: %.*s: %s", (int)len, at,
-                     i < 0 ? "no output of the controller: see `exhand regs --scene bilateral`"
-                           : "one too many: give four at most");
+                i < 0 ? "no output of the controller: see `exhand regs --scene bilateral`"
+                      : "one too many: give four at most");
             return 1;
         }
         t->ask.index[t->signals++] = (uint16_t)i;
@@ -86,7 +86,7 @@ int link_trace_close(struct link *l)
     bad |= fclose(t->file);
     t->file = NULL;
     snprintf(text, sizeof text, "--trace: %.200s: %s%lu frames, %lu missed", t->path,
-             bad ? "could not be written: " : "", t->frames, t->missed);
+        bad ? "could not be written: " : "", t->frames, t->missed);
     if (l->say && (bad || t->missed || t->frames == 0)) { l->say(text); }
     return bad != 0;
 }
@@ -135,7 +135,7 @@ void link_trace_take(struct link *l, const struct exh_wire_trace *in)
     }
     if (!t->answered && in->result < 0 && l->say) {
         snprintf(text, sizeof text, "--trace: refused by the controller: %s",
-                 exh_error_text(in->result));
+            exh_error_text(in->result));
         l->say(text);
     }
     if (!t->answered) { t->next = in->first; }

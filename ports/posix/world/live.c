@@ -269,8 +269,8 @@ static int leave_list(const struct draw_list *list, const char *path)
 static int watch(struct live *l)
 {
     const struct run *r = l->run;
-    const struct picture_want want = {world_scene(r->world)->title, (int)r->width, (int)r->height,
-                                      r->headless, (int)r->samples};
+    const struct picture_want want = {
+        world_scene(r->world)->title, (int)r->width, (int)r->height, r->headless, (int)r->samples};
     struct looking v;
     char why[600];
     int bad = 0;
@@ -301,10 +301,10 @@ static void report(const struct live *l)
     printf("frames %lu  rays %lu  hits %lu", s->frames, s->rays, s->hits);
     if (l->has_link) {
         printf("  sent %lu  taken %lu  lost %lu  late %lu  twice %lu  bad %lu  refused %lu",
-               l->link.sent, (unsigned long)rx->accepted, (unsigned long)rx->missing,
-               (unsigned long)rx->reordered + rx->old, (unsigned long)rx->duplicate,
-               (unsigned long)rx->corrupt + rx->version + rx->unknown + rx->stranger + rx->far,
-               l->link.refused);
+            l->link.sent, (unsigned long)rx->accepted, (unsigned long)rx->missing,
+            (unsigned long)rx->reordered + rx->old, (unsigned long)rx->duplicate,
+            (unsigned long)rx->corrupt + rx->version + rx->unknown + rx->stranger + rx->far,
+            l->link.refused);
     }
     putchar('\n');
 }
@@ -324,15 +324,12 @@ static int go(struct live *l)
     return status;
 }
 
-static void complain(const char *text)
-{
-    cli_complain("%s", text);
-}
+static void complain(const char *text) { cli_complain("%s", text); }
 
 static int open_trace(const struct run *r, struct link *l)
 {
-    const struct link_trace_want want = {&bilateral_outputs, r->trace, r->trace_signals,
-                                         (uint32_t)r->trace_every};
+    const struct link_trace_want want = {
+        &bilateral_outputs, r->trace, r->trace_signals, (uint32_t)r->trace_every};
     char why[300];
     const int bad = r->trace ? link_trace_open(l, &want, why, sizeof why) : 0;
     if (bad) {

@@ -10,79 +10,34 @@
 #include <stdlib.h>
 
 #define OPTIONS(r) \
-    { \
-        "scene", \
-        CLI_TEXT, \
-        &(r).scene, \
-        0, \
-        0, \
-        "FILE", \
+    {"scene", CLI_TEXT, &(r).scene, 0, 0, "FILE", \
         "the world (ports/posix/world/scenes/README.md)"}, \
-        {"listen", \
-         CLI_TEXT, \
-         &(r).listen, \
-         0, \
-         0, \
-         "[ADDRESS:]PORT", \
-         "wait for a controller there (UDP); 127.0.0.1"}, \
-        {"peer", \
-         CLI_TEXT, \
-         &(r).peer, \
-         0, \
-         0, \
-         "HOST:PORT", \
-         "the controller is there; no other is listened to"}, \
+        {"listen", CLI_TEXT, &(r).listen, 0, 0, "[ADDRESS:]PORT", \
+            "wait for a controller there (UDP); 127.0.0.1"}, \
+        {"peer", CLI_TEXT, &(r).peer, 0, 0, "HOST:PORT", \
+            "the controller is there; no other is listened to"}, \
         {"fps", CLI_REAL, &(r).fps, 1, 2000, "N", "frames a second, each an exchange; 400"}, \
         {"frames", CLI_INT, &(r).frames, 1, 1e12, "N", "end after so many"}, \
         {"seconds", CLI_REAL, &(r).seconds, 0, 1e9, "S", "end after so long"}, \
-        {"headless", \
-         CLI_FLAG, \
-         &(r).headless, \
-         0, \
-         0, \
-         NULL, \
-         "no window; without a link: as fast as it goes"}, \
-        {"script", \
-         CLI_FLAG, \
-         &(r).script, \
-         0, \
-         0, \
-         NULL, \
-         "without a controller, fingers close and open by themselves"}, \
-        {"trace", \
-         CLI_TEXT, \
-         &(r).trace, \
-         0, \
-         0, \
-         "FILE", \
-         "outputs of the controller, as it sends them, as CSV (a link)"}, \
+        {"headless", CLI_FLAG, &(r).headless, 0, 0, NULL, \
+            "no window; without a link: as fast as it goes"}, \
+        {"script", CLI_FLAG, &(r).script, 0, 0, NULL, \
+            "without a controller, fingers close and open by themselves"}, \
+        {"trace", CLI_TEXT, &(r).trace, 0, 0, "FILE", \
+            "outputs of the controller, as it sends them, as CSV (a link)"}, \
         {"trace-every", CLI_INT, &(r).trace_every, 1, 1e6, "N", "of every N-th tick; 1"}, \
-        {"trace-signals", \
-         CLI_TEXT, \
-         &(r).trace_signals, \
-         0, \
-         0, \
-         "NAMES", \
-         "up to four; q[1],f_des[1],d[1],c[1]: of the index finger"}, \
+        {"trace-signals", CLI_TEXT, &(r).trace_signals, 0, 0, "NAMES", \
+            "up to four; q[1],f_des[1],d[1],c[1]: of the index finger"}, \
         {"png", CLI_TEXT, &(r).png, 0, 0, "FILE", "leave the last picture there"}, \
-        {"list", \
-         CLI_TEXT, \
-         &(r).list, \
-         0, \
-         0, \
-         "FILE", \
-         "leave there what the window showed last, as words and numbers"}, \
-        {"video", CLI_TEXT, &(r).video, 0, 0, "DIR", "leave pictures there (--headless, no link)"}, \
+        {"list", CLI_TEXT, &(r).list, 0, 0, "FILE", \
+            "leave there what the window showed last, as words and numbers"}, \
+        {"video", CLI_TEXT, &(r).video, 0, 0, "DIR", \
+            "leave pictures there (--headless, no link)"}, \
         {"video-fps", CLI_REAL, &(r).video_fps, 1, 400, "N", "so many a second; 25"}, \
         {"width", CLI_INT, &(r).width, 160, 8192, "PIXELS", "of the picture; 960"}, \
         {"height", CLI_INT, &(r).height, 120, 8192, "PIXELS", "of the picture; 600"}, \
-        {"smooth", \
-         CLI_INT, \
-         &(r).samples, \
-         0, \
-         16, \
-         "N", \
-         "samples a pixel; 4 for --png and --video, else 0"}, \
+        {"smooth", CLI_INT, &(r).samples, 0, 16, "N", \
+            "samples a pixel; 4 for --png and --video, else 0"}, \
         {"bench", CLI_FLAG, &(r).bench, 0, 0, NULL, "print frames and rays a second"},
 
 void exh_assert_failed(const char *file, int line)
@@ -127,21 +82,17 @@ static int check(struct run *r)
 int main(int argc, char **argv)
 {
     struct run r = {.trace_signals = "q[1],f_des[1],d[1],c[1]",
-                    .trace_every = 1,
-                    .fps = 400,
-                    .video_fps = 25,
-                    .width = 960,
-                    .height = 600,
-                    .samples = -1};
+        .trace_every = 1,
+        .fps = 400,
+        .video_fps = 25,
+        .width = 960,
+        .height = 600,
+        .samples = -1};
     const struct cli_option option[] = {OPTIONS(r)};
-    const struct cli_command c = {
-        "world",
-        "--scene FILE [options]",
+    const struct cli_command c = {"world", "--scene FILE [options]",
         "The virtual world: answers joints with the planes the fingers are about "
         "to touch.",
-        option,
-        (int)(sizeof option / sizeof option[0]),
-        0};
+        option, (int)(sizeof option / sizeof option[0]), 0};
     int status;
     cli_program = "";
     status = cli_parse(&c, argc, argv, NULL);

@@ -39,8 +39,8 @@ static int load(char *error, size_t error_B)
     library = dlopen(LIBRARY, RTLD_NOW | RTLD_LOCAL);
     if (library == NULL) {
         snprintf(error, error_B,
-                 "a mesh needs " LIBRARY ", which can't be loaded: install it (Debian: "
-                 "libembree-dev)");
+            "a mesh needs " LIBRARY ", which can't be loaded: install it (Debian: "
+            "libembree-dev)");
         return 1;
     }
 #define LOOK_UP(name) \
@@ -58,10 +58,10 @@ static int load(char *error, size_t error_B)
 
 static int fill(RTCGeometry g, const struct mesh *m)
 {
-    float *point = embree.rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                  3 * sizeof *point, (size_t)m->points);
-    unsigned *corner = embree.rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                      3 * sizeof *corner, (size_t)m->triangles);
+    float *point = embree.rtcSetNewGeometryBuffer(
+        g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof *point, (size_t)m->points);
+    unsigned *corner = embree.rtcSetNewGeometryBuffer(
+        g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof *corner, (size_t)m->triangles);
     if (point == NULL || corner == NULL) { return 1; }
     for (int i = 0; i < m->points; i++) {
         point[3 * i] = (float)m->point[i].x;

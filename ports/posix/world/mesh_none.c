@@ -8,15 +8,12 @@ int mesh_ready(struct mesh *m, char *error, size_t error_B)
 {
     (void)m;
     snprintf(error, error_B,
-             "a mesh needs Embree, which was missing when this program was built: install "
-             "it (Debian: libembree-dev) and run make again");
+        "a mesh needs Embree, which was missing when this program was built: install "
+        "it (Debian: libembree-dev) and run make again");
     return 1;
 }
 
-void mesh_unready(struct mesh *m)
-{
-    (void)m;
-}
+void mesh_unready(struct mesh *m) { (void)m; }
 
 int mesh_cast(const struct mesh *m, const struct ray *r, double *t, int *triangle)
 {

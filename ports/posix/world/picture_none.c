@@ -8,35 +8,23 @@ struct picture *picture_open(const struct picture_want *want, char *error, size_
 {
     (void)want;
     snprintf(error, error_B,
-             "pictures need SDL2 and OpenGL, which were missing when this program was "
-             "built: install libsdl2-dev libsdl2-ttf-dev libgl-dev libegl-dev "
-             "libgl1-mesa-dri libpng-dev fonts-dejavu-core and run `make world` again, "
-             "or use --headless without --png and --video");
+        "pictures need SDL2 and OpenGL, which were missing when this program was "
+        "built: install libsdl2-dev libsdl2-ttf-dev libgl-dev libegl-dev "
+        "libgl1-mesa-dri libpng-dev fonts-dejavu-core and run `make world` again, "
+        "or use --headless without --png and --video");
     return NULL;
 }
 
-void picture_close(struct picture *p)
-{
-    (void)p;
-}
+void picture_close(struct picture *p) { (void)p; }
 
-void picture_paint(struct picture *p, const struct draw_list *list)
-{
-    (void)p, (void)list;
-}
+void picture_paint(struct picture *p, const struct draw_list *list) { (void)p, (void)list; }
 
-void picture_show(struct picture *p)
-{
-    (void)p;
-}
+void picture_show(struct picture *p) { (void)p; }
 
-void picture_wait(struct picture *p)
-{
-    (void)p;
-}
+void picture_wait(struct picture *p) { (void)p; }
 
-int picture_save(struct picture *p, const struct draw_list *list, const char *path, char *error,
-                 size_t error_B)
+int picture_save(
+    struct picture *p, const struct draw_list *list, const char *path, char *error, size_t error_B)
 {
     (void)p, (void)list, (void)path;
     return picture_open(NULL, error, error_B) == NULL;

@@ -19,7 +19,7 @@ int scene_named(struct reading *r, char to[SCENE_NAME_B])
     }
     if (strlen(w->word[1]) >= SCENE_NAME_B) {
         return tokens_complain(w, "%s %.40s: a name has at most %d characters: shorten it",
-                               w->word[0], w->word[1], SCENE_NAME_B - 1);
+            w->word[0], w->word[1], SCENE_NAME_B - 1);
     }
     strcpy(to, w->word[1]);
     return 0;

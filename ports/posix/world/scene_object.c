@@ -13,17 +13,17 @@ static int add_object(struct reading *r, struct scene_object *o, const char *mat
     o->material = scene_material_of(s, material);
     if (o->material < 0) {
         return tokens_complain(&r->w,
-                               "%s %s: material %.30s: not defined so far: add `material %.30s` "
-                               "above",
-                               r->w.word[0], o->name, material, material);
+            "%s %s: material %.30s: not defined so far: add `material %.30s` "
+            "above",
+            r->w.word[0], o->name, material, material);
     }
     if (strcmp(o->name, "hand") == 0 || scene_object_of(s, o->name)) {
-        return tokens_complain(&r->w, "%s %s: the name is taken: use another one", r->w.word[0],
-                               o->name);
+        return tokens_complain(
+            &r->w, "%s %s: the name is taken: use another one", r->w.word[0], o->name);
     }
     if (s->objects == SCENE_OBJECTS_MAX) {
         return tokens_complain(&r->w, "%s %s: more than %d objects: leave some out", r->w.word[0],
-                               o->name, SCENE_OBJECTS_MAX);
+            o->name, SCENE_OBJECTS_MAX);
     }
     s->object = scene_room(s->object, s->objects, sizeof *o);
     if (s->object == NULL) { return tokens_complain(&r->w, "no memory"); }
@@ -37,9 +37,8 @@ int scene_take_plane(struct reading *r)
     double at[3], normal[3] = {0, 0, 1};
     const char *material;
     struct pair p[] = {{"at", 3, at, -SCENE_FAR_M, SCENE_FAR_M, 1, 0},
-                       {"material", 0, &material, 0, 0, 1, 0},
-                       {"normal", 3, normal, -1e3, 1e3, 0, 0},
-                       {"draw", 1, &o.draw_m, 0.001, SCENE_FAR_M, 0, 0}};
+        {"material", 0, &material, 0, 0, 1, 0}, {"normal", 3, normal, -1e3, 1e3, 0, 0},
+        {"draw", 1, &o.draw_m, 0.001, SCENE_FAR_M, 0, 0}};
     struct v3 n;
     if (scene_named(r, o.name) || tokens_pairs(&r->w, 2, p, 4)) { return 1; }
     to_v3(&o.stand.at, at);
@@ -53,14 +52,13 @@ int scene_take_plane(struct reading *r)
 }
 
 /* What spheres, boxes, capsules and meshes have in common, and n pairs of their own. */
-static int take_body(struct reading *r, struct scene_object *o, const struct pair *own, int n,
-                     const char **material)
+static int take_body(
+    struct reading *r, struct scene_object *o, const struct pair *own, int n, const char **material)
 {
     double at[3], rpy[3] = {0, 0, 0};
     struct v3 turn;
     struct pair p[8] = {{"at", 3, at, -SCENE_FAR_M, SCENE_FAR_M, 1, 0},
-                        {"material", 0, material, 0, 0, 1, 0},
-                        {"rpy", 3, rpy, -360, 360, 0, 0}};
+        {"material", 0, material, 0, 0, 1, 0}, {"rpy", 3, rpy, -360, 360, 0, 0}};
     memcpy(p + 3, own, (size_t)n * sizeof *own);
     if (scene_named(r, o->name) || tokens_pairs(&r->w, 2, p, 3 + n)) { return 1; }
     to_v3(&o->stand.at, at);
@@ -96,7 +94,7 @@ int scene_take_capsule(struct reading *r)
     struct scene_object o = {.shape.kind = SHAPE_CAPSULE};
     const char *material;
     const struct pair p[] = {{"radius", 1, &o.shape.radius_m, 1e-4, 10, 1, 0},
-                             {"length", 1, &o.shape.half_m.z, 1e-4, 20, 1, 0}};
+        {"length", 1, &o.shape.half_m.z, 1e-4, 20, 1, 0}};
     if (take_body(r, &o, p, 2, &material)) { return 1; }
     o.shape.half_m.z /= 2;
     o.shape.bound_m = o.shape.half_m.z + o.shape.radius_m;

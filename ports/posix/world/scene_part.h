@@ -22,10 +22,7 @@ int scene_named(struct reading *r, char to[SCENE_NAME_B]);
 struct scene_object *scene_object_of(const struct scene *s, const char *name); /* or NULL */
 int scene_material_of(const struct scene *s, const char *name);                /* or -1 */
 
-static inline void to_v3(struct v3 *v, const double c[3])
-{
-    *v = v3(c[0], c[1], c[2]);
-}
+static inline void to_v3(struct v3 *v, const double c[3]) { *v = v3(c[0], c[1], c[2]); }
 
 /* One statement each; 0, or 1 with the error said. */
 int scene_take_plane(struct reading *r);

@@ -22,8 +22,8 @@ static int take_world(struct reading *r)
         const size_t len = strlen(r->w.word[i]);
         if (at + len + 2 > sizeof r->s->title) {
             return tokens_complain(&r->w,
-                                   "world: the title has more than %d characters: shorten it",
-                                   (int)sizeof r->s->title - 1);
+                "world: the title has more than %d characters: shorten it",
+                (int)sizeof r->s->title - 1);
         }
         if (i > 1) { r->s->title[at++] = ' '; }
         memcpy(r->s->title + at, r->w.word[i], len + 1);
@@ -41,9 +41,9 @@ static int take_fingers(struct reading *r)
         while (f < FINGERS && strcmp(w->word[i], finger_name[f]) != 0) { f++; }
         if (f == FINGERS && strcmp(w->word[i], "all") != 0) {
             return tokens_complain(w,
-                                   "fingers: %.30s: no such finger: use thumb index middle ring "
-                                   "little, or all",
-                                   w->word[i]);
+                "fingers: %.30s: no such finger: use thumb index middle ring "
+                "little, or all",
+                w->word[i]);
         }
         r->s->fingers |= f == FINGERS ? (1u << FINGERS) - 1 : 1u << f;
     }
@@ -54,8 +54,7 @@ static int take_ray(struct reading *r)
 {
     double graze = GRAZE_DEG;
     struct pair p[] = {{"length", 1, &r->s->ray_m, 0.001, 1, 0, 0},
-                       {"back", 1, &r->s->back_m, 0, 0.2, 0, 0},
-                       {"graze", 1, &graze, 0, 89, 0, 0}};
+        {"back", 1, &r->s->back_m, 0, 0.2, 0, 0}, {"graze", 1, &graze, 0, 89, 0, 0}};
     if (tokens_pairs(&r->w, 1, p, 3)) { return 1; }
     r->s->graze = sim_sin(graze * RAD_PER_DEG);
     return 0;
@@ -65,8 +64,7 @@ static int take_hand(struct reading *r)
 {
     double at[3] = {0, 0, 0}, palm[3] = {0, 0, -1}, point[3] = {0, 1, 0};
     struct pair p[] = {{"at", 3, at, -SCENE_FAR_M, SCENE_FAR_M, 1, 0},
-                       {"palm", 3, palm, -1e3, 1e3, 0, 0},
-                       {"point", 3, point, -1e3, 1e3, 0, 0}};
+        {"palm", 3, palm, -1e3, 1e3, 0, 0}, {"point", 3, point, -1e3, 1e3, 0, 0}};
     struct v3 x, z;
     if (tokens_pairs(&r->w, 1, p, 3)) { return 1; }
     to_v3(&r->s->hand.at, at);
@@ -75,15 +73,15 @@ static int take_hand(struct reading *r)
     return frame_from_z(&r->s->hand.turn, z, x) == 0
                ? 0
                : tokens_complain(&r->w,
-                                 "hand: palm and point are parallel or zero: the palm looks to "
-                                 "the side of where the fingers point");
+                     "hand: palm and point are parallel or zero: the palm looks to "
+                     "the side of where the fingers point");
 }
 
 static int take_camera(struct reading *r)
 {
     double eye[3], look[3];
     struct pair p[] = {{"eye", 3, eye, -SCENE_FAR_M, SCENE_FAR_M, 1, 0},
-                       {"look", 3, look, -SCENE_FAR_M, SCENE_FAR_M, 1, 0}};
+        {"look", 3, look, -SCENE_FAR_M, SCENE_FAR_M, 1, 0}};
     if (tokens_pairs(&r->w, 1, p, 2)) { return 1; }
     to_v3(&r->s->eye, eye);
     to_v3(&r->s->look, look);
@@ -103,17 +101,15 @@ static int take_material(struct reading *r)
 {
     struct scene *s = r->s;
     struct scene_material m = {.k = 20000, .b = 60, .f_max = 10, .colour = {0.7, 0.7, 0.7}};
-    struct pair p[] = {{"k", 1, &m.k, 0, row_max(0), 0, 0},
-                       {"b", 1, &m.b, 0, row_max(1), 0, 0},
-                       {"fmax", 1, &m.f_max, 0, row_max(2), 0, 0},
-                       {"colour", 3, m.colour, 0, 1, 0, 0}};
+    struct pair p[] = {{"k", 1, &m.k, 0, row_max(0), 0, 0}, {"b", 1, &m.b, 0, row_max(1), 0, 0},
+        {"fmax", 1, &m.f_max, 0, row_max(2), 0, 0}, {"colour", 3, m.colour, 0, 1, 0, 0}};
     if (scene_named(r, m.name) || tokens_pairs(&r->w, 2, p, 4)) { return 1; }
     if (scene_material_of(s, m.name) >= 0) {
         return tokens_complain(&r->w, "material %s: defined twice: use another name", m.name);
     }
     if (s->materials == SCENE_MATERIALS_MAX) {
-        return tokens_complain(&r->w, "material %s: more than %d: share some", m.name,
-                               SCENE_MATERIALS_MAX);
+        return tokens_complain(
+            &r->w, "material %s: more than %d: share some", m.name, SCENE_MATERIALS_MAX);
     }
     s->material = scene_room(s->material, s->materials, sizeof m);
     if (s->material == NULL) { return tokens_complain(&r->w, "no memory"); }
@@ -125,12 +121,18 @@ static const struct {
     const char *name;
     int (*take)(struct reading *r);
 } statement[] = {
-    {"world", take_world},       {"fingers", take_fingers},
-    {"ray", take_ray},           {"hand", take_hand},
-    {"camera", take_camera},     {"material", take_material},
-    {"plane", scene_take_plane}, {"sphere", scene_take_sphere},
-    {"box", scene_take_box},     {"capsule", scene_take_capsule},
-    {"mesh", scene_take_mesh},   {"motion", scene_take_motion},
+    {"world", take_world},
+    {"fingers", take_fingers},
+    {"ray", take_ray},
+    {"hand", take_hand},
+    {"camera", take_camera},
+    {"material", take_material},
+    {"plane", scene_take_plane},
+    {"sphere", scene_take_sphere},
+    {"box", scene_take_box},
+    {"capsule", scene_take_capsule},
+    {"mesh", scene_take_mesh},
+    {"motion", scene_take_motion},
     {"key", scene_take_key},
 };
 
@@ -142,8 +144,7 @@ static int take_line(struct reading *r, char *text)
     for (size_t i = 0; i < sizeof statement / sizeof statement[0]; i++) {
         if (strcmp(statement[i].name, w->word[0]) == 0) { return statement[i].take(r); }
     }
-    return tokens_complain(
-        w,
+    return tokens_complain(w,
         "%.30s: no such statement: use world, fingers, ray, hand, camera, material, "
         "plane, sphere, box, capsule, mesh, motion or key",
         w->word[0]);
@@ -157,8 +158,7 @@ static int take_text(struct reading *r, const char *text)
         r->w.line++;
         if (len >= sizeof line) {
             return tokens_complain(&r->w,
-                                   "more than %d characters: is this a scene? Shorten the line",
-                                   (int)sizeof line - 1);
+                "more than %d characters: is this a scene? Shorten the line", (int)sizeof line - 1);
         }
         memcpy(line, text, len);
         line[len] = '\0';
@@ -174,8 +174,8 @@ static int take_text(struct reading *r, const char *text)
 
 struct scene *scene_read(const char *name, const char *text, char *error, size_t error_B)
 {
-    struct reading r = {.s = calloc(1, sizeof *r.s),
-                        .w = {.file = name, .error = error, .error_B = error_B}};
+    struct reading r = {
+        .s = calloc(1, sizeof *r.s), .w = {.file = name, .error = error, .error_B = error_B}};
     error[0] = '\0';
     if (r.s == NULL) {
         tokens_complain(&r.w, "no memory");

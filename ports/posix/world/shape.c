@@ -20,10 +20,7 @@ void body_set(struct body *b, const struct shape *is, const struct pose *at, uns
 /* Each: where the ray enters, NAN for nowhere. An entry behind the origin counts only if the origin
  * is inside; whether it is the first, and not too far back, is for the caller. */
 
-static double within(double v, double most)
-{
-    return v > most ? most : v < -most ? -most : v;
-}
+static double within(double v, double most) { return v > most ? most : v < -most ? -most : v; }
 
 /* The long cylinder first; an entry beyond an end is one through the ball there, if any. */
 static double capsule_enter(const struct body *b, const struct ray *r, struct v3 to)
@@ -72,30 +69,15 @@ typedef double d2 __attribute__((vector_size(16)));
 
 #ifdef __SSE2__
 /* Bit j: lane j is below 0. */
-static inline unsigned negative(d2 v)
-{
-    return (unsigned)_mm_movemask_pd(v);
-}
+static inline unsigned negative(d2 v) { return (unsigned)_mm_movemask_pd(v); }
 
-static inline d2 greater(d2 a, d2 b)
-{
-    return _mm_max_pd(a, b);
-}
+static inline d2 greater(d2 a, d2 b) { return _mm_max_pd(a, b); }
 
-static inline d2 less(d2 a, d2 b)
-{
-    return _mm_min_pd(a, b);
-}
+static inline d2 less(d2 a, d2 b) { return _mm_min_pd(a, b); }
 
-static inline d2 root(d2 v)
-{
-    return _mm_sqrt_pd(v);
-}
+static inline d2 root(d2 v) { return _mm_sqrt_pd(v); }
 
-static inline d2 size(d2 v)
-{
-    return _mm_andnot_pd((d2){-0.0, -0.0}, v);
-}
+static inline d2 size(d2 v) { return _mm_andnot_pd((d2){-0.0, -0.0}, v); }
 #else
 static inline unsigned negative(d2 v)
 {
@@ -112,15 +94,9 @@ static inline d2 less(d2 a, d2 b)
     return (d2){a[0] < b[0] ? a[0] : b[0], a[1] < b[1] ? a[1] : b[1]};
 }
 
-static inline d2 root(d2 v)
-{
-    return (d2){sqrt(v[0]), sqrt(v[1])};
-}
+static inline d2 root(d2 v) { return (d2){sqrt(v[0]), sqrt(v[1])}; }
 
-static inline d2 size(d2 v)
-{
-    return (d2){fabs(v[0]), fabs(v[1])};
-}
+static inline d2 size(d2 v) { return (d2){fabs(v[0]), fabs(v[1])}; }
 #endif
 
 #define PAIRS (CAST_MAX / 2)
@@ -158,8 +134,8 @@ static void spread(struct beam *k, const struct ray *r, int rays, struct hit *h)
 
 /* The entries at t of the lanes `in`, where they are the first so far. Of two at one place the
  * lower object has it, so that the order of the bodies is of no consequence. */
-static inline void keep(struct pair *p, double back, const struct body *all, int body, unsigned in,
-                        d2 t, int face)
+static inline void keep(
+    struct pair *p, double back, const struct body *all, int body, unsigned in, d2 t, int face)
 {
     in &= ~(negative(p->best - t) | negative(t - back));
     for (; in; in &= in - 1) {
@@ -188,8 +164,8 @@ static void plane(struct beam *k, const struct body *all, int body)
 
 /* One pair of faces: narrows the stretch of the rays that is inside. o: from the origins to the
  * middle. */
-static inline void slab(struct v3 axis, double half, const struct pair *p, const d2 o[3], d2 *in,
-                        d2 *out)
+static inline void slab(
+    struct v3 axis, double half, const struct pair *p, const d2 o[3], d2 *in, d2 *out)
 {
     /* 1e-300 makes a ray along the faces finite and changes no other */
     const d2 k = 1 / (axis.x * p->rx + axis.y * p->ry + axis.z * p->rz + 1e-300);
@@ -211,7 +187,7 @@ static inline unsigned box(const struct body *b, const struct pair *p, const d2 
 
 /* Capsules and meshes: ray by ray. Not inlined: it would take ball() its registers. */
 __attribute__((noinline)) static void others(struct pair *p, const struct ray *two, double back,
-                                             const struct body *all, int body, unsigned in)
+    const struct body *all, int body, unsigned in)
 {
     for (; in; in &= in - 1) {
         const int j = !(in & 1);
@@ -223,10 +199,7 @@ __attribute__((noinline)) static void others(struct pair *p, const struct ray *t
     }
 }
 
-static inline unsigned ones(unsigned in)
-{
-    return (in & 1) + (in >> 1);
-}
+static inline unsigned ones(unsigned in) { return (in & 1) + (in >> 1); }
 
 /* First the ball around the body, which of a sphere is the sphere: `to` its middle along the ray,
  * `inside` is above 0 if the ray's origin is, `d` what is under the root. Put aside is a ray that
@@ -267,7 +240,7 @@ static unsigned ball(struct beam *k, const struct body *all, int body, int cull)
 }
 
 void cast(const struct body *b, int n, const struct ray *r, int rays, int cull, struct hit *h,
-          struct cast_stats *s)
+    struct cast_stats *s)
 {
     struct beam k;
     unsigned asked = 0;

@@ -61,12 +61,12 @@ struct cast_stats {
  * have the len and back of the first. Two rays go at a time, lane by lane with the bits that each
  * alone would give. With cull 0 no ball is asked. */
 void cast(const struct body *b, int n, const struct ray *r, int rays, int cull, struct hit *h,
-          struct cast_stats *s);
+    struct cast_stats *s);
 
 /* The outward normal (length 1) where r enters, and how far the tangent plane there is from the
  * origin of the frame, along it. Of a flat face both are of the body's pose alone and so the same
  * bits wherever the ray comes from. */
-struct v3 hit_normal(const struct body *b, const struct ray *r, const struct hit *h,
-                     double *offset);
+struct v3 hit_normal(
+    const struct body *b, const struct ray *r, const struct hit *h, double *offset);
 
 #endif

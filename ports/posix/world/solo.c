@@ -20,10 +20,7 @@ void solo_script(struct solo *s, double t_s)
     }
 }
 
-static int32_t turn_q32(double rad)
-{
-    return (int32_t)floor(rad / RAD_PER_TURN_Q32 + 0.5);
-}
+static int32_t turn_q32(double rad) { return (int32_t)floor(rad / RAD_PER_TURN_Q32 + 0.5); }
 
 static int32_t scaled(double v, double one)
 {
@@ -32,15 +29,15 @@ static int32_t scaled(double v, double one)
 
 static double distance(const struct exh_wire_plane *p, struct v3 tip)
 {
-    const double n[3] = {p->normal_q30[0] * 0x1p-30, p->normal_q30[1] * 0x1p-30,
-                         p->normal_q30[2] * 0x1p-30};
+    const double n[3] = {
+        p->normal_q30[0] * 0x1p-30, p->normal_q30[1] * 0x1p-30, p->normal_q30[2] * 0x1p-30};
     return (p->point_m_q30[0] * 0x1p-30 - tip.x) * n[0] +
            (p->point_m_q30[1] * 0x1p-30 - tip.y) * n[1] +
            (p->point_m_q30[2] * 0x1p-30 - tip.z) * n[2] + FINGER_PAD_M;
 }
 
 static void pose_finger(const struct solo *s, const struct world *w, int f,
-                        struct exh_wire_state *out, struct finger *at)
+    struct exh_wire_state *out, struct finger *at)
 {
     const double b = s->bend[f];
     out->joint_turn_q32[f][0] = 0;
@@ -51,7 +48,7 @@ static void pose_finger(const struct solo *s, const struct world *w, int f,
 }
 
 static void one_finger(struct solo *s, const struct world *w, const struct exh_wire_plane *p,
-                       double dt_s, int f, struct exh_wire_state *out)
+    double dt_s, int f, struct exh_wire_state *out)
 {
     const struct scene *sc = world_scene(w);
     const double before = s->bend[f], most = SPEED * dt_s;
@@ -81,7 +78,7 @@ static void one_finger(struct solo *s, const struct world *w, const struct exh_w
 }
 
 void solo_step(struct solo *s, const struct world *w, const struct exh_wire_planes *last,
-               double dt_s, struct exh_wire_state *out)
+    double dt_s, struct exh_wire_state *out)
 {
     const uint32_t tick = out->tick + 1;
     memset(out, 0, sizeof *out);

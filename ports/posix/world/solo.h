@@ -18,6 +18,6 @@ void solo_script(struct solo *s, double t_s);
 
 /* dt_s later; last: the planes of the frame before. Fills out as a controller would. */
 void solo_step(struct solo *s, const struct world *w, const struct exh_wire_planes *last,
-               double dt_s, struct exh_wire_state *out);
+    double dt_s, struct exh_wire_state *out);
 
 #endif

@@ -35,8 +35,8 @@ int tokens_part(struct tokens *w, char *text)
 /* What the line is about: its first word, and the second where there is one. */
 static int complain(struct tokens *w, int from, const char *what)
 {
-    return tokens_complain(w, "%s%s%s: %s", w->word[0], from > 1 ? " " : "",
-                           from > 1 ? w->word[1] : "", what);
+    return tokens_complain(
+        w, "%s%s%s: %s", w->word[0], from > 1 ? " " : "", from > 1 ? w->word[1] : "", what);
 }
 
 static int number(struct tokens *w, int from, int at, const struct pair *p, int i)
@@ -46,13 +46,13 @@ static int number(struct tokens *w, int from, int at, const struct pair *p, int 
     const double v = strtod(s, &end);
     if (end == s || *end) {
         snprintf(text, sizeof text,
-                 "%s: %d number%s must follow, not \"%.30s\": add what is missing", p->key,
-                 p->numbers, p->numbers > 1 ? "s" : "", s);
+            "%s: %d number%s must follow, not \"%.30s\": add what is missing", p->key, p->numbers,
+            p->numbers > 1 ? "s" : "", s);
         return complain(w, from, text);
     }
     if (!(v >= p->lo && v <= p->hi)) {
         snprintf(text, sizeof text, "%s %.30s (allowed %g..%g): give a number in that range",
-                 p->key, s, p->lo, p->hi);
+            p->key, s, p->lo, p->hi);
         return complain(w, from, text);
     }
     ((double *)p->to)[i] = v;
@@ -108,9 +108,9 @@ int tokens_pairs(struct tokens *w, int from, struct pair *p, int n)
         if (p[i].must && !p[i].seen) {
             char text[100];
             snprintf(text, sizeof text, "%s is missing: add `%s` and its %s", p[i].key, p[i].key,
-                     p[i].numbers == 0  ? "name"
-                     : p[i].numbers > 1 ? "numbers"
-                                        : "number");
+                p[i].numbers == 0  ? "name"
+                : p[i].numbers > 1 ? "numbers"
+                                   : "number");
             return complain(w, from, text);
         }
     }

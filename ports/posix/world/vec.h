@@ -28,10 +28,7 @@ static inline struct v3 v3_sub(struct v3 a, struct v3 b)
     return v3(a.x - b.x, a.y - b.y, a.z - b.z);
 }
 
-static inline struct v3 v3_times(struct v3 a, double s)
-{
-    return v3(a.x * s, a.y * s, a.z * s);
-}
+static inline struct v3 v3_times(struct v3 a, double s) { return v3(a.x * s, a.y * s, a.z * s); }
 
 /* a + s b */
 static inline struct v3 v3_along(struct v3 a, double s, struct v3 b)
@@ -39,20 +36,14 @@ static inline struct v3 v3_along(struct v3 a, double s, struct v3 b)
     return v3(a.x + s * b.x, a.y + s * b.y, a.z + s * b.z);
 }
 
-static inline double v3_dot(struct v3 a, struct v3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
+static inline double v3_dot(struct v3 a, struct v3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 static inline struct v3 v3_cross(struct v3 a, struct v3 b)
 {
     return v3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 
-static inline double v3_len(struct v3 a)
-{
-    return sqrt(v3_dot(a, a));
-}
+static inline double v3_len(struct v3 a) { return sqrt(v3_dot(a, a)); }
 
 /* a at length 1; a itself if it has none. */
 static inline struct v3 v3_unit(struct v3 a)

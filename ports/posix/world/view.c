@@ -31,5 +31,5 @@ struct v3 view_eye(const struct view *v)
 {
     const double flat = v->away_m * sim_cos(v->tilt_rad);
     return v3_add(v->look, v3(flat * sim_cos(v->turn_rad), flat * sim_sin(v->turn_rad),
-                              v->away_m * sim_sin(v->tilt_rad)));
+                               v->away_m * sim_sin(v->tilt_rad)));
 }

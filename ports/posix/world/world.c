@@ -80,15 +80,9 @@ void world_free(struct world *w)
     free(w);
 }
 
-const struct scene *world_scene(const struct world *w)
-{
-    return w->scene;
-}
+const struct scene *world_scene(const struct world *w) { return w->scene; }
 
-const struct hand *world_hand(const struct world *w)
-{
-    return &w->hand;
-}
+const struct hand *world_hand(const struct world *w) { return &w->hand; }
 
 void world_cull(struct world *w, int on)
 {
@@ -126,8 +120,8 @@ static void to_q30(int32_t to[3], struct v3 v)
     to[2] = q30(v.z);
 }
 
-static void answer(const struct world *w, const struct ray *r, const struct hit *h,
-                   struct exh_wire_plane *to)
+static void answer(
+    const struct world *w, const struct ray *r, const struct hit *h, struct exh_wire_plane *to)
 {
     const struct body *b = &w->reach.near[h->body < 0 ? 0 : h->body];
     double offset;
@@ -147,7 +141,7 @@ static void answer(const struct world *w, const struct ray *r, const struct hit 
 }
 
 static void count(struct world_stats *s, const struct world *w, const struct cast_stats *cs,
-                  const struct exh_wire_planes *out, unsigned moved)
+    const struct exh_wire_planes *out, unsigned moved)
 {
     s->frames++;
     s->moved += moved;
@@ -161,7 +155,7 @@ static void count(struct world_stats *s, const struct world *w, const struct cas
 }
 
 void world_frame(struct world *w, const struct exh_wire_state *in, double t_s,
-                 struct exh_wire_planes *out, struct world_stats *stats)
+    struct exh_wire_planes *out, struct world_stats *stats)
 {
     const struct pose hand = world_hand_at(w, t_s);
     const unsigned moved = reach_update(&w->reach, w->scene, &hand, t_s);

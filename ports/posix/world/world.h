@@ -46,6 +46,6 @@ struct pose world_hand_at(const struct world *w, double t_s);
 /* The planes of the fingers in use, in->fingers and the scene's; t_s, the scene's time, may also go
  * back. echo_* of out are left alone. stats may be NULL. */
 void world_frame(struct world *w, const struct exh_wire_state *in, double t_s,
-                 struct exh_wire_planes *out, struct world_stats *stats);
+    struct exh_wire_planes *out, struct world_stats *stats);
 
 #endif

@@ -16,23 +16,20 @@ TEST(figures_and_judgements)
         const char *says;
     } row[] = {
         /* One sample at the paper's speed, 0.87 m/s: 0.435 mm; a frame of 10 ms and one: 9.135. */
-        {{"freeze"},
-         0,
-         "d_lim_mm=-0.436 ray_mm=9.571 age_ms=10.000 error_mm=0.000 speed_mps=0.8700"},
+        {{"freeze"}, 0,
+            "d_lim_mm=-0.436 ray_mm=9.571 age_ms=10.000 error_mm=0.000 speed_mps=0.8700"},
         {{"freeze", "--rate", "90"}, 0, "d_lim_mm=-9.667 "},
         {{"freeze", "--lag", "4", "--noise", "1"}, 0, "d_lim_mm=-4.916 "},
         {{"freeze", "--link", "1", "--jitter", "5", "--fps", "400"}, 0, "age_ms=8.500 "},
-        {{"freeze", "--object-speed", "0.5", "--slide", "10", "--radius", "20"},
-         0,
-         "error_mm=7.500 "},
+        {{"freeze", "--object-speed", "0.5", "--slide", "10", "--radius", "20"}, 0,
+            "error_mm=7.500 "},
         {{"freeze", "--d-lim", "-0.3"}, 1, "d_lim -0.300 mm: too little: make it -0.436 mm"},
         {{"freeze", "--d-lim", "-0.436"}, 0, "d_lim -0.436 mm: enough"},
         {{"freeze", "--d-lim", "-1"}, 0, "speed_mps=2.0000"},
         {{"freeze", "--ray", "9.57"}, 1, "ray 9.570 mm: too little: make it 9.571 mm"},
         {{"freeze", "--ray", "9.571"}, 0, "ray 9.571 mm: enough"},
-        {{"freeze", "--d-lim", "-5", "--ray", "14"},
-         1,
-         "ray 14.000 mm: too little: make it 14.136"},
+        {{"freeze", "--d-lim", "-5", "--ray", "14"}, 1,
+            "ray 14.000 mm: too little: make it 14.136"},
     };
     char *dir = said_dir();
     for (size_t i = 0; i < LEN(row); i++) {
@@ -42,7 +39,7 @@ TEST(figures_and_judgements)
         }
         said(&s, dir, lab_advise, word);
         CHECK(s.status == row[i].status && strstr(s.out, row[i].says) && s.err[0] == '\0',
-              "row %d: %d\n%s%s", (int)i, s.status, s.out, s.err);
+            "row %d: %d\n%s%s", (int)i, s.status, s.out, s.err);
     }
     said_clean(dir);
 }
@@ -60,10 +57,10 @@ TEST(what_cannot_be_answered)
     CHECK(s.status == 2 && strstr(s.err, "--d-lim: 1 (allowed -200..-0.1)"), "%s", s.err);
     said(&s, dir, lab_advise, WORDS("advise", "gains", "--judge", "/nowhere/at/all"));
     CHECK(s.status == 3 && strstr(s.err, "--judge: /nowhere/at/all: No such file"), "%d %s",
-          s.status, s.err);
+        s.status, s.err);
     said(&s, dir, lab_advise, WORDS("advise", "gains", "--judge", "/dev/null"));
     CHECK(s.status == 2 && strstr(s.err, "--judge: /dev/null: no cell in it"), "%d %s", s.status,
-          s.err);
+        s.err);
     said_clean(dir);
 }
 

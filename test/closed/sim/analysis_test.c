@@ -24,9 +24,9 @@ TEST(line_is_exact)
             CHECK(near(s.fit.b_Npm, k_Npm[i], 1e-9), "B %.12g of %g", s.fit.b_Npm, k_Npm[i]);
             CHECK(near(s.fit.r2, 1.0, 1e-12), "r2 %.17g", s.fit.r2);
             CHECK(near(s.a.lo_Npm, k_Npm[i], 1e-9) && near(s.a.hi_Npm, k_Npm[i], 1e-9), "%g",
-                  s.a.lo_Npm);
+                s.a.lo_Npm);
             CHECK(near(s.b.lo_Npm, k_Npm[i], 1e-9) && near(s.b.hi_Npm, k_Npm[i], 1e-9), "%g",
-                  s.b.lo_Npm);
+                s.b.lo_Npm);
             fall_stiffness_free(&s);
             drop(&b);
         }
@@ -81,10 +81,9 @@ TEST(kept_force_matters_little)
 
 static int all_finite(const struct fall_stiffness *s)
 {
-    const double v[] = {s->fit.a_Npm,    s->fit.b_Npm,   s->fit.r2,      s->fit.q_mean_m,
-                        s->fit.f_mean_N, s->fit.q_min_m, s->fit.q_max_m, s->fit.f_min_N,
-                        s->fit.f_max_N,  s->a.lo_Npm,    s->a.hi_Npm,    s->b.lo_Npm,
-                        s->b.hi_Npm};
+    const double v[] = {s->fit.a_Npm, s->fit.b_Npm, s->fit.r2, s->fit.q_mean_m, s->fit.f_mean_N,
+        s->fit.q_min_m, s->fit.q_max_m, s->fit.f_min_N, s->fit.f_max_N, s->a.lo_Npm, s->a.hi_Npm,
+        s->b.lo_Npm, s->b.hi_Npm};
     for (size_t i = 0; i < sizeof v / sizeof v[0]; i++) {
         if (!(v[i] > -1e300 && v[i] < 1e300)) { return 0; }
     }
@@ -210,7 +209,7 @@ static void digits(char *text, size_t cap)
     opt.lag = 0;
     CHECK(fall_stiffness(&log, &opt, &s) == FALL_OK, "%d", (int)s.fit.status);
     snprintf(text, cap, "%.17g %.17g %.17g | %.17g %.17g | %.17g %.17g", s.fit.a_Npm, s.fit.b_Npm,
-             s.fit.r2, s.a.lo_Npm, s.a.hi_Npm, s.b.lo_Npm, s.b.hi_Npm);
+        s.fit.r2, s.a.lo_Npm, s.a.hi_Npm, s.b.lo_Npm, s.b.hi_Npm);
     fall_stiffness_free(&s);
     drop(&b);
 }
@@ -283,4 +282,4 @@ TEST(plot_files)
 }
 
 TEST_MAIN("analysis", line_is_exact, even_forces_are_exact, kept_force_matters_little, degenerate,
-          damaged_logs, bad_options, same_digits, plot_files);
+    damaged_logs, bad_options, same_digits, plot_files);

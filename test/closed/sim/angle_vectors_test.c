@@ -20,7 +20,7 @@ static unsigned words(const char *name, uint32_t *word)
     unsigned n = 0;
     FILE *f;
     snprintf(line, sizeof line, "%s/numerics-cmsis-q31/%s", root != NULL ? root : "../shared/data",
-             name);
+        name);
     f = fopen(line, "r");
     while (f != NULL && n < VECTORS_MAX && fgets(line, sizeof line, f) != NULL) {
         if (line[0] == '0' && line[1] == 'x') { word[n++] = (uint32_t)strtoul(line, NULL, 16); }
@@ -48,7 +48,7 @@ TEST(cosines_of_another_library)
         if (off > worst) { worst = off; }
         /* 2.25 LSB of q30, and their rounding, or their 1 that is 1 - 2^-31 */
         CHECK(off <= 5, "angle %#" PRIx32 ": %" PRId32 ", theirs %" PRId32, angle_q31[i], y.cos_q30,
-              exh_from_u32(cos_q31[i]));
+            exh_from_u32(cos_q31[i]));
     }
     check_note("%u cosines of CMSIS-DSP: within %" PRId64 " LSB of q31", n, worst);
 }

@@ -21,17 +21,17 @@ TEST(a_log_with_a_trace_over_the_link_replays)
     const char *line;
     snprintf(log, sizeof log, "%s/bilateral_natural.exh", dir);
     said(&s, dir, cli_bilateral,
-         WORDS("bilateral", "--speed", "natural", "--approaches", "2", "--trace", "3", "--link",
-               "delay=0.02,jitter=0.02,loss=0.2,duplicate=0.1", "--out", dir));
+        WORDS("bilateral", "--speed", "natural", "--approaches", "2", "--trace", "3", "--link",
+            "delay=0.02,jitter=0.02,loss=0.2,duplicate=0.1", "--out", dir));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     line = strstr(s.out, "  trace: ");
     CHECK(line && sscanf(line, "  trace: %lu frames of every %lu", &frames, &every) == 2, "%s",
-          s.out);
-    CHECK(line &&
-              sscanf(strstr(line, "; ") ? strstr(line, "; ") : "", "; %lu missed", &missed) == 1,
-          "%s", s.out);
+        s.out);
+    CHECK(
+        line && sscanf(strstr(line, "; ") ? strstr(line, "; ") : "", "; %lu missed", &missed) == 1,
+        "%s", s.out);
     CHECK(every == 3 && frames > 500 && missed > 50, "%lu frames of every %lu, %lu missed", frames,
-          every, missed);
+        every, missed);
     said(&s, dir, cli_replay, WORDS("replay", log));
     CHECK(s.status == 0 && strstr(s.out, "identical"), "%d: %s%s", s.status, s.out, s.err);
     said(&s, dir, cli_replay, WORDS("replay", log, "--from", "2000"));
@@ -46,9 +46,9 @@ TEST(a_log_replays_bit_for_bit_without_a_world)
     char log[512];
     snprintf(log, sizeof log, "%s/bilateral_natural.exh", dir);
     said(&s, dir, cli_bilateral,
-         WORDS("bilateral", "--speed", "natural", "--approaches", "2", "--fingers", "index,ring",
-               "--scene", "ports/posix/world/scenes/collision.world", "--link",
-               "delay=0.02,jitter=0.02,loss=0.2,duplicate=0.1", "--out", dir));
+        WORDS("bilateral", "--speed", "natural", "--approaches", "2", "--fingers", "index,ring",
+            "--scene", "ports/posix/world/scenes/collision.world", "--link",
+            "delay=0.02,jitter=0.02,loss=0.2,duplicate=0.1", "--out", dir));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     said(&s, dir, cli_replay, WORDS("replay", log));
     CHECK(s.status == 0 && strstr(s.out, "identical"), "%d: %s%s", s.status, s.out, s.err);
@@ -65,8 +65,8 @@ TEST(a_log_of_a_session_that_was_made_up_replays)
     char log[512];
     snprintf(log, sizeof log, "%s/bilateral_natural.exh", dir);
     said(&s, dir, cli_bilateral,
-         WORDS("bilateral", "--speed", "natural", "--approaches", "1", "--set", "session=0",
-               "--out", dir));
+        WORDS("bilateral", "--speed", "natural", "--approaches", "1", "--set", "session=0", "--out",
+            dir));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     said(&s, dir, cli_replay, WORDS("replay", log));
     CHECK(s.status == 0 && strstr(s.out, "identical"), "%d: %s%s", s.status, s.out, s.err);
@@ -85,7 +85,7 @@ TEST(a_log_without_a_packet_does_not_replay)
     uint32_t kept = 0, removed = 0, seen = 0;
     snprintf(log, sizeof log, "%s/bilateral_natural.exh", dir);
     said(&s, dir, cli_bilateral,
-         WORDS("bilateral", "--speed", "natural", "--approaches", "1", "--out", dir));
+        WORDS("bilateral", "--speed", "natural", "--approaches", "1", "--out", dir));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     f = fopen(log, "rb");
     CHECK(f && fseek(f, 0, SEEK_END) == 0, "%s", log);
@@ -128,7 +128,7 @@ TEST(no_random_approach_is_felt_before_its_freeze)
     said(&s, dir, lab_bilateral, WORDS("bilateral", "--check", "50"));
     CHECK(s.status == 0 && strstr(s.out, "50 random approaches") &&
               strstr(s.out, " 0 before the freeze"),
-          "%d: %s%s", s.status, s.out, s.err);
+        "%d: %s%s", s.status, s.out, s.err);
     CHECK(strstr(s.out, "foretold by the advice") && strstr(s.out, ", 0 without;"), "%s", s.out);
     said_clean(dir);
 }
@@ -156,12 +156,12 @@ TEST(the_papers_nine_signals_are_logged_tick_by_tick)
     char head[LINE_B];
     long n;
     said(&s, dir, cli_bilateral,
-         WORDS("bilateral", "--speed", "natural", "--approaches", "1", "--rate", "1000", "--out",
-               dir));
+        WORDS("bilateral", "--speed", "natural", "--approaches", "1", "--rate", "1000", "--out",
+            dir));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     n = lines_of(said_path(dir, "bilateral_natural_index.csv"), head);
     CHECK(strcmp(head, "t_s,q_m,qd_m_per_s,f_des_n,i_des_a,c,f_mon_n,d_m,q_lim_m\n") == 0, "%s",
-          head);
+        head);
     CHECK(n > 2000 && n < 4000, "%ld lines", n); /* rest, approach, hold, withdrawal: 2 to 4 s */
     said_clean(dir);
 }
@@ -183,11 +183,11 @@ TEST(a_world_that_dies_or_never_comes_is_told_beside_a_perfect_link)
     const char *dir = said_dir();
     static struct said s;
     said(&s, dir, cli_bilateral,
-         WORDS("bilateral", "--speed", "natural", "--approaches", "1", "--world-until", "0.76"));
+        WORDS("bilateral", "--speed", "natural", "--approaches", "1", "--world-until", "0.76"));
     CHECK(s.status == 0 && strstr(s.out, "index the same bits from the first freeze on"),
-          "%d: %s%s", s.status, s.out, s.err);
+        "%d: %s%s", s.status, s.out, s.err);
     said(&s, dir, cli_bilateral,
-         WORDS("bilateral", "--speed", "natural", "--approaches", "1", "--world-from", "9"));
+        WORDS("bilateral", "--speed", "natural", "--approaches", "1", "--world-from", "9"));
     CHECK(s.status == 0 && strstr(s.out, "index felt nothing"), "%d: %s%s", s.status, s.out, s.err);
     said_clean(dir);
 }
@@ -197,25 +197,24 @@ TEST(a_d_lim_that_is_too_small_is_told_with_the_one_wanted)
     const char *dir = said_dir();
     static struct said s;
     said(&s, dir, cli_bilateral,
-         WORDS("bilateral", "--speed", "fast", "--approaches", "1", "--set", "d_lim=-0.003"));
+        WORDS("bilateral", "--speed", "fast", "--approaches", "1", "--set", "d_lim=-0.003"));
     CHECK(s.status == 0 && strstr(s.out, "TOO SMALL: make it -7."), "%d: %s%s", s.status, s.out,
-          s.err);
+        s.err);
     said_clean(dir);
 }
 
 TEST(files_and_tables_are_left_behind)
 {
     static const char *const left[] = {"bilateral_natural.exh", "bilateral_natural_index.csv",
-                                       "contacts.csv", "bilateral.gp",
-                                       "bilateral_natural_index_raw.csv"};
+        "contacts.csv", "bilateral.gp", "bilateral_natural_index_raw.csv"};
     const char *dir = said_dir();
     static struct said s;
     said(&s, dir, cli_bilateral,
-         WORDS("bilateral", "--speed", "natural", "--approaches", "2", "--out", dir));
+        WORDS("bilateral", "--speed", "natural", "--approaches", "2", "--out", dir));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     CHECK(strstr(s.out, "paper     41250") && strstr(s.out, "paper      25.0") &&
               strstr(s.out, "0.825"),
-          "%s", s.out);
+        "%s", s.out);
     for (size_t i = 0; i < LEN(left); i++) {
         struct stat st;
         CHECK(stat(said_path(dir, left[i]), &st) == 0 && st.st_size > 0, "%s", left[i]);
@@ -234,7 +233,7 @@ static void session_of(const char *text, const char *finger, double v[3])
     CHECK(at != NULL, "no %s in %s", finger, text);
     if (at == NULL ||
         sscanf(at + strlen(word), "%lf ..%lf %lf ..%lf %lf ..%lf %lf %lf %lf", &skip[0], &skip[1],
-               &skip[2], &skip[3], &skip[4], &skip[5], &v[0], &v[1], &v[2]) != 9) {
+            &skip[2], &skip[3], &skip[4], &skip[5], &v[0], &v[1], &v[2]) != 9) {
         CHECK(0, "%s: not nine numbers", finger);
         v[0] = v[1] = v[2] = -1;
     }
@@ -249,15 +248,15 @@ TEST(a_rehabilitation_session_keeps_each_fingers_force_cap)
     const char *dir = said_dir();
     static struct said s;
     said(&s, dir, cli_bilateral,
-         WORDS("bilateral", "--scene", "ports/posix/world/scenes/rehabilitation.world", "--fingers",
-               "all", "--speed", "natural", "--approaches", "2"));
+        WORDS("bilateral", "--scene", "ports/posix/world/scenes/rehabilitation.world", "--fingers",
+            "all", "--speed", "natural", "--approaches", "2"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     for (size_t i = 0; i < LEN(row); i++) {
         double v[3];
         session_of(s.out, row[i].finger, v);
         CHECK(v[0] >= 2 && v[1] > 1, "%s: %g contacts of %g s", row[i].finger, v[0], v[1]);
         CHECK(v[2] > 0.5 * row[i].cap_N && v[2] <= row[i].cap_N + 0.005, "%s: %g N", row[i].finger,
-              v[2]);
+            v[2]);
     }
     said_clean(dir);
 }
@@ -271,10 +270,10 @@ TEST(every_scene_of_simple_bodies_runs)
         char path[128];
         snprintf(path, sizeof path, "ports/posix/world/scenes/%s.world", scene[i]);
         said(&s, dir, cli_bilateral,
-             WORDS("bilateral", "--scene", path, "--fingers", "all", "--speed", "0.3",
-                   "--approaches", "1", "--link", "delay=0.01,jitter=0.005"));
+            WORDS("bilateral", "--scene", path, "--fingers", "all", "--speed", "0.3",
+                "--approaches", "1", "--link", "delay=0.01,jitter=0.005"));
         CHECK(s.status == 0 && strstr(s.out, "largest force"), "%s: %d: %s", scene[i], s.status,
-              s.err);
+            s.err);
     }
     said_clean(dir);
 }
@@ -286,14 +285,14 @@ TEST(a_shape_is_felt_by_the_fingers_that_glide_over_it)
     const char *dir = said_dir();
     static struct said s;
     said(&s, dir, cli_bilateral,
-         WORDS("bilateral", "--scene", "ports/posix/world/scenes/explore.world", "--fingers", "all",
-               "--speed", "0.3", "--approaches", "1"));
+        WORDS("bilateral", "--scene", "ports/posix/world/scenes/explore.world", "--fingers", "all",
+            "--speed", "0.3", "--approaches", "1"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     for (size_t i = 0; i < LEN(finger); i++) {
         double v[3];
         session_of(s.out, finger[i], v);
         CHECK(v[0] >= 1 && v[1] > 1 && v[2] > 2 && v[2] <= 8.005, "%s: %g contacts of %g s, %g N",
-              finger[i], v[0], v[1], v[2]);
+            finger[i], v[0], v[1], v[2]);
     }
     said_clean(dir);
 }
@@ -308,11 +307,11 @@ TEST(what_comes_into_view_around_a_finger_ends_no_run)
     CHECK(f != NULL, "%s", path);
     fputs("ray length 0.08\nhand at -0.03 -0.145 0.072 palm 0 0 -1 point 0 1 0\nmaterial m\n"
           "capsule ridge at -0.045 0.01 0.004 rpy 90 0 15 radius 0.014 length 0.09 material m\n",
-          f);
+        f);
     CHECK_EQ_I64(fclose(f), 0);
     said(&s, dir, cli_bilateral,
-         WORDS("bilateral", "--scene", path, "--fingers", "all", "--speed", "0.3", "--approaches",
-               "1"));
+        WORDS("bilateral", "--scene", path, "--fingers", "all", "--speed", "0.3", "--approaches",
+            "1"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     said_clean(dir);
 }
@@ -334,7 +333,7 @@ TEST(a_recorded_hand_moves_the_fingers)
     }
     CHECK_EQ_I64(fclose(f), 0);
     said(&s, dir, cli_bilateral,
-         WORDS("bilateral", "--record", path, "--record-rate", "100", "--at", "0.02"));
+        WORDS("bilateral", "--record", path, "--record-rate", "100", "--at", "0.02"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     session_of(s.out, "index", v);
     CHECK(v[0] >= 2 && v[1] > 0.5 && v[2] > 1, "%g contacts, %g s, %g N", v[0], v[1], v[2]);
@@ -363,7 +362,7 @@ TEST(bad_usage_is_refused_by_name)
         {"--at", "1", "--at"},
         {"--rate", "0", "--rate"},
         {"--rate", "90",
-         "glove_fc: 200 Hz (below half the rate of 90 Hz): --set glove_fc=22.5 would do"},
+            "glove_fc: 200 Hz (below half the rate of 90 Hz): --set glove_fc=22.5 would do"},
         {"--nonsense", "1", "--nonsense"},
     };
     const char *dir = said_dir();
@@ -371,27 +370,27 @@ TEST(bad_usage_is_refused_by_name)
     for (size_t i = 0; i < LEN(bad); i++) {
         said(&s, dir, cli_bilateral, WORDS("bilateral", bad[i].option, bad[i].value));
         CHECK(s.status == 2 && strstr(s.err, bad[i].says), "%s %s: %d: %s", bad[i].option,
-              bad[i].value, s.status, s.err);
+            bad[i].value, s.status, s.err);
     }
     said(&s, dir, cli_bilateral,
-         WORDS("bilateral", "--device", "rotor=0.0001", "--device", "substep=0.0001"));
+        WORDS("bilateral", "--device", "rotor=0.0001", "--device", "substep=0.0001"));
     CHECK(s.status == 2 && strstr(s.err, "give --device substep=1e-05"), "%d: %s", s.status, s.err);
     said(&s, dir, lab_bilateral, WORDS("bilateral", "--help"));
     CHECK(s.status == 0 && strstr(s.out, "--sweep") && strstr(s.out, "--udp"), "%d: %s", s.status,
-          s.err);
+        s.err);
     said(&s, dir, cli_bilateral, WORDS("bilateral", "--params"));
     CHECK(s.status == 0 && strstr(s.out, "mat_k") && strstr(s.out, "hand_k"), "%d: %s", s.status,
-          s.err);
+        s.err);
     said_clean(dir);
 }
 
 TEST_MAIN("bilateral_command", a_log_with_a_trace_over_the_link_replays,
-          a_log_replays_bit_for_bit_without_a_world, a_log_of_a_session_that_was_made_up_replays,
-          a_log_without_a_packet_does_not_replay, no_random_approach_is_felt_before_its_freeze,
-          a_d_lim_that_is_too_small_is_told_with_the_one_wanted, files_and_tables_are_left_behind,
-          the_papers_nine_signals_are_logged_tick_by_tick, over_hands_there_is_a_row_each,
-          a_world_that_dies_or_never_comes_is_told_beside_a_perfect_link,
-          a_rehabilitation_session_keeps_each_fingers_force_cap, every_scene_of_simple_bodies_runs,
-          a_shape_is_felt_by_the_fingers_that_glide_over_it,
-          what_comes_into_view_around_a_finger_ends_no_run, a_recorded_hand_moves_the_fingers,
-          bad_usage_is_refused_by_name);
+    a_log_replays_bit_for_bit_without_a_world, a_log_of_a_session_that_was_made_up_replays,
+    a_log_without_a_packet_does_not_replay, no_random_approach_is_felt_before_its_freeze,
+    a_d_lim_that_is_too_small_is_told_with_the_one_wanted, files_and_tables_are_left_behind,
+    the_papers_nine_signals_are_logged_tick_by_tick, over_hands_there_is_a_row_each,
+    a_world_that_dies_or_never_comes_is_told_beside_a_perfect_link,
+    a_rehabilitation_session_keeps_each_fingers_force_cap, every_scene_of_simple_bodies_runs,
+    a_shape_is_felt_by_the_fingers_that_glide_over_it,
+    what_comes_into_view_around_a_finger_ends_no_run, a_recorded_hand_moves_the_fingers,
+    bad_usage_is_refused_by_name);

@@ -11,8 +11,8 @@
 
 /* Every bit of what finger f felt, moved and was commanded from its freeze to the end, and how it
  * moved before. q_lim and d: while the plane of this approach is held. */
-static void check_same(const struct bilateral_run *a, const struct bilateral_run *b, unsigned f,
-                       const char *what)
+static void check_same(
+    const struct bilateral_run *a, const struct bilateral_run *b, unsigned f, const char *what)
 {
     const struct bilateral_track *s = &a->finger[f], *t = &b->finger[f];
     const size_t freeze = freeze_of(s);
@@ -21,13 +21,13 @@ static void check_same(const struct bilateral_run *a, const struct bilateral_run
     for (size_t i = 0; i < s->n && i < t->n; i++) {
         if (same_felt(&s->at[i].raw, &t->at[i].raw) && s->at[i].x_m == t->at[i].x_m &&
             (i < freeze || !(s->at[i].bits & EXH_PRECONTACT_STANDS) ||
-             (s->at[i].raw.d_m_q30 == t->at[i].raw.d_m_q30 &&
-              s->at[i].raw.q_lim_m_q30 == t->at[i].raw.q_lim_m_q30))) {
+                (s->at[i].raw.d_m_q30 == t->at[i].raw.d_m_q30 &&
+                    s->at[i].raw.q_lim_m_q30 == t->at[i].raw.q_lim_m_q30))) {
             continue;
         }
         CHECK(0, "%s: tick %zu differs, %zd after the freeze: F %d and %d, q_lim %d and %d", what,
-              i, (ssize_t)(i - freeze), s->at[i].raw.f_des_N_q20, t->at[i].raw.f_des_N_q20,
-              s->at[i].raw.q_lim_m_q30, t->at[i].raw.q_lim_m_q30);
+            i, (ssize_t)(i - freeze), s->at[i].raw.f_des_N_q20, t->at[i].raw.f_des_N_q20,
+            s->at[i].raw.q_lim_m_q30, t->at[i].raw.q_lim_m_q30);
         return;
     }
 }
@@ -72,7 +72,7 @@ TEST(the_force_is_the_same_to_the_bit_over_every_link)
         struct bilateral_run_cfg bad = c;
         perfect = run(&c);
         CHECK(perfect.finger[EXH_INDEX].freezes >= 2, "%ld freezes",
-              perfect.finger[EXH_INDEX].freezes);
+            perfect.finger[EXH_INDEX].freezes);
         over_recorded(c, "net-ethernet-direct/ethernet-no_load.csv.xz", SIM_TRACE_ROUND);
         over_recorded(c, "net-internet-ping/experimental.dat", SIM_TRACE_MS);
         for (int w = 0; w < SIM_LINK_WAYS; w++) {
@@ -116,11 +116,11 @@ TEST(a_trace_over_the_link_is_felt_by_nobody)
         r = run(&c);
         check_same(&perfect, &r, EXH_INDEX, "with a trace");
         CHECK(t->frames > 0 && t->unruly == 0, "every %d: %u frames, %u unruly", c.trace_every,
-              t->frames, t->unruly);
-        CHECK((i < LEN(every)) == (t->missed == 0), "every %d: %u missed", c.trace_every,
-              t->missed);
+            t->frames, t->unruly);
+        CHECK(
+            (i < LEN(every)) == (t->missed == 0), "every %d: %u missed", c.trace_every, t->missed);
         check_note("trace of every %d: %u frames, %u missed, of %u ticks", c.trace_every,
-                   (unsigned)t->frames, (unsigned)t->missed, (unsigned)r.ticks);
+            (unsigned)t->frames, (unsigned)t->missed, (unsigned)r.ticks);
         bilateral_run_free(&r);
     }
     bilateral_run_free(&perfect);
@@ -134,7 +134,7 @@ TEST(another_plane_makes_another_force)
     c.at_m += 100e-6;
     b = run(&c);
     CHECK(a.finger[EXH_INDEX].digest != b.finger[EXH_INDEX].digest,
-          "a wall 0.1 mm off feels the same");
+        "a wall 0.1 mm off feels the same");
     bilateral_run_free(&a);
     bilateral_run_free(&b);
 }
@@ -157,14 +157,14 @@ TEST(s_of_the_slope_finds_the_wall_with_every_finger)
         r = run(&c);
         s = &t->at[contact_of(t)];
         off_mm = 1e3 * (s->raw.q_lim_m_q30 / 1073741824.0 - t->touch_m + t->at[0].x_m -
-                        t->at[0].raw.q_m_q30 / 1073741824.0);
+                           t->at[0].raw.q_m_q30 / 1073741824.0);
         if (off_mm > worst_mm || -off_mm > worst_mm) { worst_mm = off_mm > 0 ? off_mm : -off_mm; }
         CHECK(off_mm < 0.6 && off_mm > -0.6, "finger %u, wall at %g m: %.2f mm off", f, c.at_m,
-              off_mm);
+            off_mm);
         bilateral_run_free(&r);
     }
-    check_note("s of the slope: the wall within %.2f mm of string, five fingers, three places",
-               worst_mm);
+    check_note(
+        "s of the slope: the wall within %.2f mm of string, five fingers, three places", worst_mm);
 }
 
 /* A wall that comes 5 mm nearer while the finger presses: nothing of it until the finger has left.
@@ -181,11 +181,11 @@ TEST(what_moves_while_it_is_touched_is_not_felt)
     t = &b.finger[EXH_INDEX];
     for (i = 0; i < s->n && i < t->n && same_felt(&s->at[i].raw, &t->at[i].raw); i++) {}
     CHECK(i < s->n && s->at[i].approach == 2, "differs in tick %zu, approach %d", i,
-          s->at[i].approach);
+        s->at[i].approach);
     CHECK(((const struct bilateral_signals *)(const void *)exh_scene_bilateral.signal)
                   ->more[EXH_INDEX]
                   .ignored > 100,
-          "it was not seen to move");
+        "it was not seen to move");
     bilateral_run_free(&a);
     bilateral_run_free(&b);
 }
@@ -249,7 +249,7 @@ static void check_nothing_felt(const struct bilateral_run *r, const char *what)
     const struct bilateral_track *t = &r->finger[EXH_INDEX];
     const int32_t f0_N_q20 = exh_contact_rows[2].dflt;
     CHECK(t->contacts == 0 && t->freezes == 0, "%s: %ld contacts, %ld freezes", what, t->contacts,
-          t->freezes);
+        t->freezes);
     for (size_t i = 0; i < t->n; i++) {
         if (t->at[i].raw.f_des_N_q20 > f0_N_q20) {
             CHECK(0, "%s: %d LSB of force in tick %zu", what, t->at[i].raw.f_des_N_q20, i);
@@ -277,8 +277,8 @@ TEST(without_a_plane_in_time_nothing_is_felt)
     c.settings = 2;
     r = run(&c);
     check_nothing_felt(&r, "stale");
-    CHECK(r.finger[EXH_INDEX].at[r.finger[EXH_INDEX].n - 1].bits & EXH_PRECONTACT_STALE,
-          "not stale");
+    CHECK(
+        r.finger[EXH_INDEX].at[r.finger[EXH_INDEX].n - 1].bits & EXH_PRECONTACT_STALE, "not stale");
     bilateral_run_free(&r);
 
     /* It comes when the finger is past the surface: not before it has left once. */
@@ -287,7 +287,7 @@ TEST(without_a_plane_in_time_nothing_is_felt)
     r = run(&c);
     CHECK(r.finger[EXH_INDEX].contacts == 0, "a plane born around the finger was felt");
     CHECK(r.finger[EXH_INDEX].at[2000].bits & EXH_PRECONTACT_AROUND, "%d",
-          r.finger[EXH_INDEX].at[2000].bits);
+        r.finger[EXH_INDEX].at[2000].bits);
     bilateral_run_free(&r);
 }
 
@@ -295,7 +295,7 @@ TEST(without_a_plane_in_time_nothing_is_felt)
 static double slack_mm(const struct bilateral_track *t, size_t i)
 {
     return 1e3 * ((t->at[i].raw.q_m_q30 - t->at[0].raw.q_m_q30) / 1073741824.0 - t->at[i].x_m +
-                  t->at[0].x_m);
+                     t->at[0].x_m);
 }
 
 /* A finger that met no wall goes back faster than F0 can follow, and then moves no string in: it
@@ -320,14 +320,14 @@ TEST(a_slack_string_is_wound_in)
     contact = contact_of(t);
     CHECK(t->at[contact].approach == 2, "felt in approach %d", t->at[contact].approach);
     off_mm = 1e3 * ((t->at[contact].raw.q_lim_m_q30 - t->at[0].raw.q_m_q30) / 1073741824.0 -
-                    t->touch_m + t->at[0].x_m);
+                       t->touch_m + t->at[0].x_m);
     CHECK(left_mm < 0.5 && off_mm < 1.5 && off_mm > -1.5,
-          "%.2f mm slack of %.1f, the wall %.2f mm off", left_mm, most_mm, off_mm);
+        "%.2f mm slack of %.1f, the wall %.2f mm off", left_mm, most_mm, off_mm);
     CHECK(most_mm > 5, "it was never slack: %.2f mm", most_mm);
     check_note("slack after a missed contact: %.1f mm at most, wound in within %.2f s; %.2f mm "
                "before the next "
                "approach, whose wall is %.2f mm off",
-               most_mm, (double)(wound - most) / c.rate_Hz, left_mm, off_mm);
+        most_mm, (double)(wound - most) / c.rate_Hz, left_mm, off_mm);
     bilateral_run_free(&r);
 }
 
@@ -360,7 +360,7 @@ TEST(five_fingers_are_in_contact_at_once_and_each_as_if_alone)
         for (size_t i = 0; i < s->n && i < t->n; i++) {
             if (same_felt(&s->at[i].raw, &t->at[i].raw)) { continue; }
             CHECK(0, "finger %u, tick %zu: %d LSB of force alone, %d among five", f, i,
-                  s->at[i].raw.f_des_N_q20, t->at[i].raw.f_des_N_q20);
+                s->at[i].raw.f_des_N_q20, t->at[i].raw.f_des_N_q20);
             break;
         }
         bilateral_run_free(&one);
@@ -386,22 +386,21 @@ TEST(a_finger_that_is_off_has_no_current_and_no_drive)
 TEST(parameters_come_over_the_link_are_answered_and_never_reach_a_contact)
 {
     static const struct exh_wire_param want[] = {{0x0B01, 0, 5000 << 10}, {0x0B01, 1, 7000 << 10},
-                                                 {0x0B01, 200, 1 << 10},  {0x0B02, 0, -1},
-                                                 {0x0601, 0, 0},          {0x9999, 0, 0}};
+        {0x0B01, 200, 1 << 10}, {0x0B02, 0, -1}, {0x0601, 0, 0}, {0x9999, 0, 0}};
     struct bilateral_run_cfg c = plain(1u << EXH_INDEX, 0.87, 2);
     struct bilateral_run r;
     c.want = want;
     c.wants = (int)LEN(want);
     r = run(&c);
     CHECK_EQ_I64(r.acked, (int)LEN(want));
-    CHECK_EQ_I64(r.refused,
-                 4); /* no such instance, out of range, only before the loop, no such row */
+    CHECK_EQ_I64(
+        r.refused, 4); /* no such instance, out of range, only before the loop, no such row */
     CHECK_EQ_I64(r.box.set, 2);
     /* The plane's material is 0: softer from the first contact on. */
     CHECK(((const struct bilateral_par *)(const void *)exh_scene_bilateral.params->active)
                   ->material[0]
                   .k_Npm_q10 == 5000 << 10,
-          "it was not applied");
+        "it was not applied");
     bilateral_run_free(&r);
 }
 
@@ -424,19 +423,18 @@ TEST(a_material_that_changes_in_contact_acts_from_the_next_freeze_on)
         if (!same_felt(&s->at[i].raw, &t->at[i].raw)) { differ = i; }
     }
     CHECK(differ > 0 && s->at[differ].approach == 2, "differs in approach %d",
-          s->at[differ].approach);
+        s->at[differ].approach);
     bilateral_run_free(&a);
     bilateral_run_free(&b);
 }
 
 TEST_MAIN("bilateral", a_trace_over_the_link_is_felt_by_nobody,
-          the_force_is_the_same_to_the_bit_over_every_link, another_plane_makes_another_force,
-          s_of_the_slope_finds_the_wall_with_every_finger,
-          what_moves_while_it_is_touched_is_not_felt,
-          a_world_that_dies_in_contact_leaves_loop_and_force_as_they_were,
-          a_world_may_start_anew_in_contact, hostile_packets_change_nothing,
-          without_a_plane_in_time_nothing_is_felt, a_slack_string_is_wound_in,
-          five_fingers_are_in_contact_at_once_and_each_as_if_alone,
-          a_finger_that_is_off_has_no_current_and_no_drive,
-          parameters_come_over_the_link_are_answered_and_never_reach_a_contact,
-          a_material_that_changes_in_contact_acts_from_the_next_freeze_on);
+    the_force_is_the_same_to_the_bit_over_every_link, another_plane_makes_another_force,
+    s_of_the_slope_finds_the_wall_with_every_finger, what_moves_while_it_is_touched_is_not_felt,
+    a_world_that_dies_in_contact_leaves_loop_and_force_as_they_were,
+    a_world_may_start_anew_in_contact, hostile_packets_change_nothing,
+    without_a_plane_in_time_nothing_is_felt, a_slack_string_is_wound_in,
+    five_fingers_are_in_contact_at_once_and_each_as_if_alone,
+    a_finger_that_is_off_has_no_current_and_no_drive,
+    parameters_come_over_the_link_are_answered_and_never_reach_a_contact,
+    a_material_that_changes_in_contact_acts_from_the_next_freeze_on);

@@ -85,10 +85,7 @@ static int tick(int glove_new, int type)
     return n;
 }
 
-static int phase(void)
-{
-    return box.finger[F].precontact.phase;
-}
+static int phase(void) { return box.finger[F].precontact.phase; }
 
 TEST(a_plane_told_before_the_first_glove_frame_is_not_kept)
 {
@@ -178,7 +175,7 @@ static void press(int32_t by_m_q30)
         (void)tick(1, 0);
     }
     CHECK(sig.paper[F].c && sig.paper[F].f_des_N_q20 > EXH_Q(1, 1, EXH_Q_FORCE), "%d LSB of force",
-          sig.paper[F].f_des_N_q20);
+        sig.paper[F].f_des_N_q20);
 }
 
 /* The string's zero has slipped, or the hand has let go of the glove: it pulls, whatever the finger
@@ -219,7 +216,7 @@ TEST(an_old_glove_frame)
     from_board.glove.age_ticks++;
     (void)tick(0, 0);
     CHECK(phase() == EXH_PRECONTACT_IDLE && sig.paper[F].q_lim_m_q30 == EXH_PRECONTACT_NO_LIM,
-          "tracking: there is no contact");
+        "tracking: there is no contact");
     from_board.glove.age_ticks = 0;
     (void)tick(1, 0);
     CHECK_EQ_I64(phase(), EXH_PRECONTACT_TRACK);
@@ -385,7 +382,7 @@ static void no_packet_sets(uint32_t *tried)
         const int32_t now = exh_scene_bilateral.params->staged[k];
         if (row->id >> 8 == exh_material_rows[0].id >> 8) { continue; }
         CHECK(asked(row->id, instance, now == row->max ? row->min : row->max) == -EXH_E_STATE,
-              "%s %d", row->name, instance);
+            "%s %d", row->name, instance);
         ++*tried;
     }
 }
@@ -429,10 +426,7 @@ static void ask_trace(uint32_t every, uint16_t last)
     post(&p);
 }
 
-static uint16_t signals(void)
-{
-    return (uint16_t)exh_signal_count(&bilateral_outputs);
-}
+static uint16_t signals(void) { return (uint16_t)exh_signal_count(&bilateral_outputs); }
 
 /* A tick, seen from the world's end; the trace in what went out, of which there is one at most. */
 static int traced(struct exh_wire_trace *t)
@@ -487,11 +481,11 @@ static void gapless(uint32_t every)
             CHECK_EQ_I64(t.frame[i].tick, from + frames * every);
             CHECK(t.frame[i].tick - from <= k &&
                       memcmp(t.frame[i].raw, was[t.frame[i].tick - from], sizeof was[0]) == 0,
-                  "every %d: other values", (int)every);
+                "every %d: other values", (int)every);
         }
         next = t.first + t.frames;
         CHECK(now - t.frame[0].tick < 100, "a frame has waited for %d ticks",
-              (int)(now - t.frame[0].tick));
+            (int)(now - t.frame[0].tick));
     }
     CHECK(frames * every + 100 > 500 - every, "every %d: %d frames", (int)every, (int)frames);
 }
@@ -512,19 +506,19 @@ TEST(a_trace_asked_for_again_goes_on_and_ends_as_asked)
     for (int k = 0; k < 300; k++) { CHECK_EQ_I64(traced(&t), 0); }
     ask_trace(5, 0);
     CHECK(traced(&t) == 1 && t.result == 0 && t.frames == 1 && t.request_seq == world.seq - 1, "%d",
-          t.result);
+        t.result);
     next = t.first + 1;
     runs = box.wire.trace.of.run;
     for (int k = 0; k < 7; k++) { CHECK_EQ_I64(traced(&t), 0); }
     ask_trace(5, 0); /* it did not hear the answer */
     CHECK(traced(&t) == 1 && t.first == next && t.frames == 1 && t.request_seq == world.seq - 1,
-          "begun anew");
+        "begun anew");
     CHECK_EQ_I64(box.wire.trace.of.run, runs);
     next = t.first + t.frames;
     for (int k = 0; k < 11; k++) { CHECK_EQ_I64(traced(&t), 0); }
     ask_trace(3, 0); /* another: the two frames that waited do not come, and that is seen */
     CHECK(traced(&t) == 1 && exh_wire_trace_missed(next, &t) == 2 && t.frames == 1, "%d missed",
-          (int)exh_wire_trace_missed(next, &t));
+        (int)exh_wire_trace_missed(next, &t));
     ask_trace(0, 0);
     CHECK(traced(&t) == 1 && t.result == 0 && t.frames == 0, "not ended");
     for (int k = 0; k < 300; k++) { CHECK_EQ_I64(traced(&t), 0); }
@@ -589,17 +583,17 @@ TEST(a_trace_goes_on_from_bytes)
     }
     CHECK(out.packets > 0 && out.len_B[out.packets - 1] == sent.len_B[sent.packets - 1] &&
               memcmp(out.byte[out.packets - 1], sent.byte[sent.packets - 1],
-                     out.len_B[out.packets - 1]) == 0,
-          "another packet");
+                  out.len_B[out.packets - 1]) == 0,
+        "another packet");
     memset(&box.wire.trace, 0xFF, sizeof box.wire.trace);
     for (int k = 0; k < 300; k++) { (void)tick(1, 0); }
 }
 
 TEST_MAIN("bilateral, tick by tick", a_plane_told_before_the_first_glove_frame_is_not_kept,
-          a_finger_whose_sensor_is_not_believed_has_no_contact, a_frozen_contact_outlives_a_sensor,
-          a_wall_that_the_glove_denies_does_not_pull_for_ever, an_old_glove_frame,
-          missed_ticks_make_planes_older, a_world_that_has_started_anew_is_greeted_at_once,
-          no_packet_makes_the_box_deaf_for_good, a_world_that_differs_is_told_by_bits,
-          a_shorter_time_between_states_acts_at_once, no_packet_sets_what_is_the_boxs_own,
-          a_trace_that_is_asked_for_comes_whole, a_trace_asked_for_again_goes_on_and_ends_as_asked,
-          frames_that_had_no_room_are_missed_by_number, a_trace_goes_on_from_bytes);
+    a_finger_whose_sensor_is_not_believed_has_no_contact, a_frozen_contact_outlives_a_sensor,
+    a_wall_that_the_glove_denies_does_not_pull_for_ever, an_old_glove_frame,
+    missed_ticks_make_planes_older, a_world_that_has_started_anew_is_greeted_at_once,
+    no_packet_makes_the_box_deaf_for_good, a_world_that_differs_is_told_by_bits,
+    a_shorter_time_between_states_acts_at_once, no_packet_sets_what_is_the_boxs_own,
+    a_trace_that_is_asked_for_comes_whole, a_trace_asked_for_again_goes_on_and_ends_as_asked,
+    frames_that_had_no_room_are_missed_by_number, a_trace_goes_on_from_bytes);

@@ -108,7 +108,7 @@ static void begin_world(void)
 static void kill_world(void)
 {
     CHECK(kill(world.pid, SIGKILL) == 0 && waitpid(world.pid, NULL, 0) == world.pid,
-          "the world had ended");
+        "the world had ended");
     (void)close(world.tell);
     world.pid = 0;
 }
@@ -120,7 +120,7 @@ static void step_world(double t_s)
     char c;
     CHECK(write(world.tell, &t_s, sizeof t_s) == sizeof t_s, "the world does not listen");
     CHECK(poll(&done, 1, PATIENCE_MS) == 1 && read(world.tell, &c, 1) == 1,
-          "the world hangs or has died at %g s", t_s);
+        "the world hangs or has died at %g s", t_s);
 }
 
 /* Every tick of the controller, before it reads. */
@@ -155,8 +155,8 @@ static void put_up(const struct bilateral_run_cfg *c, int confuse_at)
 {
     static struct peer_world wall;
     static char at[32];
-    const struct bilateral_finger_is w = {EXH_INDEX, c->board.exo.finger[EXH_INDEX].arm_m,
-                                          c->board.hand.pose};
+    const struct bilateral_finger_is w = {
+        EXH_INDEX, c->board.exo.finger[EXH_INDEX].arm_m, c->board.hand.pose};
     struct udp probe;
     CHECK_EQ_I64(udp_open(&probe, "127.0.0.1:0", NULL), 0);
     (void)snprintf(at, sizeof at, "127.0.0.1:%u", udp_port(&probe));
@@ -187,7 +187,7 @@ TEST(two_processes_survive_each_others_restart)
         const struct bilateral_track *s = &alone.finger[EXH_INDEX], *t = &r.finger[EXH_INDEX];
         size_t i = 0;
         CHECK(t->freezes >= 1 && t->contacts >= 1, "run %d: %ld freezes, %ld contacts", k,
-              t->freezes, t->contacts);
+            t->freezes, t->contacts);
         CHECK(k == 2 || (contact_of(t) < 1800 && t->n > 2000), "run %d: killed out of contact", k);
         CHECK(r.box.age < 2 * TICKS_A_FRAME, "run %d: nothing has come for %d ticks", k, r.box.age);
         CHECK(s->n == t->n, "run %d: %zu ticks, %zu", k, t->n, s->n);
@@ -219,4 +219,4 @@ TEST(two_processes_are_not_deaf_for_good)
 }
 
 TEST_MAIN("bilateral_two", two_processes_survive_each_others_restart,
-          two_processes_are_not_deaf_for_good);
+    two_processes_are_not_deaf_for_good);

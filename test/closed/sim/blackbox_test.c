@@ -62,8 +62,8 @@ static struct held read_dump(const char *path)
 }
 
 /* The bench holds the mass for a second and lets it fall; it swings on the wall from 1.3 s on. */
-static struct run_cfg three_falls(uint32_t rate_Hz, const char *dump, size_t memory_B,
-                                  double let_go_s)
+static struct run_cfg three_falls(
+    uint32_t rate_Hz, const char *dump, size_t memory_B, double let_go_s)
 {
     struct run_cfg c;
     memset(&c, 0, sizeof c);
@@ -97,11 +97,11 @@ TEST(a_dump_ends_behind_the_fault_and_replays_to_it)
         const struct held h = run_and_read(&c);
         const int64_t fault = h.last - h.froze.instance;
         CHECK(h.ended && h.damaged == 0 && h.gaps == 0, "%lu Hz: %lu damaged, %lu gaps",
-              (unsigned long)rate_Hz[i], (unsigned long)h.damaged, (unsigned long)h.gaps);
+            (unsigned long)rate_Hz[i], (unsigned long)h.damaged, (unsigned long)h.gaps);
         CHECK_EQ_I64(h.froze.value, EXH_FAULT_DEADMAN);
         CHECK_EQ_I64(h.froze.instance, after);
         CHECK(fault >= 17 * (int64_t)rate_Hz[i] / 10 && fault <= 17 * (int64_t)rate_Hz[i] / 10 + 1,
-              "fault at tick %lu of %lu Hz", (unsigned long)fault, (unsigned long)rate_Hz[i]);
+            "fault at tick %lu of %lu Hz", (unsigned long)fault, (unsigned long)rate_Hz[i]);
         CHECK_EQ_I64(replay(path, NULL), 0);
     }
     remove(path);
@@ -116,18 +116,18 @@ TEST(a_dump_that_begins_in_a_contact_replays_from_its_first_keyframe)
         const struct run_cfg c = three_falls(2000, path, memory_B, 2.2);
         const struct held h = run_and_read(&c);
         CHECK(h.first > 0 && h.frames == h.last - h.first + 1, "%lu frames from tick %lu to %lu",
-              (unsigned long)h.frames, (unsigned long)h.first, (unsigned long)h.last);
+            (unsigned long)h.frames, (unsigned long)h.first, (unsigned long)h.last);
         CHECK(h.ended && h.damaged == 0 && h.gaps == 0, "%zu B: %lu damaged, %lu gaps", memory_B,
-              (unsigned long)h.damaged, (unsigned long)h.gaps);
+            (unsigned long)h.damaged, (unsigned long)h.gaps);
         CHECK_EQ_I64(h.froze.value, EXH_FAULT_DEADMAN);
         CHECK_EQ_I64(replay(path, NULL), 0);
         CHECK(h.first + 100 < h.last - h.froze.instance, "it begins at tick %lu",
-              (unsigned long)h.first);
+            (unsigned long)h.first);
         in_contact += h.c != 0;
         at_once += h.keyframes > 1;
     }
     CHECK(in_contact > 20 && at_once > 20, "%u began in a contact, %u have a second keyframe",
-          in_contact, at_once);
+        in_contact, at_once);
     remove(path);
 }
 
@@ -162,7 +162,7 @@ TEST(the_log_is_the_same_with_a_black_box_beside_it)
         remove(log[i]);
     }
     CHECK(size[0] == size[1] && size[0] > 10000 && crc[0] == crc[1], "%ld bytes and %ld", size[0],
-          size[1]);
+        size[1]);
 }
 
 static size_t slurp(const char *path, uint8_t *to, size_t cap)
@@ -204,9 +204,9 @@ TEST(a_damaged_dump_is_told)
         spill(path, damaged, n);
         said(&s, dir, cli_replay, WORDS("replay", "--timeline", path));
         CHECK(s.status == 1 || s.status == 2, "byte %zu: status %d: %s%s", at, s.status, s.out,
-              s.err);
+            s.err);
         CHECK(s.status == 2 || strstr(s.out, "FAULT deadman") || at > n / 2, "byte %zu: %s", at,
-              s.out);
+            s.out);
     }
     for (size_t cut = 1; cut < n; cut += 1 + n / 40) {
         spill(path, dump, n - cut);
@@ -312,9 +312,9 @@ static void start_box(int is_alone)
 {
     const struct exh_scene_board board = {{1, 500}, 24};
     exh_scene_drop.defaults();
-    CHECK_EQ_I64(exh_params_stage(exh_scene_drop.params,
-                                  exh_calib_set_rows[EXH_CALIB_SET_ROWS - 1].id, 0, 1),
-                 0); /* uncalibrated */
+    CHECK_EQ_I64(exh_params_stage(
+                     exh_scene_drop.params, exh_calib_set_rows[EXH_CALIB_SET_ROWS - 1].id, 0, 1),
+        0); /* uncalibrated */
     exh_params_apply(exh_scene_drop.params);
     CHECK_EQ_I64(exh_scene_drop.setup(board), 0);
     exh_scene_drop.params->locked = 1;
@@ -325,8 +325,8 @@ static void start_box(int is_alone)
 
 static void one_tick(uint32_t tick, uint32_t open)
 {
-    struct exh_scene_in in = {.drive.din = ~open,
-                              .command = tick == 0 ? EXH_CMD_RUN : EXH_CMD_NONE};
+    struct exh_scene_in in = {
+        .drive.din = ~open, .command = tick == 0 ? EXH_CMD_RUN : EXH_CMD_NONE};
     struct exh_drive_out out;
     exh_blackbox_before(tick, &in);
     exh_params_apply(exh_scene_drop.params);
@@ -455,22 +455,12 @@ static void in_order(const char *text, const char *const *word, size_t n)
 
 TEST(the_timeline_tells_what_happened_in_order)
 {
-    static const char *const want[] = {
-        "scene drop on posix, a tick is 1/500 s",
-        "command: run",
-        "state: arm",
-        "arming: small_force",
-        "arming: ramp",
-        "contact begins",
-        "dead-man switch: let go",
-        "FAULT deadman: the dead-man switch was let go",
-        "-> release",
-        "limit release",
-        "state: release -> fault",
+    static const char *const want[] = {"scene drop on posix, a tick is 1/500 s", "command: run",
+        "state: arm", "arming: small_force", "arming: ramp", "contact begins",
+        "dead-man switch: let go", "FAULT deadman: the dead-man switch was let go", "-> release",
+        "limit release", "state: release -> fault",
         "the black box froze for deadman, 26 ticks behind it; 0 causes came later",
-        "end of the log, 0 records lost",
-        "fault deadman at tick 850, as recorded",
-        "identical"};
+        "end of the log, 0 records lost", "fault deadman at tick 850, as recorded", "identical"};
     const char *path = log_path(), *dir = said_dir();
     static struct said s;
     const struct run_cfg c = three_falls(500, path, 0, 1.7);
@@ -487,12 +477,12 @@ TEST(dumps_stand_beside_the_log_and_bad_usage_is_refused)
     const char *dir = said_dir();
     static struct said s;
     said(&s, dir, cli_drop,
-         WORDS("drop", "--rate", "500", "--falls", "1", "--let-go", "1.7", "--out", dir));
+        WORDS("drop", "--rate", "500", "--falls", "1", "--let-go", "1.7", "--out", dir));
     CHECK(s.status == 1 && strstr(s.err, "black box: fault deadman at tick 850"), "%d: %s",
-          s.status, s.err);
+        s.status, s.err);
     said(&s, dir, cli_replay, WORDS("replay", said_path(dir, "drop_500Hz_fault.exh")));
     CHECK(s.status == 0 && strstr(s.out, "fault deadman at tick 850, as recorded"), "%d: %s",
-          s.status, s.err);
+        s.status, s.err);
     said(&s, dir, cli_drop, WORDS("drop", "--rate", "500", "--falls", "1", "--out", dir));
     CHECK(said_size(said_path(dir, "drop_500Hz_fault.exh")) < 0, "an earlier run's dump stays");
     said(&s, dir, cli_drop, WORDS("drop", "--rate", "500,1000", "--blackbox", said_path(dir, "x")));
@@ -505,10 +495,9 @@ TEST(dumps_stand_beside_the_log_and_bad_usage_is_refused)
 }
 
 TEST_MAIN("blackbox", a_dump_ends_behind_the_fault_and_replays_to_it,
-          a_dump_that_begins_in_a_contact_replays_from_its_first_keyframe,
-          the_log_is_the_same_with_a_black_box_beside_it, a_damaged_dump_is_told,
-          forged_records_are_harmless, words_before_and_behind_a_dump_are_no_damage,
-          another_fault_than_told_is_told, later_faults_are_counted_and_record_nothing_over,
-          the_header_has_the_parameters_of_the_fault, a_halted_box_can_be_read,
-          the_timeline_tells_what_happened_in_order,
-          dumps_stand_beside_the_log_and_bad_usage_is_refused);
+    a_dump_that_begins_in_a_contact_replays_from_its_first_keyframe,
+    the_log_is_the_same_with_a_black_box_beside_it, a_damaged_dump_is_told,
+    forged_records_are_harmless, words_before_and_behind_a_dump_are_no_damage,
+    another_fault_than_told_is_told, later_faults_are_counted_and_record_nothing_over,
+    the_header_has_the_parameters_of_the_fault, a_halted_box_can_be_read,
+    the_timeline_tells_what_happened_in_order, dumps_stand_beside_the_log_and_bad_usage_is_refused);

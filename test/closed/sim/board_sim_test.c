@@ -91,13 +91,20 @@ static double respond(struct step s)
 TEST(a_step_acts_at_the_first_sample_after_its_delay)
 {
     static const struct step row[] = {
-        {20000, 100, 0, 0},        {20000, 101, 0, 0},
-        {20000, 102, 0, 0},        {20000, 103, 0, 0},
-        {20000, 104, 0, 0},        {20000, 200, 3, 0},
-        {20000, 200, 0, 203e-6},   {20000, 201, 0.387, 203e-6},
-        {20000, 50, 3, 0.01},      {4000, 20, 0.387, 203e-6},
-        {2000, 10, 0.387, 203e-6}, {2000, 11, 1, 0},
-        {1000, 5, 0.5, 50e-6},     {2000, 0, 0, 0},
+        {20000, 100, 0, 0},
+        {20000, 101, 0, 0},
+        {20000, 102, 0, 0},
+        {20000, 103, 0, 0},
+        {20000, 104, 0, 0},
+        {20000, 200, 3, 0},
+        {20000, 200, 0, 203e-6},
+        {20000, 201, 0.387, 203e-6},
+        {20000, 50, 3, 0.01},
+        {4000, 20, 0.387, 203e-6},
+        {2000, 10, 0.387, 203e-6},
+        {2000, 11, 1, 0},
+        {1000, 5, 0.5, 50e-6},
+        {2000, 0, 0, 0},
         {500, 3, 0.387, 203e-6},
     };
     const struct step first = {20000, 0, 0, 0};
@@ -111,7 +118,7 @@ TEST(a_step_acts_at_the_first_sample_after_its_delay)
         while (want_s < due_s) { want_s += servo_s; }
         got_s = respond(row[i]);
         CHECK(fabs(got_s - want_s) < 1e-9, "row %zu: due %.9f s, taken %.9f, want %.9f", i, due_s,
-              got_s, want_s);
+            got_s, want_s);
     }
 }
 
@@ -129,11 +136,11 @@ TEST(the_edge_between_two_servo_samples_is_sharp)
         const double late[] = {-1e-9, 1e-9};
         for (int i = 0; i < 2; i++) {
             const double delay_s = due_s + late[i];
-            const struct step s = {(uint32_t)rate, 0, share * delay_s * rate,
-                                   (1 - share) * delay_s};
+            const struct step s = {
+                (uint32_t)rate, 0, share * delay_s * rate, (1 - share) * delay_s};
             const double got_s = respond(s), want_s = due_s + i * servo_s;
             CHECK(fabs(got_s - want_s) < 1e-9, "%d: due %.9f s, %s: taken at %.9f", k, due_s,
-                  i ? "late" : "early", got_s);
+                i ? "late" : "early", got_s);
         }
     }
 }
@@ -211,7 +218,7 @@ TEST(monitor_code_is_the_nearest)
             codes = posix_plant()->mon_A / scale_A[i];
             codes = codes > 32767 ? 32767 : codes < -32768 ? -32768 : codes;
             CHECK(fabs(code - codes) <= 0.5 + 1e-9, "scale %.3g: %d, want %.6f", scale_A[i], code,
-                  codes);
+                codes);
             moved |= 1 << (code < 0) | 4 << (code > 100);
             write_code((n / 300 % 3 - 1) * 12000, 1);
         }
@@ -224,8 +231,8 @@ TEST(monitor_code_is_the_nearest)
 #define COUNTS (1 << 24)
 
 /* One fall without motor: position and code of every tick into arrays; how many. */
-static int record_fall(const struct posix_config *c, uint32_t rate_Hz, double *q_m, uint32_t *raw,
-                       int cap)
+static int record_fall(
+    const struct posix_config *c, uint32_t rate_Hz, double *q_m, uint32_t *raw, int cap)
 {
     int n = 0;
     start(c, rate_Hz);
@@ -251,11 +258,8 @@ TEST(encoder_code_is_the_floor)
 {
     static const struct {
         double step_m, decode, start;
-    } row[] = {{66.32e-6, 1, 0},
-               {66.32e-6, 1, 8388608},
-               {66.32e-6, 4, 5},
-               {480e-6, 2, 16777215.0},
-               {10e-6, 1, 16776000}};
+    } row[] = {{66.32e-6, 1, 0}, {66.32e-6, 1, 8388608}, {66.32e-6, 4, 5}, {480e-6, 2, 16777215.0},
+        {10e-6, 1, 16776000}};
     for (size_t i = 0; i < LEN(row); i++) {
         struct posix_config c = short_fall();
         double lo = 0, hi = 1;
@@ -297,7 +301,7 @@ TEST(decoding_multiplies_the_counts)
             const int one = (int)(fall_raw[0][k] - fall_raw[0][0]);
             const int many = (int)(fall_raw[i][k] - fall_raw[i][0]);
             CHECK(many > m * (one - 1) && many < m * (one + 1), "x%d, tick %d: %d counts, x1 %d", m,
-                  k, many, one);
+                k, many, one);
         }
     }
     CHECK(fall_raw[0][n - 1] - fall_raw[0][0] > 1000, "hardly moved");
@@ -308,9 +312,8 @@ TEST(decoding_multiplies_the_counts)
 /* n num/den rounded once; checked without dividing. */
 TEST(every_tick_lands_on_its_instant)
 {
-    static const struct exh_period T[] = {{597, 1193182},   {1, 1},        {1, 7},
-                                          {1, 90},          {1, 2000},     {1, 20000},
-                                          {13258, 1193182}, {60, 1193182}, {999999999, 2000000000}};
+    static const struct exh_period T[] = {{597, 1193182}, {1, 1}, {1, 7}, {1, 90}, {1, 2000},
+        {1, 20000}, {13258, 1193182}, {60, 1193182}, {999999999, 2000000000}};
     for (size_t i = 0; i < LEN(T); i++) {
         struct posix_config c = posix_config_default();
         uint64_t n = 0;
@@ -321,8 +324,8 @@ TEST(every_tick_lands_on_its_instant)
             const long double exact = (long double)n * T[i].num;
             const long double off = (long double)posix_time_s() * (long double)T[i].den - exact;
             CHECK((off < 0 ? -off : off) <= exact * 0x1p-53L, "%lu/%lu, tick %lu: off by %.3g s",
-                  (unsigned long)T[i].num, (unsigned long)T[i].den, (unsigned long)n,
-                  (double)(off / T[i].den));
+                (unsigned long)T[i].num, (unsigned long)T[i].den, (unsigned long)n,
+                (double)(off / T[i].den));
         }
         CHECK(n > 15 * (uint64_t)T[i].den / T[i].num, "only %lu ticks", (unsigned long)n);
     }
@@ -348,33 +351,25 @@ TEST(periods_outside_the_range_are_refused)
     static const struct {
         struct exh_period T;
         int ok;
-    } row[] = {{{1, 1}, 1},
-               {{1, 20000}, 1},
-               {{597, 1193182}, 1},
-               {{10, 200000}, 1},
-               {{214749, 4294967295u}, 1},
-               {{10, 200001}, 0},
-               {{10, 200009}, 0},
-               {{1, 20001}, 0},
-               {{214748, 4294967295u}, 0},
-               {{1, 4294967295u}, 0},
-               {{2, 1}, 0},
-               {{4294967295u, 4294967294u}, 0}};
+    } row[] = {{{1, 1}, 1}, {{1, 20000}, 1}, {{597, 1193182}, 1}, {{10, 200000}, 1},
+        {{214749, 4294967295u}, 1}, {{10, 200001}, 0}, {{10, 200009}, 0}, {{1, 20001}, 0},
+        {{214748, 4294967295u}, 0}, {{1, 4294967295u}, 0}, {{2, 1}, 0},
+        {{4294967295u, 4294967294u}, 0}};
     for (size_t i = 0; i < LEN(row); i++) {
         struct posix_config c = posix_config_default();
         struct exh_period T;
         c.T = row[i].T;
         posix_configure(&c);
         CHECK(exh_board_init(1000, &T) == (row[i].ok ? 0 : -EXH_E_RATE), "%lu/%lu",
-              (unsigned long)c.T.num, (unsigned long)c.T.den);
+            (unsigned long)c.T.num, (unsigned long)c.T.den);
     }
 }
 
 /* Whatever the rate: the controller sees the whole observation, and a tick between. */
 TEST(every_fall_is_watched_to_its_end)
 {
-    static const struct exh_period T[] = {{1, 1}, {3, 4}, {2, 3}, {1, 2},  {1, 3},  {2, 7},
-                                          {1, 5}, {1, 7}, {1, 9}, {1, 10}, {1, 90}, {1, 2000}};
+    static const struct exh_period T[] = {{1, 1}, {3, 4}, {2, 3}, {1, 2}, {1, 3}, {2, 7}, {1, 5},
+        {1, 7}, {1, 9}, {1, 10}, {1, 90}, {1, 2000}};
     for (size_t i = 0; i < LEN(T); i++) {
         struct run_cfg c = {.rate_Hz = 1, .k_Npm = 1500};
         struct fall_contacts contacts;
@@ -443,9 +438,9 @@ TEST(the_supply_falls_with_the_current)
 }
 
 TEST_MAIN("board_sim", a_step_acts_at_the_first_sample_after_its_delay,
-          the_edge_between_two_servo_samples_is_sharp, a_disabled_drive_gives_no_current,
-          the_drive_limits_at_its_own_peak, monitor_noise_is_bounded_on_both_sides,
-          monitor_code_is_the_nearest, encoder_code_is_the_floor, decoding_multiplies_the_counts,
-          every_tick_lands_on_its_instant, the_run_ends_where_it_was_told,
-          periods_outside_the_range_are_refused, the_supply_falls_with_the_current,
-          every_fall_is_watched_to_its_end, an_interruption_outlasts_a_new_run);
+    the_edge_between_two_servo_samples_is_sharp, a_disabled_drive_gives_no_current,
+    the_drive_limits_at_its_own_peak, monitor_noise_is_bounded_on_both_sides,
+    monitor_code_is_the_nearest, encoder_code_is_the_floor, decoding_multiplies_the_counts,
+    every_tick_lands_on_its_instant, the_run_ends_where_it_was_told,
+    periods_outside_the_range_are_refused, the_supply_falls_with_the_current,
+    every_fall_is_watched_to_its_end, an_interruption_outlasts_a_new_run);

@@ -64,8 +64,8 @@ TEST(expected_prints_are_what_is_printed_now)
         n += (size_t)snprintf(made + n, sizeof made - n, "%.*s%s", (int)(body - at), at, s.out);
         if (getenv("EXH_UPDATE") == NULL) {
             CHECK((size_t)(end - body) == strlen(s.out) && memcmp(body, s.out, strlen(s.out)) == 0,
-                  "stale (EXH_UPDATE=1 build/test/sim/bringup_doc_test):\n%.*s%s",
-                  (int)(body - line), line, s.out);
+                "stale (EXH_UPDATE=1 build/test/sim/bringup_doc_test):\n%.*s%s", (int)(body - line),
+                line, s.out);
         }
         at = end;
         blocks++;

@@ -27,12 +27,12 @@ static struct bringup_run_cfg config(uint64_t seed)
     return c;
 }
 
-static int run_stage(struct bringup_run_cfg c, int stage, int finger, uint32_t shown,
-                     const char *more)
+static int run_stage(
+    struct bringup_run_cfg c, int stage, int finger, uint32_t shown, const char *more)
 {
     char boot[200];
     snprintf(boot, sizeof boot, "stage=%d finger=%d shown=%lu%s%s", stage, finger,
-             (unsigned long)shown, reads[stage], more);
+        (unsigned long)shown, reads[stage], more);
     c.boot = boot;
     return bringup_run(&c, &r);
 }
@@ -45,7 +45,7 @@ static uint32_t shown_before(int stage, int finger)
         if (number[finger][k] != 0) { continue; }
         CHECK_EQ_I64(run_stage(config(1), k, finger, number[finger][k - 1], ""), 0);
         CHECK(r.result == EXH_PROBE_DONE, "stage %d, finger %d: %s", k, finger,
-              bringup_result_text(r.result));
+            bringup_result_text(r.result));
         number[finger][k] = r.number;
     }
     return number[finger][stage - 1];
@@ -61,8 +61,8 @@ TEST(every_stage_comes_through)
                 c.board.cards.how = seed == 4 ? POSIX_CARDS_INSTANT : POSIX_CARDS_NONE;
                 CHECK_EQ_I64(run_stage(c, stage, finger, shown, ""), 0);
                 CHECK(r.result == EXH_PROBE_DONE && r.unsafe == 0 && r.number > 0,
-                      "stage %d, finger %d, seed %u: %s, %lu", stage, finger, seed,
-                      bringup_result_text(r.result), r.unsafe);
+                    "stage %d, finger %d, seed %u: %s, %lu", stage, finger, seed,
+                    bringup_result_text(r.result), r.unsafe);
                 CHECK((stage > 1) == (r.most_A > 0), "stage %d: %.3f A", stage, r.most_A);
             }
         }
@@ -78,7 +78,7 @@ TEST(at_any_rate)
             c.rate_Hz = rate_Hz[i];
             CHECK_EQ_I64(run_stage(c, stage, 0, shown_before(stage, 0), ""), 0);
             CHECK(r.result == EXH_PROBE_DONE, "%lu Hz, stage %d: %s", (unsigned long)rate_Hz[i],
-                  stage, bringup_result_text(r.result));
+                stage, bringup_result_text(r.result));
         }
     }
 }
@@ -105,17 +105,17 @@ static void ends(const struct limit *l, int cards)
     c.wrong = l->wrong;
     c.wrong_phase = l->phase;
     c.board.cards.how = cards ? POSIX_CARDS_INSTANT : POSIX_CARDS_NONE;
-    CHECK_EQ_I64(run_stage(c, l->stage, cards ? 4 : 0, shown_before(l->stage, cards ? 4 : 0), ""),
-                 0);
+    CHECK_EQ_I64(
+        run_stage(c, l->stage, cards ? 4 : 0, shown_before(l->stage, cards ? 4 : 0), ""), 0);
     CHECK(r.result == (unsigned)l->result, "stage %d, phase %d, %s: %s in phase %u", l->stage,
-          l->phase, name, bringup_result_text(r.result), r.phase);
+        l->phase, name, bringup_result_text(r.result), r.phase);
     CHECK(r.took_s <= l->s, "stage %d, phase %d, %s: after %.3f s", l->stage, l->phase, name,
-          r.took_s);
+        r.took_s);
     CHECK(r.unsafe == 0, "stage %d, phase %d, %s: %lu", l->stage, l->phase, name, r.unsafe);
     CHECK(r.most_A <= limit_A(l->stage), "stage %d, phase %d, %s: %.4f A", l->stage, l->phase, name,
-          r.most_A);
+        r.most_A);
     CHECK(r.moved_m <= l->m && r.moved_m >= -l->m, "stage %d, phase %d, %s: %.4f m", l->stage,
-          l->phase, name, r.moved_m);
+        l->phase, name, r.moved_m);
 }
 
 static void end_all(const struct limit *l, size_t n)
@@ -192,8 +192,8 @@ TEST(what_is_open_ends_it_at_once)
         for (int phase = 0; bringup_phase((unsigned)stage, (unsigned)phase) != NULL; phase++) {
             const struct bringup_phase *p = bringup_phase((unsigned)stage, (unsigned)phase);
             for (enum bringup_wrong w = BRINGUP_NOT_READY; w <= BRINGUP_LET_GO; w++) {
-                const struct limit l = {w,           stage,  phase,
-                                        BRINGUP_OFF, 0.0011, stage == 5 ? 0.004 : 0.004};
+                const struct limit l = {
+                    w, stage, phase, BRINGUP_OFF, 0.0011, stage == 5 ? 0.004 : 0.004};
                 if (p->hands || (stage == 1 && w == BRINGUP_NOT_READY)) { continue; }
                 if (p->ask == BRINGUP_ASK_NOTHING && stage == 3 && phase > 2) {
                     continue;
@@ -219,8 +219,8 @@ TEST(no_slope_delays_the_end)
         c.wrong_phase = 3;
         CHECK_EQ_I64(run_stage(c, 4, 0, bringup_config()->before, slow), 0);
         CHECK(r.result > EXH_PROBE_DONE && r.phase == 3 && r.most_A > 0.9 && r.unsafe == 0,
-              "%s: %s, %.3f A, %lu", bringup_wrong_row[w].name, bringup_result_text(r.result),
-              r.most_A, r.unsafe);
+            "%s: %s, %.3f A, %lu", bringup_wrong_row[w].name, bringup_result_text(r.result),
+            r.most_A, r.unsafe);
     }
 }
 
@@ -231,9 +231,8 @@ TEST(nothing_begins_with_an_open_loop)
         const struct limit stop = {
             BRINGUP_ESTOP, stage, -1, stage == 1 ? BRINGUP_INPUT : BRINGUP_OFF, 120.1, 0.0};
         const struct limit ready = {BRINGUP_NOT_READY, stage, -1, stop.result, 120.1, 0.0};
-        const struct limit away = {
-            BRINGUP_AWAY, stage, -1, stage == 2 ? (int)BRINGUP_NOBODY : (int)EXH_PROBE_STILL,
-            120.1,        0.0};
+        const struct limit away = {BRINGUP_AWAY, stage, -1,
+            stage == 2 ? (int)BRINGUP_NOBODY : (int)EXH_PROBE_STILL, 120.1, 0.0};
         ends(&stop, 0);
         ends(&ready, 1);
         ends(&away, 0);
@@ -253,8 +252,8 @@ TEST(a_limit_that_acts_ends_it_at_once)
             CHECK_EQ_I64(run_stage(config(1), stage, 0, 0, boot), 0);
             CHECK_EQ_I64(run_stage(config(1), stage, 0, bringup_config()->before, boot), 0);
             CHECK(r.result == BRINGUP_LIMITED && r.most_A > 0.1 && r.unsafe == 0,
-                  "stage %d,%s: %s, %.3f A, %lu", stage, boot, bringup_result_text(r.result),
-                  r.most_A, r.unsafe);
+                "stage %d,%s: %s, %.3f A, %lu", stage, boot, bringup_result_text(r.result),
+                r.most_A, r.unsafe);
         }
     }
 }
@@ -295,7 +294,7 @@ TEST(a_mute_card_is_seen_by_the_monitor)
         c.board.cards.fault.after = 1;
         CHECK_EQ_I64(run_stage(c, stage, 0, shown_before(stage, 0), ""), 0);
         CHECK(r.result == BRINGUP_MONITOR && r.took_s < 1 && r.unsafe == 0,
-              "stage %d: %s after %.3f s", stage, bringup_result_text(r.result), r.took_s);
+            "stage %d: %s after %.3f s", stage, bringup_result_text(r.result), r.took_s);
     }
 }
 
@@ -303,7 +302,7 @@ TEST(speed_is_limited)
 {
     CHECK_EQ_I64(run_stage(config(1), 3, 0, shown_before(3, 0), " v_max=0.05 v_trip=0.5"), 0);
     CHECK(r.result == BRINGUP_SPEED && r.took_s < 0.1 && r.unsafe == 0, "%s after %.3f s",
-          bringup_result_text(r.result), r.took_s);
+        bringup_result_text(r.result), r.took_s);
     CHECK(r.moved_m > -0.005, "%.4f m", r.moved_m);
 }
 
@@ -319,13 +318,13 @@ TEST(the_balance_must_read_what_was_commanded)
     for (int k = 0; k < BRINGUP_LEVELS; k++) {
         const double F_N = 0.5 * (k + 1), T_N = (F_N - 0.0505) / 1.1297;
         CHECK(r.balance_N[k] > T_N - 0.02 && r.balance_N[k] < T_N + 0.02, "%.3f N of %.3f",
-              r.balance_N[k], T_N);
+            r.balance_N[k], T_N);
     }
     /* A kf that is wrong: what the balance reads then, given back. */
     snprintf(boot, sizeof boot, "stage=4 kf=5 shown=%lu", (unsigned long)shown_before(4, 0));
     CHECK_EQ_I64(bringup_run(&c, &r), 0);
     snprintf(boot, sizeof boot, "stage=4 kf=5 shown=%lu read1=%.2f read2=%.2f read3=%.2f",
-             (unsigned long)shown_before(4, 0), r.balance_N[0], r.balance_N[1], r.balance_N[2]);
+        (unsigned long)shown_before(4, 0), r.balance_N[0], r.balance_N[1], r.balance_N[2]);
     CHECK_EQ_I64(bringup_run(&c, &r), 0);
     CHECK(r.result == BRINGUP_READING, "kf 5: %s", bringup_result_text(r.result));
 }
@@ -343,7 +342,7 @@ TEST(a_known_mass_gives_kf)
             c.board.cards.how = cards ? POSIX_CARDS_INSTANT : POSIX_CARDS_NONE;
             CHECK_EQ_I64(run_stage(c, 4, 0, shown_before(4, 0), mass[i]), 0);
             CHECK(r.result == EXH_PROBE_DONE && r.number == 0 && r.unsafe == 0, "%s: %s", mass[i],
-                  bringup_result_text(r.result));
+                bringup_result_text(r.result));
             N = (double)bringup_config()->mass_N_q20 / (1 << EXH_Q_FORCE);
             A = (double)exh_weigh_point(&s->weigh, 0).cur_A_q26 / (1 << EXH_Q_CUR);
             CHECK(N / A > 3.259 * 0.98 && N / A < 3.259 * 1.02, "%s: %.4f N/A", mass[i], N / A);
@@ -354,20 +353,19 @@ TEST(a_known_mass_gives_kf)
         c.wrong = BRINGUP_SLIPPED; /* nothing hangs on it: it runs in */
         CHECK_EQ_I64(run_stage(c, 4, 0, shown_before(4, 0), mass[0]), 0);
         CHECK(r.result == EXH_PROBE_TRAVEL && r.unsafe == 0 && r.most_A < 0.4492, "%s",
-              bringup_result_text(r.result));
+            bringup_result_text(r.result));
         CHECK(run_stage(config(2), 4, 0, shown_before(4, 0), " mass=0.04") < 0, "a mass too light");
         CHECK(run_stage(config(2), 4, 0, shown_before(4, 0), " mass=0.16") < 0,
-              "one beyond f_string");
+            "one beyond f_string");
     }
 }
 
 /* The number is of stage, finger, scales and limits. */
 TEST(a_stage_needs_the_one_before)
 {
-    static const char *const other[] = {" mon_scale=0.000258", " dac_scale=1700",
-                                        " step=0.00003316", " i_cont=3"};
-    static const char *const own[BRINGUP_STAGES][5] = {
-        {NULL},
+    static const char *const other[] = {
+        " mon_scale=0.000258", " dac_scale=1700", " step=0.00003316", " i_cont=3"};
+    static const char *const own[BRINGUP_STAGES][5] = {{NULL},
         {" loop=0", " da_max=0.5", " zero_tol=0.03", " mon_tol=0.03", " mon_percent=12"},
         {" load_max=0.29", " move=0.0004"},
         {" run_max=0.19", " pol_max=0.14", " v_max=0.26", " travel=0.031"},
@@ -376,7 +374,7 @@ TEST(a_stage_needs_the_one_before)
         const uint32_t shown = shown_before(stage, 0);
         CHECK_EQ_I64(run_stage(config(1), stage, 0, shown + 1, ""), 0);
         CHECK(r.result == BRINGUP_NOT_SHOWN && r.most_A <= 0 && r.unsafe == 0, "stage %d: %s",
-              stage, bringup_result_text(r.result));
+            stage, bringup_result_text(r.result));
         CHECK_EQ_I64(run_stage(config(1), stage, 1, shown, ""), 0);
         CHECK(r.result == BRINGUP_NOT_SHOWN, "another finger: %s", bringup_result_text(r.result));
         CHECK_EQ_I64(run_stage(config(1), stage, 0, 0, ""), 0);
@@ -389,10 +387,10 @@ TEST(a_stage_needs_the_one_before)
     for (int from = 1; from < BRINGUP_STAGES; from++) {
         for (size_t i = 0; i < LEN(own[from]) && own[from][i] != NULL; i++) {
             for (int stage = 2; stage <= BRINGUP_STAGES; stage++) {
-                CHECK_EQ_I64(run_stage(config(1), stage, 0, shown_before(stage, 0), own[from][i]),
-                             0);
+                CHECK_EQ_I64(
+                    run_stage(config(1), stage, 0, shown_before(stage, 0), own[from][i]), 0);
                 CHECK((r.result == BRINGUP_NOT_SHOWN) == (stage > from), "stage %d,%s: %s", stage,
-                      own[from][i], bringup_result_text(r.result));
+                    own[from][i], bringup_result_text(r.result));
             }
         }
     }
@@ -400,9 +398,8 @@ TEST(a_stage_needs_the_one_before)
 
 TEST(what_is_refused)
 {
-    static const char *const bad[] = {" f_finger=2.5", " f_string=11",  " run_max=0.6", " v_max=2",
-                                      " pol_max=0.3",  " run_max=0.1",  " doubt=1",     " hold=99",
-                                      " nothing=1",    " travel=0.0003"};
+    static const char *const bad[] = {" f_finger=2.5", " f_string=11", " run_max=0.6", " v_max=2",
+        " pol_max=0.3", " run_max=0.1", " doubt=1", " hold=99", " nothing=1", " travel=0.0003"};
     for (size_t i = 0; i < LEN(bad); i++) {
         CHECK(run_stage(config(1), 3, 0, shown_before(3, 0), bad[i]) < 0, "%s: taken", bad[i]);
     }
@@ -414,9 +411,8 @@ TEST(what_is_refused)
 }
 
 TEST_MAIN("sim/bringup", every_stage_comes_through, at_any_rate, wrong_polarity, encoder_unplugged,
-          monitor_dead_or_half, da_never_moves, what_is_open_ends_it_at_once,
-          nothing_begins_with_an_open_loop, no_slope_delays_the_end,
-          a_limit_that_acts_ends_it_at_once, held_before_the_question_is_no_answer,
-          a_string_let_loose_ends_it, a_mute_card_is_seen_by_the_monitor, speed_is_limited,
-          the_balance_must_read_what_was_commanded, a_known_mass_gives_kf,
-          a_stage_needs_the_one_before, what_is_refused);
+    monitor_dead_or_half, da_never_moves, what_is_open_ends_it_at_once,
+    nothing_begins_with_an_open_loop, no_slope_delays_the_end, a_limit_that_acts_ends_it_at_once,
+    held_before_the_question_is_no_answer, a_string_let_loose_ends_it,
+    a_mute_card_is_seen_by_the_monitor, speed_is_limited, the_balance_must_read_what_was_commanded,
+    a_known_mass_gives_kf, a_stage_needs_the_one_before, what_is_refused);

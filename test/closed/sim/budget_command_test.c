@@ -24,15 +24,15 @@ TEST(figures_by_hand)
     said(&s, dir, cli_budget, WORDS("budget", "--csv"));
     CHECK(s.status == 0 &&
               strstr(s.out,
-                     "\"drop, in "
-                     "turn\",20000,11,0,7952,11.190,12.000,25.000,10.000,0.000,40000,A/D,3.234\n"),
-          "%s", s.out);
+                  "\"drop, in "
+                  "turn\",20000,11,0,7952,11.190,12.000,25.000,10.000,0.000,40000,A/D,3.234\n"),
+        "%s", s.out);
     /* 47.35875 and 32: 12601 Hz. */
     CHECK(strstr(s.out, ",47.359,32.000,25.000,10.000,16.923,12601,instructions,1.645\n") != NULL,
-          "%s", s.out);
+        "%s", s.out);
     said(&s, dir, cli_budget, WORDS("budget", "--access-us", "2", "--csv"));
-    CHECK(strstr(s.out, ",47.359,64.000,25.000,10.000,16.923,8980,bus,1.645\n") != NULL, "%s",
-          s.out);
+    CHECK(
+        strstr(s.out, ",47.359,64.000,25.000,10.000,16.923,8980,bus,1.645\n") != NULL, "%s", s.out);
     said_clean(dir);
 }
 
@@ -42,11 +42,10 @@ TEST(the_reports_table_is_the_same)
 {
     static const struct {
         const char *here, *report;
-    } row[] = {{"\n\"drop\",", "| drop | "},
-               {"\n\"drop, in turn\",", "| drop, in turn | "},
-               {"\n\"bilateral, a frame at once\",", "| full box, a frame at once | "},
-               {"\n\"bilateral, in turn, frame\",", "| full box, in turn, frame | "},
-               {"\n\"bilateral, in turn, part\",", "| full box, in turn, part | "}};
+    } row[] = {{"\n\"drop\",", "| drop | "}, {"\n\"drop, in turn\",", "| drop, in turn | "},
+        {"\n\"bilateral, a frame at once\",", "| full box, a frame at once | "},
+        {"\n\"bilateral, in turn, frame\",", "| full box, in turn, frame | "},
+        {"\n\"bilateral, in turn, part\",", "| full box, in turn, part | "}};
     static char report[200000];
     char *dir = said_dir();
     FILE *f = fopen("docs/REPORT.md", "r");
@@ -67,8 +66,8 @@ TEST(the_reports_table_is_the_same)
         n = bytes ? snprintf(want, sizeof want, "%d + %d | %d |", words, bytes, insns)
                   : snprintf(want, sizeof want, "%d | %d |", words, insns);
         CHECK(strncmp(table, want, (size_t)n) == 0,
-              "%s: stale: exhand-lab budget has %s, docs/REPORT.md %.30s", row[i].report, want,
-              table);
+            "%s: stale: exhand-lab budget has %s, docs/REPORT.md %.30s", row[i].report, want,
+            table);
     }
     said_clean(dir);
 }

@@ -46,16 +46,16 @@ static struct exh_calib calib(uint32_t finger)
     const struct drop_par *par = (const void *)exh_scene_drop.params->active;
     exh_scene_drop.defaults();
     return (struct exh_calib){.device_id = DEVICE,
-                              .finger = finger,
-                              .day = DAY,
-                              .valid_days = 90,
-                              .dac_rawpA_q16 = par->drive.dac_rawpA_q16,
-                              .dac_zero_raw = par->drive.dac_zero_raw,
-                              .mon_A_q40 = par->drive.mon_A_q40,
-                              .mon_zero_raw = MON_ZERO,
-                              .end_A_q26 = EXH_Q(66, 10, EXH_Q_CUR),
-                              .point = point,
-                              .points = LEN(point)};
+        .finger = finger,
+        .day = DAY,
+        .valid_days = 90,
+        .dac_rawpA_q16 = par->drive.dac_rawpA_q16,
+        .dac_zero_raw = par->drive.dac_zero_raw,
+        .mon_A_q40 = par->drive.mon_A_q40,
+        .mon_zero_raw = MON_ZERO,
+        .end_A_q26 = EXH_Q(66, 10, EXH_Q_CUR),
+        .point = point,
+        .points = LEN(point)};
 }
 
 static void save(unsigned i, const struct exh_calib *c)
@@ -103,7 +103,7 @@ static void check_refused(const struct exh_scene *sc, int want, const char *what
     const int32_t zero = exh_signal_find(sc->params->table, 0x050A, 0);
     CHECK(err == want, "%s, %s: %d", sc->name, about, err);
     CHECK(k->refused == want && k->what && strcmp(k->what, what) == 0, "%s, %s: %d, %s", sc->name,
-          about, k->refused, k->what ? k->what : "");
+        about, k->refused, k->what ? k->what : "");
     CHECK(sc->params->active[zero] == 0, "%s, %s: its zero was taken", sc->name, about);
 }
 
@@ -113,8 +113,8 @@ static const struct exh_scene *const one[] = {&exh_scene_drop, &exh_scene_guarde
 
 TEST(nothing_arms_without_unless_waived)
 {
-    const struct exh_scene *const all[] = {&exh_scene_drop, &exh_scene_guarded,
-                                           &exh_scene_bilateral};
+    const struct exh_scene *const all[] = {
+        &exh_scene_drop, &exh_scene_guarded, &exh_scene_bilateral};
     for (size_t i = 0; i < LEN(all); i++) {
         for (int32_t waived = 0; waived < 2; waived++) {
             all[i]->defaults();
@@ -123,7 +123,7 @@ TEST(nothing_arms_without_unless_waived)
             CHECK_EQ_I64(set_up(all[i]), 0);
             ticks(all[i], 3);
             CHECK(all[i]->safety->state == (waived ? EXH_STATE_ARM : EXH_STATE_OFF),
-                  "%s, %d: state %d", all[i]->name, (int)waived, all[i]->safety->state);
+                "%s, %d: state %d", all[i]->name, (int)waived, all[i]->safety->state);
             CHECK_EQ_I64(all[i]->safety->refused, waived ? 0 : EXH_ARM_CALIBRATION);
         }
     }
@@ -141,22 +141,22 @@ TEST(a_good_one_arms_and_forces_go_by_its_points)
         CHECK_EQ_I64(one[i]->params->active[zero], MON_ZERO);
         ticks(one[i], 1300);
         CHECK(exh_safety_is_running(one[i]->safety), "%s: state %d, refused %d, faults %x",
-              one[i]->name, one[i]->safety->state, one[i]->safety->refused,
-              (unsigned)one[i]->safety->faults);
+            one[i]->name, one[i]->safety->state, one[i]->safety->refused,
+            (unsigned)one[i]->safety->faults);
     }
     give(&exh_scene_drop, 0, 1);
     CHECK_EQ_I64(set_up(&exh_scene_drop), 0);
     (void)drop_memory(&cfg);
     for (size_t k = 0; k < LEN(point); k++) {
-        CHECK_EQ_I64(exh_table_at(exh_calib_to_cur(&cfg->calib), point[k].force_N_q20),
-                     point[k].cur_A_q26);
+        CHECK_EQ_I64(
+            exh_table_at(exh_calib_to_cur(&cfg->calib), point[k].force_N_q20), point[k].cur_A_q26);
         CHECK_EQ_I64(exh_table_at(exh_calib_to_force(&cfg->calib), point[k].mon_A_q26),
-                     point[k].force_N_q20);
+            point[k].force_N_q20);
         CHECK_EQ_I64(exh_table_at(exh_calib_to_force(&cfg->calib), -point[k].mon_A_q26),
-                     -point[k].force_N_q20);
+            -point[k].force_N_q20);
     }
     CHECK(exh_table_at(exh_calib_to_cur(&cfg->calib), INT32_MAX) == EXH_Q(66, 10, EXH_Q_CUR),
-          "the table's end");
+        "the table's end");
 }
 
 /* Whatever it is, with `uncalibrated` too: who brings an image means it. */
@@ -213,9 +213,9 @@ TEST(every_damaged_bit_and_every_end_is_refused)
         give(&exh_scene_drop, 0, 1);
         image[0].byte[bit / 8] ^= (uint8_t)(1u << bit % 8);
         CHECK(set_up(&exh_scene_drop) < 0 && exh_scene_drop.calib->refused < 0, "bit %u",
-              (unsigned)bit);
+            (unsigned)bit);
         CHECK(strcmp(exh_scene_drop.calib->what, "image") == 0, "bit %u: %s", (unsigned)bit,
-              exh_scene_drop.calib->what);
+            exh_scene_drop.calib->what);
         image[0].byte[bit / 8] ^= (uint8_t)(1u << bit % 8);
     }
     for (uint32_t len_B = 0; len_B < image[0].len_B; len_B++) {
@@ -258,7 +258,7 @@ TEST(the_full_box_needs_one_for_every_finger_in_use)
             CHECK_EQ_I64(set_up(sc), 0);
             ticks(sc, 3);
             CHECK(sc->safety->state == (all ? EXH_STATE_ARM : EXH_STATE_OFF),
-                  "fingers %d, %u images: state %d", (int)fingers, n, sc->safety->state);
+                "fingers %d, %u images: state %d", (int)fingers, n, sc->safety->state);
             CHECK_EQ_I64(sc->safety->refused, all ? 0 : EXH_ARM_CALIBRATION);
         }
     }
@@ -266,7 +266,7 @@ TEST(the_full_box_needs_one_for_every_finger_in_use)
         const struct exh_calib_tables *t = &cfg->finger[f].calib;
         const int32_t zero = exh_signal_find(sc->params->table, 0x050A, (uint16_t)f);
         CHECK_EQ_I64(exh_table_at(exh_calib_to_cur(t), point[2].force_N_q20),
-                     EXH_Q(2, 1, EXH_Q_CUR) + (int32_t)f);
+            EXH_Q(2, 1, EXH_Q_CUR) + (int32_t)f);
         CHECK_EQ_I64(sc->params->active[zero], MON_ZERO + (int32_t)f);
     }
 }
@@ -313,8 +313,8 @@ TEST(a_log_has_them_and_replays)
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     snprintf(path, sizeof path, "%s/calibration.bin", dir);
     said(&s, dir, cli_drop,
-         WORDS("drop", "--rate", "500", "--falls", "1", "--out", dir, "--calibration", path,
-               "--set", "day=20010"));
+        WORDS("drop", "--rate", "500", "--falls", "1", "--out", dir, "--calibration", path, "--set",
+            "day=20010"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     snprintf(out, sizeof out, "%s/drop_500Hz.exh", dir);
     said(&s, dir, cli_replay, WORDS("replay", out));
@@ -341,12 +341,12 @@ TEST(a_dump_of_the_black_box_has_them)
     snprintf(path, sizeof path, "%s/calibration.bin", dir);
     snprintf(box, sizeof box, "%s/box.exh", dir);
     said(&s, dir, cli_bilateral,
-         WORDS("bilateral", "--rate", "500", "--speed", "fast", "--approaches", "1", "--let-go",
-               "1.2", "--blackbox", box, "--calibration", dir));
+        WORDS("bilateral", "--rate", "500", "--speed", "fast", "--approaches", "1", "--let-go",
+            "1.2", "--blackbox", box, "--calibration", dir));
     CHECK(s.status == 1 && strstr(s.err, "deadman"), "%d: %s", s.status, s.err);
     said(&s, dir, cli_replay, WORDS("replay", box));
     CHECK(s.status == 0 && strstr(s.out, "fault deadman at tick"), "%d: %s%s", s.status, s.out,
-          s.err);
+        s.err);
     said_clean(dir);
 }
 
@@ -367,14 +367,14 @@ TEST(the_command_names_file_and_field)
     snprintf(path, sizeof path, "%s/calibration.bin", dir);
     for (size_t i = 0; i < LEN(row); i++) {
         said(&s, dir, cli_drop,
-             WORDS("drop", "--rate", "500", "--falls", "1", "--calibration", path, "--set",
-                   "day=20000", "--set", row[i].set));
+            WORDS("drop", "--rate", "500", "--falls", "1", "--calibration", path, "--set",
+                "day=20000", "--set", row[i].set));
         CHECK(s.status == (row[i].want ? 2 : 0), "%s: %d: %s", row[i].set, s.status, s.err);
         CHECK(!row[i].want || (strstr(s.err, "calibration.bin: ") && strstr(s.err, row[i].want)),
-              "%s: %s", row[i].set, s.err);
+            "%s: %s", row[i].set, s.err);
     }
     said(&s, dir, cli_drop,
-         WORDS("drop", "--rate", "500", "--falls", "1", "--set", "uncalibrated=0"));
+        WORDS("drop", "--rate", "500", "--falls", "1", "--set", "uncalibrated=0"));
     CHECK(s.status == 1 && strstr(s.err, "refused at calibration"), "%d: %s", s.status, s.err);
     said(&s, dir, cli_drop, WORDS("drop", "--rate", "500", "--calibration", "no/such/file"));
     CHECK(s.status == 3 && strstr(s.err, "no/such/file"), "%d: %s", s.status, s.err);
@@ -392,12 +392,12 @@ TEST(loaded_parameters_do_not_vouch)
     snprintf(par, sizeof par, "%s/p.exhp", dir);
     said(&s, dir, cli_calibrate, WORDS("calibrate", "--day", "10000", "--out", dir)); /* 1997 */
     said(&s, dir, cli_drop,
-         WORDS("drop", "--rate", "500", "--falls", "1", "--calibration", path, "--set", "day=10000",
-               "--save-params", par));
+        WORDS("drop", "--rate", "500", "--falls", "1", "--calibration", path, "--set", "day=10000",
+            "--save-params", par));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     said(&s, dir, cli_drop,
-         WORDS("drop", "--rate", "500", "--falls", "1", "--calibration", path, "--load-params",
-               par));
+        WORDS(
+            "drop", "--rate", "500", "--falls", "1", "--calibration", path, "--load-params", par));
     CHECK(s.status == 2 && strstr(s.err, "age: "), "%d: %s", s.status, s.err);
     said_clean(dir);
 }
@@ -427,7 +427,7 @@ TEST(an_old_log_is_named)
 }
 
 TEST_MAIN("calib", nothing_arms_without_unless_waived, a_good_one_arms_and_forces_go_by_its_points,
-          what_does_not_hold_is_refused_by_name, every_damaged_bit_and_every_end_is_refused,
-          the_full_box_needs_one_for_every_finger_in_use, one_of_five_that_is_refused_refuses_all,
-          a_log_has_them_and_replays, a_dump_of_the_black_box_has_them,
-          the_command_names_file_and_field, loaded_parameters_do_not_vouch, an_old_log_is_named);
+    what_does_not_hold_is_refused_by_name, every_damaged_bit_and_every_end_is_refused,
+    the_full_box_needs_one_for_every_finger_in_use, one_of_five_that_is_refused_refuses_all,
+    a_log_has_them_and_replays, a_dump_of_the_black_box_has_them, the_command_names_file_and_field,
+    loaded_parameters_do_not_vouch, an_old_log_is_named);

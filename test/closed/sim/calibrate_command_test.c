@@ -15,8 +15,8 @@ static int command(const char *dir, const char *words)
     size_t n = 0;
     argv[0] = text;
     for (const char *w = words; *w != '\0' && n + 100 < sizeof text; w++) {
-        n += (size_t)snprintf(text + n, sizeof text - n, *w == '@' ? "%s" : "%.1s",
-                              *w == '@' ? dir : w);
+        n += (size_t)snprintf(
+            text + n, sizeof text - n, *w == '@' ? "%s" : "%.1s", *w == '@' ? dir : w);
     }
     text[n] = '\0';
     for (char *word = strtok(text, " "); word != NULL && argc < 20; word = strtok(NULL, " ")) {
@@ -78,8 +78,8 @@ TEST(exit_status_says_what_happened)
         {2, "word"},
     };
     char dir[] = "/tmp/exhand_calibrate_XXXXXX", path[64];
-    static const char *const made[] = {"calibration.bin", "calibration.csv", "table.csv",
-                                       "pictures.gp"};
+    static const char *const made[] = {
+        "calibration.bin", "calibration.csv", "table.csv", "pictures.gp"};
     CHECK(mkdtemp(dir) != NULL, "no temporary directory");
     for (size_t i = 0; i < LEN(row); i++) {
         const int status = command(dir, row[i].words);
@@ -100,7 +100,7 @@ TEST(exit_status_says_what_happened)
         static struct said s; \
         said(&s, dir, cli_calibrate, WORDS("calibrate", __VA_ARGS__)); \
         CHECK(s.status == (wanted) && strstr(s.err, text), "status %d: %s, wanted %s", s.status, \
-              s.err, text); \
+            s.err, text); \
         CHECK(strstr(s.out, "for the drop experiment") == NULL, "%s", s.out); \
     } while (0)
 
@@ -114,29 +114,29 @@ TEST(what_is_refused_is_named)
     SAYS(dir, 2, "--mass: 0.01 (slack_cur", "--mass", "0.01,0.5");
     SAYS(dir, 2, "(allowed up to i_max: ", "--set", "i_max=0.2");
     SAYS(dir, 2, "give --device substep=1e-05", "--device", "rotor=0.0001", "--device",
-         "substep=1e-4");
+        "substep=1e-4");
     SAYS(dir, 2, "--set: go:", "--set", "go=1");
     SAYS(dir, 1, "mass 0.1 kg: did not move", "--wrong", "fixed_mass");
     SAYS(dir, 1, "mass 0.1 kg: a limit of the drive acts (peak: i_peak)", "--set", "i_cont=0.15",
-         "--set", "i_peak=0.2");
+        "--set", "i_peak=0.2");
     SAYS(dir, 1, "nobody prepared the step after 1.30 s", "--set", "wait_time=1300");
     SAYS(dir, 3, "No such file or directory: give the calibration.bin", "--check",
-         "/nowhere/at/all");
+        "/nowhere/at/all");
     SAYS(dir, 2, "Is a directory: give the calibration.bin", "--check", dir);
-    said(&made, dir, cli_calibrate,
-         WORDS("calibrate", "--day", "20000", "--id", "9", "--out", dir));
+    said(
+        &made, dir, cli_calibrate, WORDS("calibrate", "--day", "20000", "--id", "9", "--out", dir));
     CHECK(made.status == 0, "%s", made.err);
     SAYS(dir, 1, "made for device 9, this is 8:", "--check", image, "--day", "20000", "--id", "8");
     SAYS(dir, 1, "made for finger 0, this is 3:", "--check", image, "--day", "20000", "--id", "9",
-         "--finger", "3");
+        "--finger", "3");
     SAYS(dir, 1,
-         "from the future: made on day 20000, today is day 19999: set the clock right, or give "
-         "--day",
-         "--check", image, "--day", "19999", "--id", "9");
+        "from the future: made on day 20000, today is day 19999: set the clock right, or give "
+        "--day",
+        "--check", image, "--day", "19999", "--id", "9");
     SAYS(dir, 1, "stale: made on day 20000, good for 90 days", "--check", image, "--day", "20091",
-         "--id", "9");
+        "--id", "9");
     SAYS(dir, 1, "scale or zero", "--check", image, "--day", "20000", "--id", "9", "--device",
-         "dac_zero=32767");
+        "dac_zero=32767");
     SAYS(dir, 2, "Not a directory", "--out", image); /* before anything runs */
     said_clean(dir);
 }
@@ -146,8 +146,8 @@ TEST(what_is_refused_is_named)
 
 TEST(what_cannot_be_written_is_said)
 {
-    static const char *const name[] = {"calibration.bin", "calibration.csv", "table.csv",
-                                       "pictures.gp"};
+    static const char *const name[] = {
+        "calibration.bin", "calibration.csv", "table.csv", "pictures.gp"};
     for (size_t i = 0; i < 2 * LEN(name); i++) {
         char *dir = said_dir();
         const char *path = said_path(dir, name[i / 2]);
@@ -155,7 +155,7 @@ TEST(what_cannot_be_written_is_said)
         if (i % 2 == 0) { CHECK_EQ_I64(mkdir(path, 0777), 0); }
         if (i % 2 == 1) { CHECK_EQ_I64(symlink("/dev/full", path), 0); }
         snprintf(text, sizeof text, "%s: can't be written: %s:", path,
-                 i % 2 ? "No space left on device" : "Is a directory");
+            i % 2 ? "No space left on device" : "Is a directory");
         SAYS(dir, 1, text, "--out", dir);
         said_clean(dir);
     }
@@ -175,8 +175,8 @@ static int line_by_line(int argc, char **argv)
 /* A signal while it waits, within a step, within a mass. */
 TEST(an_interruption_saves_nothing)
 {
-    static const char *const after[] = {"  zero", "  polarity", "  home",
-                                        "  f0",   "  mass 0.1", "  mass 0.3"};
+    static const char *const after[] = {
+        "  zero", "  polarity", "  home", "  f0", "  mass 0.1", "  mass 0.3"};
     for (size_t i = 0; i < LEN(after); i++) {
         const struct timespec nap = {0, 1000000};
         char *dir = said_dir();
@@ -199,4 +199,4 @@ TEST(an_interruption_saves_nothing)
 }
 
 TEST_MAIN("sim/calibrate_command", exit_status_says_what_happened, what_is_refused_is_named,
-          what_cannot_be_written_is_said, an_interruption_saves_nothing);
+    what_cannot_be_written_is_said, an_interruption_saves_nothing);

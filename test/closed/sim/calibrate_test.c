@@ -40,15 +40,15 @@ static const struct calibration *calibrate(const struct calibration_cfg *c)
     return &out;
 }
 
-static const struct calibration *calibrated(const struct calibration_cfg *c,
-                                            struct calibration_lines *l)
+static const struct calibration *calibrated(
+    const struct calibration_cfg *c, struct calibration_lines *l)
 {
     const struct calibration *r = calibrate(c);
     struct exh_calib_error bad = {99, 0};
     CHECK(r->result == EXH_PROBE_DONE, "%s: %s", calibrate_step_text(r->step),
-          calibrate_result_text(r->result));
+        calibrate_result_text(r->result));
     CHECK(exh_calib_validate(&r->c, &bad) == 0, "%s, point %d", exh_calib_error_text(bad.what),
-          bad.at);
+        bad.at);
     CHECK_EQ_I64(r->c.points, c->masses);
     CHECK_EQ_I64(calibration_lines(&r->c, l), 0);
     return r;
@@ -59,10 +59,7 @@ static double expected_kf(const struct sim_device *d)
     return d->kf_npa * (1 - d->mu_mass * d->mu_mass) / (1 + d->mu_motor * d->mu_mass);
 }
 
-static double si(int32_t raw, int frac)
-{
-    return (double)raw / (double)(INT64_C(1) << frac);
-}
+static double si(int32_t raw, int frac) { return (double)raw / (double)(INT64_C(1) << frac); }
 
 /* --- what it finds --- */
 
@@ -79,12 +76,11 @@ static void check_found(const struct calibration_cfg *c, double kf_share)
     for (int i = 0; i < c->masses; i++) { /* each point: within a step of its place */
         const double at_A = c->mass_kg[i] * SIM_GRAVITY / want;
         CHECK(fabs(si(r->point[i].cur_A_q26, EXH_Q_CUR) - at_A) < 1.2 * step_A,
-              "%g kg: %.4f A, want %.4f", c->mass_kg[i], si(r->point[i].cur_A_q26, EXH_Q_CUR),
-              at_A);
+            "%g kg: %.4f A, want %.4f", c->mass_kg[i], si(r->point[i].cur_A_q26, EXH_Q_CUR), at_A);
     }
     CHECK(si(r->c.f0_A_q26, EXH_Q_CUR) > f0_A - step_A &&
               si(r->c.f0_A_q26, EXH_Q_CUR) < f0_A + 2.5 * step_A,
-          "F0 %.4f A, want %.4f", si(r->c.f0_A_q26, EXH_Q_CUR), f0_A);
+        "F0 %.4f A, want %.4f", si(r->c.f0_A_q26, EXH_Q_CUR), f0_A);
     CHECK(fabs(r->home_m + 0.15) < 1.5 * d->step_m / d->decode, "home %.6f m", r->home_m);
     CHECK(r->most_A < 3.3003, "%.4f A", r->most_A);
 }
@@ -112,9 +108,9 @@ TEST(other_devices)
     static const struct {
         const char *name;
         double value;
-    } row[] = {{"kf", 2.8},       {"kf", 6},         {"mu_motor", 0},         {"mu_mass", 0},
-               {"mu_mass", 0.15}, {"coulomb", 0.2},  {"decode", 4},           {"cable_k", 20000},
-               {"rotor", 0.2},    {"delay_tick", 2}, {"enc_start", 16777000}, {"mon_scale", 1e-4}};
+    } row[] = {{"kf", 2.8}, {"kf", 6}, {"mu_motor", 0}, {"mu_mass", 0}, {"mu_mass", 0.15},
+        {"coulomb", 0.2}, {"decode", 4}, {"cable_k", 20000}, {"rotor", 0.2}, {"delay_tick", 2},
+        {"enc_start", 16777000}, {"mon_scale", 1e-4}};
     for (size_t i = 0; i < LEN(row); i++) {
         const struct sim_device_row *r;
         struct calibration_cfg c = config(i + 1);
@@ -142,7 +138,7 @@ TEST(kf_itself_where_the_mass_has_no_friction)
     c.board.device.mu_mass = 0;
     calibrated(&c, &l);
     CHECK(fabs(si(l.cur.kf_NpA_q20, EXH_Q_FORCE) / c.board.device.kf_npa - 1) < 0.003, "%.4f",
-          si(l.cur.kf_NpA_q20, EXH_Q_FORCE));
+        si(l.cur.kf_NpA_q20, EXH_Q_FORCE));
 }
 
 TEST(same_seed_same_image)
@@ -174,7 +170,7 @@ TEST(whatever_is_wrong_stops_at_its_step)
         {BENCH_FIXED_MASS, CALIBRATE_MASS, EXH_PROBE_STILL, 0.491, 10, 0.001},
         {BENCH_PULLED, CALIBRATE_ZERO, EXH_PROBE_TRAVEL, 0, 0.1, 0.0005},
         {BENCH_MOTOR_REVERSED | BENCH_ENCODER_REVERSED, CALIBRATE_HOME, EXH_PROBE_TRAVEL, 0.101, 6,
-         0.31},
+            0.31},
     };
     for (size_t i = 0; i < LEN(row); i++) {
         for (uint64_t seed = 1; seed <= 4; seed++) {
@@ -184,11 +180,11 @@ TEST(whatever_is_wrong_stops_at_its_step)
             c.rate_Hz = seed == 4 ? 200 : 2000;
             r = calibrate(&c);
             CHECK(r->step == row[i].step && r->result == row[i].result, "row %zu: %s: %s", i,
-                  calibrate_step_text(r->step), calibrate_result_text(r->result));
+                calibrate_step_text(r->step), calibrate_result_text(r->result));
             CHECK(r->last_most_A <= row[i].most_A, "row %zu: %.4f A", i, r->last_most_A);
             CHECK(r->last_s <= row[i].most_s, "row %zu: %.2f s", i, r->last_s);
             CHECK(r->last_travel_m <= row[i].most_m + 0.001 * (seed == 4), "row %zu: %.5f m", i,
-                  r->last_travel_m);
+                r->last_travel_m);
         }
     }
 }
@@ -204,9 +200,9 @@ TEST(reversed_is_seen_at_the_least_current)
         c.board.device.coulomb_n = coulomb_N[i];
         r = calibrate(&c);
         CHECK(r->step == CALIBRATE_POLARITY && r->result == EXH_PROBE_WRONG_WAY, "%s",
-              calibrate_result_text(r->result));
+            calibrate_result_text(r->result));
         CHECK(r->last_most_A < coulomb_N[i] / c.board.device.kf_npa + 0.011, "%.4f A",
-              r->last_most_A);
+            r->last_most_A);
         CHECK(r->most_A == r->last_most_A, "current before: %.4f A", r->most_A);
     }
 }
@@ -226,9 +222,9 @@ TEST(nobody_after_a_finished_step_is_no_calibration)
         c.settings = 1;
         r = calibrate(&c);
         CHECK(r->step == row[i].step && r->result == CALIBRATE_NOBODY, "row %zu: %s: %s", i,
-              calibrate_step_text(r->step), calibrate_result_text(r->result));
+            calibrate_step_text(r->step), calibrate_result_text(r->result));
         CHECK(r->c.points == (i ? 2 : 0) && r->last_most_A == 0, "row %zu: %d points", i,
-              r->c.points);
+            r->c.points);
         CHECK(fabs(r->last_s - row[i].wait_ms / 1000) < 0.002, "row %zu: %.4f s", i, r->last_s);
     }
 }
@@ -249,10 +245,10 @@ TEST(ended_before_its_end_is_no_calibration)
             continue;
         }
         CHECK(err == -EXH_E_STATE && out.result == EXH_PROBE_BUSY,
-              "after %" PRIu32 " ticks: %d: %s", n, err, calibrate_result_text(out.result));
+            "after %" PRIu32 " ticks: %d: %s", n, err, calibrate_result_text(out.result));
     }
     CHECK(last > 5000 && out.result == EXH_PROBE_DONE && out.c.points == c.masses,
-          "after %" PRIu32 " ticks", last);
+        "after %" PRIu32 " ticks", last);
 }
 
 /* The person hangs on other masses than said: the table does not rise there. */
@@ -266,7 +262,7 @@ TEST(exchanged_masses_are_refused_by_table_and_point)
     c.masses = LEN(said_kg);
     CHECK_EQ_I64(exh_calib_validate(&calibrate(&c)->c, &bad), -EXH_E_MONOTONE);
     CHECK(bad.what == EXH_CALIB_FORCE_TABLE && bad.at == 2, "%s, point %d",
-          exh_calib_error_text(bad.what), bad.at);
+        exh_calib_error_text(bad.what), bad.at);
 }
 
 TEST(set_up_refuses)
@@ -298,7 +294,7 @@ TEST(set_up_refuses)
         light.mass_kg_q20[0] = EXH_Q(2 + i, 100, EXH_Q_FORCE);
         CHECK_EQ_I64(calibrate_setup(&cfg, &light, board), 0);
         CHECK(cfg.weigh[0].up.end_A_q26 <= EXH_Q(981 * (2 + i), 20000, EXH_Q_CUR) + 64, "%u: %d", i,
-              (int)cfg.weigh[0].up.end_A_q26);
+            (int)cfg.weigh[0].up.end_A_q26);
     }
     par.mass_kg_q20[1] = par.mass_kg_q20[0];
     CHECK_EQ_I64(calibrate_setup(&cfg, &par, board), -EXH_E_MONOTONE);
@@ -357,13 +353,10 @@ TEST(a_fault_ends_it_in_its_tick_for_good)
     static const struct {
         uint32_t din_off, missed, jump;
         uint32_t fault;
-    } row[] = {{EXH_DIN_ESTOP, 0, 0, EXH_FAULT_ESTOP},
-               {EXH_DIN_CARDS, 0, 0, EXH_FAULT_CARD},
-               {EXH_DIN_WATCHDOG, 0, 0, EXH_FAULT_WATCHDOG},
-               {EXH_DIN_DEADMAN, 0, 0, EXH_FAULT_DEADMAN},
-               {EXH_DIN_DRIVE0, 0, 0, EXH_FAULT_DRIVE},
-               {0, 10, 0, EXH_FAULT_OVERRUN},
-               {0, 0, 100000, EXH_FAULT_ENCODER}};
+    } row[] = {{EXH_DIN_ESTOP, 0, 0, EXH_FAULT_ESTOP}, {EXH_DIN_CARDS, 0, 0, EXH_FAULT_CARD},
+        {EXH_DIN_WATCHDOG, 0, 0, EXH_FAULT_WATCHDOG}, {EXH_DIN_DEADMAN, 0, 0, EXH_FAULT_DEADMAN},
+        {EXH_DIN_DRIVE0, 0, 0, EXH_FAULT_DRIVE}, {0, 10, 0, EXH_FAULT_OVERRUN},
+        {0, 0, 100000, EXH_FAULT_ENCODER}};
     for (size_t i = 0; i < LEN(row); i++) {
         struct rig r;
         under_way(&r);
@@ -373,7 +366,7 @@ TEST(a_fault_ends_it_in_its_tick_for_good)
         calibrate_tick(&r.s, &r.cfg, &r.in, &r.out, &r.sig);
         CHECK((r.out.dac_raw[0] == 32768 && r.out.enable == 0) ==
                   ((row[i].fault & EXH_FAULT_CUT) != 0),
-              "row %zu: code %u in its tick", i, r.out.dac_raw[0]);
+            "row %zu: code %u in its tick", i, r.out.dac_raw[0]);
         CHECK(r.sig.result == CALIBRATE_OFF && r.sig.step == CALIBRATE_POLARITY, "row %zu", i);
         CHECK_EQ_I64(r.sig.faults, row[i].fault);
         r.in.drive.din |= row[i].din_off;
@@ -390,7 +383,7 @@ TEST(a_fault_ends_it_in_its_tick_for_good)
         /* a position once lost is a cause for good */
         CHECK(r.sig.state == (row[i].jump ? EXH_STATE_FAULT : EXH_STATE_RUN) &&
                   r.sig.result == CALIBRATE_OFF,
-              "row %zu", i);
+            "row %zu", i);
     }
 }
 
@@ -451,7 +444,7 @@ TEST(leaving_run_ends_a_wait_at_once)
         if (i == 1) { r.in.command = EXH_CMD_OFF; }
         calibrate_tick(&r.s, &r.cfg, &r.in, &r.out, &r.sig);
         CHECK(r.sig.result == CALIBRATE_OFF && r.out.dac_raw[0] == 32768, "%s",
-              calibrate_result_text((unsigned)r.sig.result));
+            calibrate_result_text((unsigned)r.sig.result));
     }
 }
 
@@ -465,16 +458,16 @@ TEST(an_acting_limit_ends_it)
     c.settings = LEN(peak);
     r = calibrate(&c);
     CHECK(r->step == CALIBRATE_MASS && r->result == CALIBRATE_LIMITED, "%s: %s",
-          calibrate_step_text(r->step), calibrate_result_text(r->result));
+        calibrate_step_text(r->step), calibrate_result_text(r->result));
     CHECK(r->most_A < 0.2003 && r->limits == EXH_LIMIT_PEAK, "%.4f A, limits %x", r->most_A,
-          r->limits);
+        r->limits);
     c.setting = force;
     c.settings = LEN(force);
     r = calibrate(&c);
-    CHECK(r->step == CALIBRATE_MASS && r->result == CALIBRATE_LIMITED &&
-              r->limits == EXH_LIMIT_FORCE,
-          "%s: %s, limits %x", calibrate_step_text(r->step), calibrate_result_text(r->result),
-          r->limits);
+    CHECK(
+        r->step == CALIBRATE_MASS && r->result == CALIBRATE_LIMITED && r->limits == EXH_LIMIT_FORCE,
+        "%s: %s, limits %x", calibrate_step_text(r->step), calibrate_result_text(r->result),
+        r->limits);
     CHECK(r->most_A < 0.2003, "%.4f A", r->most_A);
 }
 
@@ -485,11 +478,11 @@ TEST(why_it_ended_is_named)
         uint32_t faults, limits;
         const char *says;
     } row[] = {{CALIBRATE_OFF, EXH_FAULT_ESTOP | EXH_FAULT_DEADMAN, 0,
-                "the box left RUN (emergency stop, dead-man released)"},
-               {CALIBRATE_OFF, 0, 0, "the box left RUN (by command)"},
-               {CALIBRATE_LIMITED, 0, EXH_LIMIT_DAC | EXH_LIMIT_SLEW,
-                "a limit of the drive acts (D/A span)"},
-               {EXH_PROBE_STILL, 0, EXH_LIMIT_DAC, "did not move"}};
+                   "the box left RUN (emergency stop, dead-man released)"},
+        {CALIBRATE_OFF, 0, 0, "the box left RUN (by command)"},
+        {CALIBRATE_LIMITED, 0, EXH_LIMIT_DAC | EXH_LIMIT_SLEW,
+            "a limit of the drive acts (D/A span)"},
+        {EXH_PROBE_STILL, 0, EXH_LIMIT_DAC, "did not move"}};
     for (size_t i = 0; i < LEN(row); i++) {
         const struct calibration r = {
             .result = row[i].result, .faults = row[i].faults, .limits = row[i].limits};
@@ -514,8 +507,7 @@ TEST(no_movement_while_the_zero_is_measured)
         }
         CHECK(r.sig.step == CALIBRATE_ZERO &&
                   r.sig.result == (way ? (int32_t)EXH_PROBE_TRAVEL : (int32_t)EXH_PROBE_BUSY),
-              "%d: step %d: %s", way, (int)r.sig.step,
-              calibrate_result_text((unsigned)r.sig.result));
+            "%d: step %d: %s", way, (int)r.sig.step, calibrate_result_text((unsigned)r.sig.result));
     }
 }
 
@@ -533,7 +525,7 @@ TEST(it_does_not_wait_for_ever)
         CHECK(r.out.dac_raw[0] == 32768, "tick %d: current", n);
     }
     CHECK(r.sig.result == CALIBRATE_NOBODY && n == 1200000, "%s after %d ticks",
-          calibrate_result_text((unsigned)r.sig.result), n);
+        calibrate_result_text((unsigned)r.sig.result), n);
 }
 
 /* The worst residual of either table is held against --residual, not the one's only. */
@@ -562,11 +554,11 @@ TEST(either_residual_counts)
 }
 
 TEST_MAIN("sim/calibrate", kf_f0_and_home_are_the_devices, at_any_rate, other_devices,
-          the_monitors_zero_is_found, kf_itself_where_the_mass_has_no_friction,
-          same_seed_same_image, whatever_is_wrong_stops_at_its_step,
-          reversed_is_seen_at_the_least_current, exchanged_masses_are_refused_by_table_and_point,
-          set_up_refuses, a_fault_ends_it_in_its_tick_for_good, nothing_begins_outside_run,
-          each_step_needs_a_word_of_its_own, leaving_run_ends_a_wait_at_once,
-          an_acting_limit_ends_it, why_it_ended_is_named, no_movement_while_the_zero_is_measured,
-          it_does_not_wait_for_ever, nobody_after_a_finished_step_is_no_calibration,
-          ended_before_its_end_is_no_calibration, either_residual_counts);
+    the_monitors_zero_is_found, kf_itself_where_the_mass_has_no_friction, same_seed_same_image,
+    whatever_is_wrong_stops_at_its_step, reversed_is_seen_at_the_least_current,
+    exchanged_masses_are_refused_by_table_and_point, set_up_refuses,
+    a_fault_ends_it_in_its_tick_for_good, nothing_begins_outside_run,
+    each_step_needs_a_word_of_its_own, leaving_run_ends_a_wait_at_once, an_acting_limit_ends_it,
+    why_it_ended_is_named, no_movement_while_the_zero_is_measured, it_does_not_wait_for_ever,
+    nobody_after_a_finished_step_is_no_calibration, ended_before_its_end_is_no_calibration,
+    either_residual_counts);

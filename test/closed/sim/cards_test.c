@@ -54,7 +54,7 @@ static void same(int (*command)(int, char **), const char *const *word, const ch
     more[n + 3] = NULL;
     said(&with, dir, command, more);
     CHECK(without.status == 0 && with.status == 0, "%d %d %s%s", without.status, with.status,
-          without.err, with.err);
+        without.err, with.err);
     CHECK(strcmp(without.out, with.out) == 0, "not the same words");
     for (int i = 0; file[i] != NULL; i++) {
         char path[2][640];
@@ -68,11 +68,11 @@ TEST(drop_at_every_rate)
 {
     dir = said_dir();
     same(cli_drop,
-         WORDS("drop", "--falls", "2", "--rate", "90,200,500,1000,2000,20000", "--jobs", "2"),
-         WORDS("drop_90Hz.exh", "drop_200Hz.exh", "drop_500Hz.exh", "drop_1000Hz.exh",
-               "drop_2000Hz.exh", "drop_20000Hz.exh", "table2.csv"));
+        WORDS("drop", "--falls", "2", "--rate", "90,200,500,1000,2000,20000", "--jobs", "2"),
+        WORDS("drop_90Hz.exh", "drop_200Hz.exh", "drop_500Hz.exh", "drop_1000Hz.exh",
+            "drop_2000Hz.exh", "drop_20000Hz.exh", "table2.csv"));
     same(cli_drop, WORDS("drop", "--falls", "1", "--period", "597/1193182", "--seed", "7"),
-         WORDS("table2.csv"));
+        WORDS("table2.csv"));
     said_clean(dir);
 }
 
@@ -82,13 +82,13 @@ TEST(bilateral_with_five_fingers)
     dir = said_dir();
     for (size_t i = 0; i < LEN(rate); i++) {
         same(cli_bilateral,
-             WORDS("bilateral", "--fingers", "all", "--approaches", "1", "--speed", "fast",
-                   "--rate", rate[i]),
-             WORDS("bilateral_fast.exh", "contacts.csv"));
+            WORDS("bilateral", "--fingers", "all", "--approaches", "1", "--speed", "fast", "--rate",
+                rate[i]),
+            WORDS("bilateral_fast.exh", "contacts.csv"));
     }
     same(cli_bilateral,
-         WORDS("bilateral", "--fingers", "little", "--approaches", "1", "--speed", "fast"),
-         WORDS("bilateral_fast.exh", "contacts.csv"));
+        WORDS("bilateral", "--fingers", "little", "--approaches", "1", "--speed", "fast"),
+        WORDS("bilateral_fast.exh", "contacts.csv"));
     said_clean(dir);
 }
 
@@ -101,13 +101,13 @@ TEST(glove_at_several_rates)
         const char *a = said_path(dir, "a.exh"), *b = said_path(dir, "b.exh");
         const char *r = rate[i / LEN(every)], *e = every[i % LEN(every)];
         said(&without, dir, cli_glove,
-             WORDS("glove", "--record", a, "--does", "grasp", "--seconds", "2", "--rate", r,
-                   "--set", e));
+            WORDS("glove", "--record", a, "--does", "grasp", "--seconds", "2", "--rate", r, "--set",
+                e));
         said(&with, dir, cli_glove,
-             WORDS("glove", "--record", b, "--does", "grasp", "--seconds", "2", "--rate", r,
-                   "--set", e, "--cards"));
+            WORDS("glove", "--record", b, "--does", "grasp", "--seconds", "2", "--rate", r, "--set",
+                e, "--cards"));
         CHECK(without.status == with.status, "%s %s: %d %d %s", r, e, without.status, with.status,
-              with.err);
+            with.err);
         if (without.status == 0) { same_file(a, b); }
     }
     said(&without, dir, lab_glove, WORDS("glove", "--selftest", "--seconds", "2"));
@@ -146,7 +146,7 @@ TEST(it_does_go_through_the_cards)
     struct run r;
     CHECK_EQ_I64(fall(c, &r), 0);
     CHECK(posix_cards_box()->accesses > 10 * r.ticks, "%lu accesses",
-          (unsigned long)posix_cards_box()->accesses);
+        (unsigned long)posix_cards_box()->accesses);
     run_free(&r);
     c.fault.kind = EMU_ABSENT;
     CHECK_EQ_I64(fall(c, &r), -EXH_E_ABSENT);
@@ -182,4 +182,4 @@ TEST(timed_too)
 }
 
 TEST_MAIN("sim/cards", drop_at_every_rate, bilateral_with_five_fingers, glove_at_several_rates,
-          calibrate, it_does_go_through_the_cards, timed_too);
+    calibrate, it_does_go_through_the_cards, timed_too);

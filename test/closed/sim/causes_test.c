@@ -53,8 +53,8 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
 }
 
 /* The faults of a run of 2.5 s with one finger that presses from 0.9 s on. */
-static uint32_t faults(const char *name, double value, const char *name2, double value2,
-                       double quiet_s)
+static uint32_t faults(
+    const char *name, double value, const char *name2, double value2, double quiet_s)
 {
     static const struct exh_loop_hooks more = {begin, before, after};
     const struct run_setting set[] = {{"mat_f_max", 40}, {name, value}, {name2, value2}};
@@ -87,13 +87,10 @@ static uint32_t faults(const char *name, double value, const char *name2, double
 static void told_at(unsigned k, double lo_s, double hi_s)
 {
     CHECK(at_s[k] >= lo_s && at_s[k] <= hi_s, "%s at %.4f s, want %.4f..%.4f", exh_fault_name(k),
-          at_s[k], lo_s, hi_s);
+        at_s[k], lo_s, hi_s);
 }
 
-static void all_is_well(void)
-{
-    memset(&wrong, 0, sizeof wrong);
-}
+static void all_is_well(void) { memset(&wrong, 0, sizeof wrong); }
 
 TEST(a_supply_outside_its_limits_is_a_fault_where_it_is_judged)
 {
@@ -167,14 +164,14 @@ static void power_on(const struct exh_scene *sc, int32_t least_V_q20)
     const struct exh_scene_board board = {{1, 1000}, 24};
     sc->defaults();
     CHECK_EQ_I64(exh_params_stage(sc->params, exh_supply_rows[0].id, 0, least_V_q20), 0);
-    CHECK_EQ_I64(exh_params_stage(sc->params, exh_calib_set_rows[2].id, 0, 1),
-                 0); /* uncalibrated */
+    CHECK_EQ_I64(
+        exh_params_stage(sc->params, exh_calib_set_rows[2].id, 0, 1), 0); /* uncalibrated */
     CHECK_EQ_I64(exh_params_apply(sc->params), 1);
     CHECK_EQ_I64(sc->setup(board), 0);
 }
 
-static void ticks(const struct exh_scene *sc, uint32_t n, int16_t supply_raw,
-                  enum exh_command command)
+static void ticks(
+    const struct exh_scene *sc, uint32_t n, int16_t supply_raw, enum exh_command command)
 {
     struct exh_scene_in in = {.command = (uint8_t)command};
     struct exh_drive_out out;
@@ -219,14 +216,14 @@ TEST(memory_of_guarded_that_changes_is_told)
         ticks(&exh_scene_guarded, 1, 0, EXH_CMD_RUN);
         ticks(&exh_scene_guarded, 2 * round, 0, EXH_CMD_NONE);
         CHECK(s->drop.safety.present == EXH_FAULT_CONFIG, "byte %zu: %x", at,
-              (unsigned)s->drop.safety.present);
+            (unsigned)s->drop.safety.present);
         CHECK(s->drop.safety.state == EXH_STATE_OFF || s->drop.safety.state == EXH_STATE_FAULT,
-              "byte %zu: state %d", at, s->drop.safety.state);
+            "byte %zu: state %d", at, s->drop.safety.state);
     }
 }
 
 TEST_MAIN("causes", a_supply_outside_its_limits_is_a_fault_where_it_is_judged,
-          a_sensor_that_is_not_believed_is_a_fault_after_its_time,
-          a_glove_that_is_silent_for_longer_than_an_age_can_tell,
-          a_silent_link_is_a_fault_where_it_is_asked_for, one_finger_judges_its_supply_likewise,
-          memory_of_guarded_that_changes_is_told);
+    a_sensor_that_is_not_believed_is_a_fault_after_its_time,
+    a_glove_that_is_silent_for_longer_than_an_age_can_tell,
+    a_silent_link_is_a_fault_where_it_is_asked_for, one_finger_judges_its_supply_likewise,
+    memory_of_guarded_that_changes_is_told);

@@ -59,7 +59,7 @@ TEST(bad_usage_is_refused_by_name)
         {{"--device", "cable_k=1e6", "--device", "substep=0.001"}, "give --device substep=0.0002"},
         {{"--device", "cable_b=1000", "--device", "rotor=0.0001"}, "substep: none is short enough"},
         {{"--blackbox", "/nowhere/at/all", "--rate", "90"},
-         "--blackbox: /nowhere/at/all: No such file"},
+            "--blackbox: /nowhere/at/all: No such file"},
         {{"--out", "/dev/null"}, "--out: /dev/null: Not a directory"},
         {{"--out", "/nowhere/at/all"}, "--out: /nowhere/at/all: No such file"},
         {{"--out", LONG_512 LONG_512}, "--out: 0123456789"},
@@ -110,8 +110,8 @@ TEST(a_stiff_device_is_integrated_in_shorter_steps)
     static struct said s[3];
     for (int i = 0; i < 3; i++) {
         said(&s[i], dir, cli_drop,
-             WORDS("drop", "--rate", "500", "--falls", "1", "--device", "observe=0.6", "--device",
-                   "cable_k=1e6", "--device", given[i]));
+            WORDS("drop", "--rate", "500", "--falls", "1", "--device", "observe=0.6", "--device",
+                "cable_k=1e6", "--device", given[i]));
         CHECK(s[i].status == 0, "%s: %d %s", given[i], s[i].status, s[i].err);
     }
     CHECK(strcmp(s[0].out, s[1].out) == 0, "by itself %s, as named %s", s[0].out, s[1].out);
@@ -127,7 +127,7 @@ TEST(what_ends_the_ramp_is_named)
     said(&s, dir, cli_drop, WORDS("drop", "--rate", "500", "--falls", "1", "--let-go", "0.2"));
     CHECK(s.status == 1, "status %d: %s", s.status, s.err);
     CHECK(strstr(s.err, "arming: refused at ramp, causes deadman: this came before") != NULL, "%s",
-          s.err);
+        s.err);
     CHECK(strchr(s.err, '\n') == s.err + strlen(s.err) - 1, "%s", s.err);
     CHECK(s.out[0] == '\0', "%s", s.out);
     said_clean(dir);
@@ -159,25 +159,15 @@ TEST(gains_are_the_nearest_rows)
         double rate_Hz;
         double row_Hz;
         int at; /* it is the paper's rate */
-    } row[] = {{1193182 / 597.0, 2000, 1},
-               {2000, 2000, 1},
-               {1998, 2000, 1},
-               {1997, 1000, 0},
-               {2002, 2000, 1},
-               {2003, 2000, 0},
-               {90, 90, 1},
-               {89.92, 90, 1},
-               {3, 90, 0},
-               {95, 90, 0},
-               {99.9, 100, 1},
-               {99.8, 90, 0},
-               {20000, 2000, 0}};
+    } row[] = {{1193182 / 597.0, 2000, 1}, {2000, 2000, 1}, {1998, 2000, 1}, {1997, 1000, 0},
+        {2002, 2000, 1}, {2003, 2000, 0}, {90, 90, 1}, {89.92, 90, 1}, {3, 90, 0}, {95, 90, 0},
+        {99.9, 100, 1}, {99.8, 90, 0}, {20000, 2000, 0}};
     for (size_t i = 0; i < LEN(row); i++) {
         const struct table2_row *at = table2_at(row[i].rate_Hz);
         CHECK(table2_gains(row[i].rate_Hz)->rate_Hz == row[i].row_Hz, "%.3f Hz: %g", row[i].rate_Hz,
-              table2_gains(row[i].rate_Hz)->rate_Hz);
+            table2_gains(row[i].rate_Hz)->rate_Hz);
         CHECK((at != NULL) == row[i].at && (at == NULL || at->rate_Hz == row[i].row_Hz), "%.3f Hz",
-              row[i].rate_Hz);
+            row[i].rate_Hz);
     }
 }
 
@@ -193,13 +183,13 @@ static void csv_line(char *to, size_t size, const struct table2_result *r)
 TEST(the_paper_stands_beside_its_own_gains_alone)
 {
     struct table2_result r = {.done = 1,
-                              .rate_Hz = 1193182 / 597.0,
-                              .falls = 10,
-                              .b_Npm = 25002,
-                              .a_Npm = 9000,
-                              .r2 = 0.5,
-                              .k_Npm = 20000,
-                              .b_Nspm = 60};
+        .rate_Hz = 1193182 / 597.0,
+        .falls = 10,
+        .b_Npm = 25002,
+        .a_Npm = 9000,
+        .r2 = 0.5,
+        .k_Npm = 20000,
+        .b_Nspm = 60};
     char text[256];
     csv_line(text, sizeof text, &r);
     CHECK(strstr(text, ",50004,0.5\n") != NULL, "%s", text);
@@ -227,15 +217,15 @@ TEST(no_line_is_no_number)
     static struct said s;
     static char text[SAID_B];
     said(&s, dir, lab_drop,
-         WORDS("drop", "--rate", "90,2000", "--k", "0", "--b", "0", "--falls", "2", "--spread", "2",
-               "--out", dir));
+        WORDS("drop", "--rate", "90,2000", "--k", "0", "--b", "0", "--falls", "2", "--spread", "2",
+            "--out", dir));
     CHECK(s.status == 1 && strstr(s.err, "not seen to their end"), "%d: %s", s.status, s.err);
     check_no_zero_stiffness(s.out);
     CHECK(strstr(s.out, "  2000      0      0           -                 -       -") != NULL, "%s",
-          s.out);
+        s.out);
     CHECK(strstr(s.out, "2000 Hz: no stiffness: too few pairs") != NULL, "%s", s.out);
-    CHECK(strstr(s.out, "2000 Hz: of 2 runs 0 gave a line, 0 at the same tick") != NULL, "%s",
-          s.out);
+    CHECK(
+        strstr(s.out, "2000 Hz: of 2 runs 0 gave a line, 0 at the same tick") != NULL, "%s", s.out);
     said_read(text, said_path(dir, "table2.csv"));
     CHECK(strstr(text, "\n2000,0,0,,,,,,0,2,,\n") != NULL, "%s", text);
     said_read(text, said_path(dir, "spread.csv"));
@@ -252,15 +242,15 @@ TEST(medians_are_of_runs_with_a_line)
     struct table2_spread s;
     for (int i = 0; i < 5; i++) {
         r[i] = (struct table2_result){.done = i < 4,
-                                      .falls = 10,
-                                      .b_Npm = i < 3 ? 100 + i : 0,
-                                      .a_Npm = i < 3 ? 50 + i : 0,
-                                      .b_same_Npm = i < 2 ? 10 : 0,
-                                      .a_same_Npm = i < 2 ? 5 : 0};
+            .falls = 10,
+            .b_Npm = i < 3 ? 100 + i : 0,
+            .a_Npm = i < 3 ? 50 + i : 0,
+            .b_same_Npm = i < 2 ? 10 : 0,
+            .a_same_Npm = i < 2 ? 5 : 0};
     }
     s = table2_spread(r, none, 5);
     CHECK(s.runs == 4 && s.lines == 3 && s.lines_same == 2, "%d %d %d", s.runs, s.lines,
-          s.lines_same);
+        s.lines_same);
     CHECK(s.b_Npm == 101 && s.a_Npm == 51, "%g %g", s.b_Npm, s.a_Npm);
     CHECK(s.b_same_Npm == 0 && s.a_same_Npm == 0, "of 2 in 4: %g", s.b_same_Npm);
     CHECK(s.rest == 1 && s.oscillates < 0, "%g %g", s.rest, s.oscillates);
@@ -278,7 +268,7 @@ TEST(the_judge_observes_as_long_as_the_device)
         c.board.device.observe_s = observe_s[i];
         r = table2_measure(&c, NULL, TABLE2_SAME);
         CHECK(r.done && r.falls == 3 && r.incomplete == 0, "%g s: %d of %d incomplete",
-              observe_s[i], r.incomplete, r.falls);
+            observe_s[i], r.incomplete, r.falls);
     }
 }
 
@@ -304,8 +294,8 @@ TEST(any_directory_name_will_do)
 
 TEST(what_cannot_be_written_is_named)
 {
-    static const char *const name[] = {"drop_90Hz.exh", "drop_90Hz.csv", "drop_90Hz_fall.csv",
-                                       "drop_90Hz_line.csv", "said.out"};
+    static const char *const name[] = {
+        "drop_90Hz.exh", "drop_90Hz.csv", "drop_90Hz_fall.csv", "drop_90Hz_line.csv", "said.out"};
     for (size_t i = 0; i < LEN(name); i++) {
         char *dir = said_dir();
         static struct said s;
@@ -315,7 +305,7 @@ TEST(what_cannot_be_written_is_named)
         CHECK(strstr(s.err, i == 4   ? "standard output"
                             : i == 3 ? "_line.csv"
                                      : name[i]) != NULL,
-              "%s: %s", name[i], s.err);
+            "%s: %s", name[i], s.err);
         said_clean(dir);
     }
 }
@@ -329,12 +319,11 @@ static void nap_ms(long ms)
 }
 
 /* Starts it, signals its first process once the log of `name` grows; what it said. */
-static void interrupt(struct said *s, char *dir, int sig, const char *name, const char *rates,
-                      const char *jobs)
+static void interrupt(
+    struct said *s, char *dir, int sig, const char *name, const char *rates, const char *jobs)
 {
-    const pid_t pid =
-        said_start(dir, cli_drop,
-                   WORDS("drop", "--rate", rates, "--falls", "1000", "--jobs", jobs, "--out", dir));
+    const pid_t pid = said_start(dir, cli_drop,
+        WORDS("drop", "--rate", rates, "--falls", "1000", "--jobs", jobs, "--out", dir));
     for (int i = 0; i < 2000 && said_size(said_path(dir, name)) <= 0; i++) { nap_ms(5); }
     CHECK(said_size(said_path(dir, name)) > 0, "%s does not grow", name);
     CHECK_EQ_I64(kill(pid, sig), 0);
@@ -351,12 +340,12 @@ TEST(an_interruption_ends_all_runs)
         struct logfile l;
         struct exh_record r;
         interrupt(&s, dir, i < 3 ? SIGINT : SIGTERM, "drop_20000Hz.exh", "20000,19999,19998,19997",
-                  jobs[i % 3]);
+            jobs[i % 3]);
         CHECK(s.status == 130, "jobs %s: status %d: %s", jobs[i % 3], s.status, s.err);
         CHECK(s.out[0] == '\0', "a row of nothing: %s", s.out);
         CHECK(strstr(s.err, "interrupted: 0 of 4 rates") != NULL, "%s", s.err);
         CHECK(said_size(said_path(dir, "drop_19997Hz.exh")) < 0, "jobs %s: a new job began",
-              jobs[i % 3]);
+            jobs[i % 3]);
         CHECK_EQ_I64(logfile_open(&l, said_path(dir, "drop_20000Hz.exh")), 0);
         while (logfile_next(&l, &r)) {}
         CHECK_EQ_I64(logfile_complain(&l), 0); /* complete up to where it was stopped */
@@ -373,8 +362,8 @@ TEST(what_was_finished_is_kept)
         static struct said s;
         static char text[SAID_B];
         const pid_t pid = said_start(dir, lab_drop,
-                                     WORDS("drop", "--rate", "90,20000", "--falls", "200",
-                                           "--spread", "1000", "--jobs", jobs[i], "--out", dir));
+            WORDS("drop", "--rate", "90,20000", "--falls", "200", "--spread", "1000", "--jobs",
+                jobs[i], "--out", dir));
         for (int n = 0; n < 2000 && said_size(said_path(dir, "drop_90Hz.csv")) <= 0; n++) {
             nap_ms(5);
         }
@@ -385,10 +374,10 @@ TEST(what_was_finished_is_kept)
         CHECK(strstr(s.err, "interrupted: 1 of 2 rates") != NULL, "%s", s.err);
         CHECK(strstr(s.out, "\n    90   1500 ") && !strstr(s.out, "\n     0 ") &&
                   !strstr(s.out, "\n 20000 "),
-              "%s", s.out);
+            "%s", s.out);
         said_read(text, said_path(dir, "table2.csv"));
         CHECK(strstr(text, "\n90,1500,0,") && !strstr(text, "\n0,") && !strstr(text, "\n20000,"),
-              "%s", text);
+            "%s", text);
         said_clean(dir);
     }
 }
@@ -410,16 +399,16 @@ TEST(a_job_that_dies_is_an_error)
         memset(result, 0xFF, sizeof result);
         CHECK_EQ_I64(jobs_run(&j), how < 2);
         for (int i = 0; i < 8; i++) {
-            CHECK(result[i] == (i == 3 && how < 2 ? -1 : i), "%d: job %d gave %d", how, i,
-                  result[i]);
+            CHECK(
+                result[i] == (i == 3 && how < 2 ? -1 : i), "%d: job %d gave %d", how, i, result[i]);
         }
     }
 }
 
 TEST_MAIN("cli", bad_usage_of_a_study, bad_usage_is_refused_by_name,
-          a_stiff_device_is_integrated_in_shorter_steps, what_ends_the_ramp_is_named,
-          printed_ranges_are_the_true_ones, gains_are_the_nearest_rows,
-          the_paper_stands_beside_its_own_gains_alone, no_line_is_no_number,
-          medians_are_of_runs_with_a_line, the_judge_observes_as_long_as_the_device,
-          any_directory_name_will_do, what_cannot_be_written_is_named,
-          an_interruption_ends_all_runs, what_was_finished_is_kept, a_job_that_dies_is_an_error);
+    a_stiff_device_is_integrated_in_shorter_steps, what_ends_the_ramp_is_named,
+    printed_ranges_are_the_true_ones, gains_are_the_nearest_rows,
+    the_paper_stands_beside_its_own_gains_alone, no_line_is_no_number,
+    medians_are_of_runs_with_a_line, the_judge_observes_as_long_as_the_device,
+    any_directory_name_will_do, what_cannot_be_written_is_named, an_interruption_ends_all_runs,
+    what_was_finished_is_kept, a_job_that_dies_is_an_error);

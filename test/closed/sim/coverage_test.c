@@ -36,10 +36,7 @@ static const struct model model[] = {
 };
 #define MODELS (sizeof model / sizeof model[0])
 
-static double bell(struct sim_random *r)
-{
-    return 6.9 * sim_random_bell(r);
-}
+static double bell(struct sim_random *r) { return 6.9 * sim_random_bell(r); }
 
 static void draw_run(const struct model *m, struct sim_random *r, struct fall_pairs *out)
 {
@@ -52,8 +49,8 @@ static void draw_run(const struct model *m, struct sim_random *r, struct fall_pa
         for (int i = 0; i < n; i++) {
             const double q = (0.4 + 4.4 * sim_random_unit(r)) / m->k_Npm;
             damper = 0.6 * damper + 0.8 * ring * bell(r);
-            out->at[out->n++] = (struct fall_pair){q + offset + m->q_noise_m * bell(r),
-                                                   k * q + damper + m->f_noise_N * bell(r), fall};
+            out->at[out->n++] = (struct fall_pair){
+                q + offset + m->q_noise_m * bell(r), k * q + damper + m->f_noise_N * bell(r), fall};
         }
     }
 }
@@ -78,8 +75,8 @@ static int by_value(const void *left, const void *right)
 }
 
 /* What fall_jackknife() replaced: falls drawn with replacement, 2.5 % and 97.5 %. */
-static void percentiles(const struct fall_pairs *sorted, struct sim_random *r, double a[2],
-                        double slope[2])
+static void percentiles(
+    const struct fall_pairs *sorted, struct sim_random *r, double a[2], double slope[2])
 {
     static double all[2][REPLICATES];
     for (int i = 0; i < REPLICATES; i++) {
@@ -175,15 +172,14 @@ TEST(ninety_five_of_hundred_intervals_cover_the_mean)
             share = covered(&side[d], runs, mean, 0);
             check_note("%-12s %c: %.1f %% of %d intervals cover the estimator's mean; that mean is "
                        "%+.1f %% off k",
-                       m->name, "AB"[d], 100 * share, runs,
-                       100 * ((d ? 1 / mean : mean) / m->k_Npm - 1));
+                m->name, "AB"[d], 100 * share, runs, 100 * ((d ? 1 / mean : mean) / m->k_Npm - 1));
             if (runs >= MANY) {
                 check_note("%-12s %c: percentiles of a bootstrap: %.1f %% of %d", m->name, "AB"[d],
-                           100 * covered(&side[d], BOOTSTRAPPED, mean, 1), BOOTSTRAPPED);
+                    100 * covered(&side[d], BOOTSTRAPPED, mean, 1), BOOTSTRAPPED);
             }
             /* A's error is over-estimated where averages of ten depend on how dense pairs lie. */
             CHECK(share >= 0.93 - chance && share <= (d ? 0.97 : 0.985) + chance,
-                  "%s %c: %.2f %% of %d", m->name, "AB"[d], 100 * share, runs);
+                "%s %c: %.2f %% of %d", m->name, "AB"[d], 100 * share, runs);
         }
     }
 }

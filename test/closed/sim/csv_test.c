@@ -37,8 +37,8 @@ static void read_csv(const char *path, double T_s)
         struct fall_sample *s = &csv.at[csv.n];
         CHECK(csv.n < SAMPLES_MAX && csv.falls < FALLS_MAX, "%s: too long", path);
         CHECK(sscanf(line, "%lf,%lf,%lf,%lf,%lf,%d,%lf", &s->t_s, &s->q_m, &s->qd_mps, &s->f_des_N,
-                     &s->i_des_A, &s->c, &s->f_mon_N) == 7,
-              "%s", line);
+                  &s->i_des_A, &s->c, &s->f_mon_N) == 7,
+            "%s", line);
         CHECK(csv.n == 0 || s->t_s > s[-1].t_s, "time does not rise: %s", line);
         if (csv.n == 0 || s->t_s > s[-1].t_s + 1.5 * T_s) { csv.start[csv.falls++] = csv.n; }
         csv.n++;
@@ -82,7 +82,7 @@ TEST(table_2_is_made_again_from_the_csvs)
         l.falls = csv.falls;
         CHECK(fall_stiffness(&l, &opt, &again) == FALL_OK, "%s", name);
         CHECK(again.fit.b_Npm > b_Npm * (1 - 2e-5) && again.fit.b_Npm < b_Npm * (1 + 2e-5),
-              "%s: B %.6g, table %.6g", name, again.fit.b_Npm, b_Npm);
+            "%s: B %.6g, table %.6g", name, again.fit.b_Npm, b_Npm);
         snprintf(name, sizeof name, "drop_%gHz_raw.csv", rate_Hz);
         CHECK_EQ_I64((int64_t)count_lines(said_path(dir, name)), (int64_t)again.raw.n + 1);
         fall_stiffness_free(&again);
@@ -99,8 +99,7 @@ TEST(falls_are_apart_at_every_rate)
         char text[32];
         static struct said s;
         snprintf(text, sizeof text, "%g", rate_Hz[i]);
-        said(
-            &s, dir, cli_drop,
+        said(&s, dir, cli_drop,
             WORDS("drop", "--rate", text, "--falls", "7", "--device", "observe=0.6", "--out", dir));
         snprintf(text, sizeof text, "drop_%gHz.csv", rate_Hz[i]);
         read_csv(said_path(dir, text), 1 / rate_Hz[i]);
@@ -174,9 +173,9 @@ TEST(csv_destroys_nothing)
     };
     for (size_t i = 0; i < LEN(row); i++) {
         said(&s, dir, cli_csv,
-             WORDS("csv", said_path(dir, row[i].log), "--out", said_path(dir, row[i].out)));
+            WORDS("csv", said_path(dir, row[i].log), "--out", said_path(dir, row[i].out)));
         CHECK(s.status == row[i].status && strstr(s.err, row[i].says), "row %zu: %d: %s", i,
-              s.status, s.err);
+            s.status, s.err);
         CHECK(strncmp(s.err, "exhand csv: ", 12) == 0, "%s", s.err);
         CHECK_EQ_I64(said_size(said_path(dir, "a.exh")), log_B);
         CHECK_EQ_I64(said_size(said_path(dir, "a.csv")), csv_B);
@@ -254,13 +253,13 @@ TEST(damage_is_said)
         rewrite(said_path(dir, "a.exh"), said_path(dir, "b.exh"), row[i].change, row[i].by);
         remove(said_path(dir, "b.csv"));
         said(&s, dir, cli_csv,
-             WORDS("csv", said_path(dir, "b.exh"), "--out", said_path(dir, "b.csv")));
+            WORDS("csv", said_path(dir, "b.exh"), "--out", said_path(dir, "b.csv")));
         CHECK(s.status == row[i].csv && strstr(s.err, row[i].csv_says), "row %zu: csv %d: %s", i,
-              s.status, s.err);
+            s.status, s.err);
         CHECK(row[i].csv == 2
                   ? said_size(said_path(dir, "b.csv")) < 0
                   : count_lines(said_path(dir, "b.csv")) == lines - (size_t)row[i].fewer,
-              "row %zu: lines", i);
+            "row %zu: lines", i);
         said(&s, dir, cli_replay, WORDS("replay", said_path(dir, "b.exh")));
         CHECK(s.status == row[i].replay, "row %zu: replay %d: %s%s", i, s.status, s.out, s.err);
     }
@@ -280,17 +279,15 @@ TEST(ticks_go_on_past_the_wrap)
     /* The keyframe at tick 1024 becomes the last before the wrap, that at 2048 the next. */
     static const struct {
         const char *from, *says;
-    } row[] = {{"4294966796", "from tick 4294966796 "},
-               {"4294967295", "from tick 4294966796 "},
-               {"4294967296", "from tick 4294966796 "},
-               {"4294967820", "from tick 4294967820 "},
-               {"4294967900", "from tick 4294967820 "}};
+    } row[] = {{"4294966796", "from tick 4294966796 "}, {"4294967295", "from tick 4294966796 "},
+        {"4294967296", "from tick 4294966796 "}, {"4294967820", "from tick 4294967820 "},
+        {"4294967900", "from tick 4294967820 "}};
     char *dir = said_dir();
     static struct said s;
     make_log(dir);
     rewrite(said_path(dir, "a.exh"), said_path(dir, "b.exh"), later, INT64_C(4294967296) - 1524);
     said(&s, dir, cli_csv,
-         WORDS("csv", said_path(dir, "b.exh"), "--falls", "--out", said_path(dir, "b.csv")));
+        WORDS("csv", said_path(dir, "b.exh"), "--falls", "--out", said_path(dir, "b.csv")));
     CHECK(s.status == 0, "%s", s.err);
     read_csv(said_path(dir, "b.csv"), 1 / 500.0);
     CHECK(csv.falls == 1 && csv.n > 2500, "%zu falls, %zu samples", csv.falls, csv.n);
@@ -298,7 +295,7 @@ TEST(ticks_go_on_past_the_wrap)
     for (size_t i = 0; i < LEN(row); i++) {
         said(&s, dir, cli_replay, WORDS("replay", said_path(dir, "b.exh"), "--from", row[i].from));
         CHECK(s.status == 0 && strstr(s.out, row[i].says), "from %s: %d: %s%s", row[i].from,
-              s.status, s.out, s.err);
+            s.status, s.out, s.err);
     }
     said(&s, dir, cli_replay, WORDS("replay", said_path(dir, "b.exh"), "--from", "100"));
     CHECK(s.status == 2 && strstr(s.err, "no keyframe"), "%d: %s", s.status, s.err);
@@ -306,4 +303,4 @@ TEST(ticks_go_on_past_the_wrap)
 }
 
 TEST_MAIN("csv", table_2_is_made_again_from_the_csvs, falls_are_apart_at_every_rate,
-          csv_destroys_nothing, damage_is_said, ticks_go_on_past_the_wrap);
+    csv_destroys_nothing, damage_is_said, ticks_go_on_past_the_wrap);

@@ -59,9 +59,8 @@ TEST(the_state_says_which)
 {
     static const struct {
         uint8_t state, want;
-    } row[] = {{EXH_STATE_OFF, EXH_CMD_RUN},
-               {EXH_STATE_FAULT, EXH_CMD_CLEAR},
-               {EXH_STATE_RUN, EXH_CMD_NONE}};
+    } row[] = {{EXH_STATE_OFF, EXH_CMD_RUN}, {EXH_STATE_FAULT, EXH_CMD_CLEAR},
+        {EXH_STATE_RUN, EXH_CMD_NONE}};
     for (size_t i = 0; i < LEN(row); i++) {
         unsigned at = 0;
         start(&scene, 1000, row[i].state);
@@ -112,5 +111,5 @@ TEST(a_contact_that_bounces_is_no_hand_yet)
 }
 
 TEST_MAIN("deadman", a_grip_gives_one_command, the_state_says_which,
-          after_a_fault_it_takes_two_grips, held_at_power_on_is_no_grip,
-          a_contact_that_bounces_is_no_hand_yet);
+    after_a_fault_it_takes_two_grips, held_at_power_on_is_no_grip,
+    a_contact_that_bounces_is_no_hand_yet);

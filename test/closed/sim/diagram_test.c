@@ -26,7 +26,7 @@ static void both(const char *name, const char *ending, char ours[32768], char th
     snprintf(path, sizeof path, "test/lab/diagram/%s.%s", name, ending);
     in = fopen(path, "r");
     CHECK(in != NULL && out != NULL && diagram_expand(in, out) == 0,
-          "%s names a row that does not exist", path);
+        "%s names a row that does not exist", path);
     fclose(in);
     slurp(out, ours, 32768);
     snprintf(path, sizeof path, "docs/%s.svg", name);
@@ -36,8 +36,8 @@ static void both(const char *name, const char *ending, char ours[32768], char th
 /* `make diagrams` draws them anew: a picture by Graphviz has its text's CRC as its id. */
 TEST(docs_hold_what_is_drawn_now)
 {
-    static const char *const name[] = {"overview", "setup", "identification", "principle",
-                                       "bilateral"};
+    static const char *const name[] = {
+        "overview", "setup", "identification", "principle", "bilateral"};
     static char ours[32768], theirs[32768];
     for (size_t i = 0; i < sizeof name / sizeof name[0]; i++) {
         char id[16] = "";
@@ -52,8 +52,8 @@ TEST(docs_hold_what_is_drawn_now)
 
 TEST(a_name_that_is_no_row_is_told)
 {
-    static const char *const text[] = {"{p:k}", "{p:no_such}", "{s:no_such}", "{d:no_such}",
-                                       "{#:no_such}"};
+    static const char *const text[] = {
+        "{p:k}", "{p:no_such}", "{s:no_such}", "{d:no_such}", "{#:no_such}"};
     for (int i = 0; i < 5; i++) {
         FILE *in = tmpfile(), *out = tmpfile();
         CHECK(in != NULL && out != NULL, "no temporary file");

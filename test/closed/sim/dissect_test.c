@@ -16,7 +16,7 @@ static void check_contacts(const char *picture, size_t min_samples, const char *
     CHECK(fall_dissect(&log, min_samples, &got) == FALL_OK, "%s", picture);
     for (size_t i = 0; i < got.n && used < sizeof text - 32; i++) {
         used += (size_t)snprintf(text + used, sizeof text - used, "%zu:%zu-%zu%s ", got.at[i].fall,
-                                 got.at[i].first, got.at[i].end, got.at[i].open ? "+" : "");
+            got.at[i].first, got.at[i].end, got.at[i].open ? "+" : "");
     }
     CHECK(strcmp(text, want) == 0, "%s: got %s, want %s", picture, text, want);
     fall_contacts_free(&got);
@@ -77,7 +77,7 @@ TEST(band_has_both_ends)
     CHECK(fall_band(&in, 0.8, 4.5, &out) == FALL_OK, "%zu", out.n);
     CHECK(out.n == 3, "%zu kept", out.n);
     CHECK(out.at[0].fall == 3 && out.at[1].fall == 4 && out.at[2].fall == 1, "order %zu %zu %zu",
-          out.at[0].fall, out.at[1].fall, out.at[2].fall);
+        out.at[0].fall, out.at[1].fall, out.at[2].fall);
     fall_pairs_free(&out);
 }
 
@@ -96,7 +96,7 @@ TEST(ties_keep_their_order)
         for (size_t i = 1; i < n; i++) {
             const struct fall_pair *p = &out.at[i - 1];
             CHECK(p[0].f_N < p[1].f_N || (p[0].f_N == p[1].f_N && p[0].q_m < p[1].q_m),
-                  "n %zu at %zu", n, i);
+                "n %zu at %zu", n, i);
         }
         fall_pairs_free(&out);
     }
@@ -124,9 +124,9 @@ TEST(twelve_rows_by_hand)
         CHECK(averaged.n == 3, "%zu rows", averaged.n);
         for (size_t i = 0; i < averaged.n; i++) {
             CHECK(near(averaged.at[i].q_m, mean_m[i], 1e-14), "row %zu: %.17g", i,
-                  averaged.at[i].q_m);
+                averaged.at[i].q_m);
             CHECK(near(averaged.at[i].f_N, f_N[force][i], 1e-14), "row %zu: %.17g", i,
-                  averaged.at[i].f_N);
+                averaged.at[i].f_N);
         }
         /* dq = -11/30 -5/30 16/30, dF = -0.1 0 0.1: qf 0.09, qq 402/900, ff 0.02. */
         fall_fit_line(&averaged, &fit);
@@ -139,4 +139,4 @@ TEST(twelve_rows_by_hand)
 }
 
 TEST_MAIN("dissect", contacts_are_cut, lag_stays_in_the_contact, band_has_both_ends,
-          ties_keep_their_order, twelve_rows_by_hand);
+    ties_keep_their_order, twelve_rows_by_hand);

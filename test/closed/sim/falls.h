@@ -24,10 +24,7 @@ struct log_builder {
     double t_s;
 };
 
-static inline void begin_fall(struct log_builder *b)
-{
-    b->start[b->falls++] = b->n;
-}
+static inline void begin_fall(struct log_builder *b) { b->start[b->falls++] = b->n; }
 
 static inline void add(struct log_builder *b, double tick_s, double q_m, double f_N, int c)
 {
@@ -104,8 +101,8 @@ static inline void draw_log(struct log_builder *b, const char *picture)
 #define SLOPE_NPM 8000.0
 
 /* Falls whose compliance scatters by 10 % around 1/k, some noise on each position. */
-static inline void scattered_falls(struct log_builder *b, size_t falls, size_t pairs,
-                                   double noise_m, uint64_t *rng)
+static inline void scattered_falls(
+    struct log_builder *b, size_t falls, size_t pairs, double noise_m, uint64_t *rng)
 {
     for (size_t fall = 0; fall < falls; fall++) {
         const double slope_mpN = (1.0 + 0.1 * normal(rng)) / SLOPE_NPM;

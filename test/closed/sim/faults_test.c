@@ -29,9 +29,9 @@ TEST(the_documented_states_are_the_librarys)
     CHECK(strstr(s.out, "\n| deadman | release | ") && strstr(s.out, "\n| estop | cut | ") &&
               strstr(s.out, "\n| i2t | ") && strstr(s.out, "\n| small_force | ") &&
               strstr(s.out, "\n| limit | "),
-          "%s", s.out);
+        "%s", s.out);
     CHECK(strstr(s.out, "?") == NULL && strstr(s.out, "|  |") == NULL, "a name is missing: %s",
-          s.out);
+        s.out);
     rest = strstr(s.out, "\n\n");
     CHECK(rest != NULL, "%s", s.out);
     rest[1] = '\0';
@@ -113,5 +113,5 @@ TEST(a_damaged_zero_of_the_da_pulls_until_it_is_told)
 }
 
 TEST_MAIN("sim/faults", the_documented_table_is_the_one_made_now,
-          the_documented_states_are_the_librarys, nothing_is_wrong_at_random_times,
-          a_damaged_zero_of_the_da_pulls_until_it_is_told);
+    the_documented_states_are_the_librarys, nothing_is_wrong_at_random_times,
+    a_damaged_zero_of_the_da_pulls_until_it_is_told);

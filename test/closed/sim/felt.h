@@ -40,7 +40,7 @@ static inline struct bilateral_run run(const struct bilateral_run_cfg *c)
     CHECK_EQ_I64(r.faults, 0);
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
         CHECK(r.finger[f].unfrozen == 0, "finger %u: %ld ticks of contact before its freeze", f,
-              r.finger[f].unfrozen);
+            r.finger[f].unfrozen);
     }
     return r;
 }

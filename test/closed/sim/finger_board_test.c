@@ -55,8 +55,8 @@ TEST(drives_of_the_fingers_in_use_are_ready)
         start(&c, 1000);
         CHECK_EQ_I64(exh_board_wait(), 0);
         CHECK(read_codes().din == (EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG |
-                                   EXH_DIN_CARDS | EXH_DIN_DRIVE0 * mask),
-              "%#x", mask);
+                                      EXH_DIN_CARDS | EXH_DIN_DRIVE0 * mask),
+            "%#x", mask);
         for (unsigned i = 0; i < FINGERS; i++) {
             CHECK((posix_finger(i) != NULL) == (mask >> i & 1), "mask %#x, finger %u", mask, i);
         }
@@ -88,8 +88,8 @@ TEST(axes_are_not_mixed_up)
                 const double A = code[i] / c.device.dac_perA;
                 const double want = mask & enable & 1u << i ? A / c.device.mon_apc : 0;
                 CHECK(fabs(in.mon_raw[i] - want) < 1,
-                      "mask %#x, enable %#x, finger %u: %d, want %.1f", mask, enable, i,
-                      in.mon_raw[i], want);
+                    "mask %#x, enable %#x, finger %u: %d, want %.1f", mask, enable, i,
+                    in.mon_raw[i], want);
             }
         }
     }
@@ -111,8 +111,8 @@ TEST(encoders_count_the_string)
             lo[i] = code - u > lo[i] ? code - u : lo[i];
             hi[i] = code + 1 - u < hi[i] ? code + 1 - u : hi[i];
             most = in.enc_raw[i] > most ? in.enc_raw[i] : most;
-            CHECK(lo[i] <= hi[i] + 1e-6, "finger %u, tick %d: phase %.6f..%.6f", i, n, lo[i],
-                  hi[i]);
+            CHECK(
+                lo[i] <= hi[i] + 1e-6, "finger %u, tick %d: phase %.6f..%.6f", i, n, lo[i], hi[i]);
         }
     }
     CHECK(most > 600 && most < 1000, "45 mm of string are %u counts", (unsigned)most);
@@ -136,7 +136,7 @@ TEST(safe_takes_every_current_away)
     for (int n = 0; n < 20; n++) { CHECK_EQ_I64(exh_board_wait(), 0); }
     for (unsigned i = 0; i < FINGERS; i++) {
         CHECK(posix_finger(i)->plant.cur_A < 1e-6, "finger %u: %.3g A", i,
-              posix_finger(i)->plant.cur_A);
+            posix_finger(i)->plant.cur_A);
     }
 }
 
@@ -184,8 +184,8 @@ TEST(a_run_has_the_committed_digits)
     }
     start(&c, 2000);
     for (int n = 0; n < 8000; n++) {
-        const int32_t code[FINGERS] = {400, n % 5000, 5000 - n % 5000, n % 1000 < 500 ? 3000 : 0,
-                                       1500};
+        const int32_t code[FINGERS] = {
+            400, n % 5000, 5000 - n % 5000, n % 1000 < 500 ? 3000 : 0, 1500};
         struct exh_glove_in glove;
         struct exh_drive_in in;
         CHECK_EQ_I64(exh_board_wait(), 0);
@@ -231,8 +231,8 @@ static double lag_ago(const struct lagged *l, double s)
 
 static const struct {
     unsigned sensor, finger, joint;
-} bend[] = {{1, 0, 0}, {2, 0, 1},  {4, 1, 0},  {5, 1, 1},  {6, 1, 1},  {7, 2, 0},  {8, 2, 1},
-            {9, 2, 1}, {11, 3, 0}, {12, 3, 1}, {13, 3, 1}, {15, 4, 0}, {16, 4, 1}, {17, 4, 1}};
+} bend[] = {{1, 0, 0}, {2, 0, 1}, {4, 1, 0}, {5, 1, 1}, {6, 1, 1}, {7, 2, 0}, {8, 2, 1}, {9, 2, 1},
+    {11, 3, 0}, {12, 3, 1}, {13, 3, 1}, {15, 4, 0}, {16, 4, 1}, {17, 4, 1}};
 #define BENDS (sizeof bend / sizeof bend[0])
 
 static double code_of(unsigned sensor, double rad)
@@ -265,8 +265,8 @@ static void follow_glove(unsigned mask, double interval_s)
             const struct sim_finger *f = posix_finger(bend[b].finger);
             const double rad = f ? f->bend_radpm[bend[b].joint] * f->plant.x_m : 0;
             if (n == 0) {
-                l[b] = (struct lagged){0, rad, rad, 0,
-                                       1 / (6.283185307179586 * c.glove_par.cutoff_Hz)};
+                l[b] = (struct lagged){
+                    0, rad, rad, 0, 1 / (6.283185307179586 * c.glove_par.cutoff_Hz)};
                 l[b].keep = sim_exp_neg(h / l[b].tau_s);
             } else {
                 l[b] = at[(n - 1) % 400][b];
@@ -282,15 +282,15 @@ static void follow_glove(unsigned mask, double interval_s)
             const double rad = lag_ago(&at[(n - ticks) % 400][b], ago_s - ticks * h);
             const double off = fabs(in.raw[bend[b].sensor] - code_of(bend[b].sensor, rad));
             CHECK(off < 1.0, "mask %#x, tick %d, %s: %d, want %.2f", mask, n,
-                  sim_glove_sensor[bend[b].sensor].name, in.raw[bend[b].sensor],
-                  code_of(bend[b].sensor, rad));
+                sim_glove_sensor[bend[b].sensor].name, in.raw[bend[b].sensor],
+                code_of(bend[b].sensor, rad));
             worst = off > worst ? off : worst;
             span = fabs(rad) > span ? fabs(rad) : span;
         }
         CHECK(fabs(in.raw[20] - code_of(20, 40 / 57.29577951308232)) <= 0.501, "the wrist moved");
-        CHECK(fabs(in.raw[0] - code_of(0, 0)) <= 0.501 &&
-                  fabs(in.raw[10] - code_of(10, 0)) <= 0.501,
-              "thumb_rotate or abduction moved");
+        CHECK(
+            fabs(in.raw[0] - code_of(0, 0)) <= 0.501 && fabs(in.raw[10] - code_of(10, 0)) <= 0.501,
+            "thumb_rotate or abduction moved");
     }
     CHECK(span > 0.8, "bent by %.3f rad only", span);
 }
@@ -318,7 +318,7 @@ TEST(a_glove_that_nobody_read_is_right_at_once)
         const struct sim_finger *f = posix_finger(bend[b].finger);
         const double want = code_of(bend[b].sensor, f->bend_radpm[bend[b].joint] * f->plant.x_m);
         CHECK(fabs(in.raw[bend[b].sensor] - want) < 1.5, "%s: %d, want %.2f",
-              sim_glove_sensor[bend[b].sensor].name, in.raw[bend[b].sensor], want);
+            sim_glove_sensor[bend[b].sensor].name, in.raw[bend[b].sensor], want);
     }
 }
 
@@ -364,8 +364,8 @@ TEST(a_wall_stops_five_fingers_at_once)
             in = read_codes();
             for (unsigned i = 0; i < FINGERS; i++) {
                 const struct sim_finger *f = posix_finger(i);
-                code[i] = law(&c.device, in.enc_raw[i],
-                              n < 8 ? in.enc_raw[i] : past[(n + 4) % 8][i], k, b);
+                code[i] = law(
+                    &c.device, in.enc_raw[i], n < 8 ? in.enc_raw[i] : past[(n + 4) % 8][i], k, b);
                 past[n % 8][i] = in.enc_raw[i];
                 if (f->plant.q_m < WALL_M && !touched[i]) { at_mps[i] = f->plant.w_mps; }
                 touched[i] |= f->plant.q_m >= WALL_M;
@@ -384,21 +384,21 @@ TEST(a_wall_stops_five_fingers_at_once)
             const double force_N = c.device.kf_npa * f->plant.cur_A;
             const double most_N = f->par.k_Npm * c.exo.path[i].push_m; /* were all of it stiff */
             CHECK(fabs(f->plant.w_mps) < 0.02, "%s, %u: moves at %.3f m/s", name[s], i,
-                  f->plant.w_mps);
+                f->plant.w_mps);
             CHECK(force_N > 0.6 * most_N && force_N < 1.15 * most_N, "%s, %u: %.3f N of %.3f",
-                  name[s], i, force_N, most_N);
+                name[s], i, force_N, most_N);
             CHECK(fabs(sim_finger_push_N(f) / most_N - 0.85) < 0.25, "%s, %u: feels %.3f N",
-                  name[s], i, sim_finger_push_N(f));
+                name[s], i, sim_finger_push_N(f));
         }
         check_note("%s: at the wall with %.3f m/s, deepest %.1f mm, then %.2f N", name[s],
-                   at_mps[1], 1e3 * deepest, c.device.kf_npa * posix_finger(1)->plant.cur_A);
+            at_mps[1], 1e3 * deepest, c.device.kf_npa * posix_finger(1)->plant.cur_A);
         CHECK(fabs(at_mps[1] - sim_path_speed(name[s])) < 0.2 * sim_path_speed(name[s]) + 0.01,
-              "%s: %.4f m/s", name[s], at_mps[1]);
+            "%s: %.4f m/s", name[s], at_mps[1]);
     }
 }
 
 TEST_MAIN("finger_board", drives_of_the_fingers_in_use_are_ready, axes_are_not_mixed_up,
-          encoders_count_the_string, safe_takes_every_current_away, a_run_is_its_seed,
-          the_run_ends_with_the_last_script, a_run_has_the_committed_digits,
-          glove_angles_are_the_fingers_each_in_its_time, a_glove_that_nobody_read_is_right_at_once,
-          a_wall_stops_five_fingers_at_once);
+    encoders_count_the_string, safe_takes_every_current_away, a_run_is_its_seed,
+    the_run_ends_with_the_last_script, a_run_has_the_committed_digits,
+    glove_angles_are_the_fingers_each_in_its_time, a_glove_that_nobody_read_is_right_at_once,
+    a_wall_stops_five_fingers_at_once);

@@ -72,10 +72,10 @@ TEST(a_finger_without_string_swings_in_closed_form)
             want = path.start_m + swing_m(row[i].m, row[i].k, row[i].b, 0.01, 0, 0.05);
             err = fabs(f.plant.x_m - want);
             CHECK(err < 300 * d.substep_s * d.substep_s, "row %zu, %.3g s: off by %.3g m", i,
-                  d.substep_s, err);
+                d.substep_s, err);
             if (halved > 2) { /* pieces of 250 us are 5, 10, 20 steps */
                 CHECK(last / err > 3.5 && last / err < 4.5, "row %zu, %.3g s: error falls by %.2f",
-                      i, d.substep_s, last / err);
+                    i, d.substep_s, last / err);
             }
             last = err;
         }
@@ -97,7 +97,7 @@ TEST(a_moving_target_moves_within_a_piece)
         err = fabs(p.x_m - (0.03 + swing_m(0.1, 300, 5, 0, -1, 0.03)));
         CHECK(err < 300 * d.substep_s * d.substep_s, "%.3g s: off by %.3g m", d.substep_s, err);
         CHECK(halved == 0 || (last / err > 3.6 && last / err < 4.4), "%.3g s: error falls by %.2f",
-              d.substep_s, last / err);
+            d.substep_s, last / err);
         last = err;
     }
 }
@@ -122,9 +122,9 @@ TEST(pressing_stretches_hand_and_string)
         force_N = d.cable_npm * (f.plant.x_m - f.plant.q_m);
         want_N = (path.believed_m + path.push_m - path.start_m) / (1 / k_Npm[i] + 1 / d.cable_npm);
         CHECK(fabs(force_N - want_N) < 1e-6 * want_N, "K %g: %.9f N, want %.9f", k_Npm[i], force_N,
-              want_N);
+            want_N);
         CHECK(fabs(sim_finger_push_N(&f) - want_N) < 1e-6 * want_N, "K %g: the hand feels %.9f N",
-              k_Npm[i], sim_finger_push_N(&f));
+            k_Npm[i], sim_finger_push_N(&f));
         CHECK(f.plant.q_m == path.start_m, "the rotor moved");
     }
 }
@@ -141,12 +141,12 @@ TEST(the_straight_finger_is_the_end)
     sim_finger_latch(&f, 6);
     for (int n = 1; n <= 5000; n++) {
         sim_finger_advance(&f, n * 1e-4);
-        CHECK(f.plant.x_m >= 0 && f.plant.q_m >= 0, "%d: %.6f, %.6f m", n, f.plant.x_m,
-              f.plant.q_m);
+        CHECK(
+            f.plant.x_m >= 0 && f.plant.q_m >= 0, "%d: %.6f, %.6f m", n, f.plant.x_m, f.plant.q_m);
     }
     CHECK(f.plant.q_m == 0, "string %.6f m", f.plant.q_m); /* the hand stretches it a little */
-    CHECK(fabs(f.plant.x_m - 0.005 * 300 / (300 + d.cable_npm)) < 5e-5, "finger %.6f m",
-          f.plant.x_m);
+    CHECK(
+        fabs(f.plant.x_m - 0.005 * 300 / (300 + d.cable_npm)) < 5e-5, "finger %.6f m", f.plant.x_m);
     sim_finger_latch(&f, 0);
     sim_finger_advance(&f, 2);
     CHECK(fabs(f.plant.x_m - path.start_m) < 0.5e-3, "%.6f m", f.plant.x_m);
@@ -159,8 +159,8 @@ struct passed {
     double finger_mps, wanted_mps, late_m; /* late: wanted less finger at most, up to there */
 };
 
-static struct passed pass(const struct sim_device *d, const struct sim_finger_par *par,
-                          const struct sim_path_par *path)
+static struct passed pass(
+    const struct sim_device *d, const struct sim_finger_par *par, const struct sim_path_par *path)
 {
     struct passed p = {0, 0, 0};
     struct sim_finger f;
@@ -206,11 +206,11 @@ TEST(a_learned_hand_passes_at_the_speed_that_was_asked)
         p = pass(&d, &par, &path);
         CHECK(fabs(p.wanted_mps - want) < 0.005 * want, "%g m/s: wanted %.5f", want, p.wanted_mps);
         CHECK(fabs(p.finger_mps - want) < 0.02 * want, "%g m/s, K %g: the finger has %.5f", want,
-              par.k_Npm, p.finger_mps);
+            par.k_Npm, p.finger_mps);
         CHECK(p.late_m < 0.0015, "%g m/s, K %g: %.3g m off", want, par.k_Npm, p.late_m);
         par.learned = 0;
         CHECK(pass(&d, &par, &path).late_m > 3 * p.late_m || want < 0.05,
-              "%g m/s, K %g: a hand that has learned nothing is as good", want, par.k_Npm);
+            "%g m/s, K %g: a hand that has learned nothing is as good", want, par.k_Npm);
     }
 }
 
@@ -226,7 +226,7 @@ TEST(friction_costs_little_of_it)
         path.speed_mps = sim_path_speed(name[i]);
         p = pass(&d, &par, &path);
         check_note("%s: asked %.2f m/s, the finger passes at %.4f, at most %.2f mm off", name[i],
-                   path.speed_mps, p.finger_mps, 1e3 * p.late_m);
+            path.speed_mps, p.finger_mps, 1e3 * p.late_m);
         CHECK(fabs(p.finger_mps / path.speed_mps - 1) < 0.1, "%.4f m/s", p.finger_mps);
     }
     CHECK(sim_path_speed("natural") == 0.87 && sim_path_speed("") == 0, "names");
@@ -252,7 +252,7 @@ TEST(approaches_are_counted_varied_and_the_seeds)
         CHECK(sim_path_at(&same, t) == sim_path_at(&p, t), "the same seed, at %.6f s", t);
         differ += sim_path_at(&other, t) != sim_path_at(&p, t);
         CHECK(fabs(sim_path_at(&p, t) - at) < 1e-12, "jumps by %.3g at %.6f s",
-              sim_path_at(&p, t) - at, t);
+            sim_path_at(&p, t) - at, t);
         if (was == SIM_PATH_HOLD) {
             hold_lo = t - begun < hold_lo ? t - begun : hold_lo;
             hold_hi = t - begun > hold_hi ? t - begun : hold_hi;
@@ -262,9 +262,9 @@ TEST(approaches_are_counted_varied_and_the_seeds)
     CHECK_EQ_I64(p.number, 200);
     CHECK(differ > 700, "another seed: %ld of 800 phases differ", differ);
     CHECK(hold_lo >= 0.9 && hold_lo < 0.91 && hold_hi <= 1.1 && hold_hi > 1.09, "held %.4f..%.4f s",
-          hold_lo, hold_hi);
-    CHECK(sim_path_next_s(&p) > 1e20 && sim_path_at(&p, p.x.start_s + 1e6) <= 0.0055 + 1e-12,
-          "done");
+        hold_lo, hold_hi);
+    CHECK(
+        sim_path_next_s(&p) > 1e20 && sim_path_at(&p, p.x.start_s + 1e6) <= 0.0055 + 1e-12, "done");
 }
 
 /* What leads the script obeys its equation, by differences of what is said. */
@@ -287,7 +287,7 @@ TEST(the_lead_is_what_the_load_takes)
             const double right = load.out_kg * (w2 - 2 * w1 + w0) / (h * h) +
                                  load.out_Nspm * (w2 - w0) / (2 * h) + load.out_N;
             CHECK(fabs(left - right) < 1e-3, "B %g, %.5f s: %.6f N, want %.6f", b_Nspm[i], t, left,
-                  right);
+                right);
         }
     }
 }
@@ -314,14 +314,14 @@ TEST(joints_share_the_string_as_the_library_has_it)
         for (int j = 0; j < 2; j++) {
             const double want = hand.pull_radpm_q20[j] / 1048576.0;
             CHECK(fabs(f.bend_radpm[j] - want) < 2e-6 * want, "row %zu: %.9f, want %.9f", i,
-                  f.bend_radpm[j], want);
+                f.bend_radpm[j], want);
         }
         paid = par.arm_m[0] * f.bend_radpm[0] + (par.arm_m[1] + par.arm_m[2]) * f.bend_radpm[1];
         CHECK(fabs(paid - 1) < 1e-12, "row %zu: a metre of string is %.12f", i, paid);
     }
     CHECK(exh_hand_rows[0].dflt == (int32_t)(sim_finger_default().arm_m[0] * 1073741824 + 0.5) ||
               fabs(exh_hand_rows[0].dflt / 1073741824.0 - sim_finger_default().arm_m[0]) < 1e-8,
-          "the default arms differ");
+        "the default arms differ");
 }
 
 /* ---- Recordings ---------------------------------------------------------------------------- */
@@ -355,10 +355,10 @@ TEST(a_recording_is_smooth_and_stays_within_its_rows)
             hi = c > hi ? c : hi;
         }
         CHECK(now >= lo - 1e-12 && now <= hi + 1e-12, "%.4f s: %.6f, rows %.6f..%.6f", t, now, lo,
-              hi);
+            hi);
         /* the third derivative is at most 8 times the rows' span, by 60^3 */
         CHECK(fabs(a_now - a) <= 8 * 0.06 * 216000 * h * 2 + 1e-3,
-              "%.4f s: acceleration jumps by %.3g", t, a_now - a);
+            "%.4f s: acceleration jumps by %.3g", t, a_now - a);
         v = v_now;
         a = a_now;
         last = now;
@@ -379,8 +379,8 @@ TEST(string_of_angles)
     CHECK(fabs(sim_path_string(row, 1, 1, arm_m) - 0.031) < 1e-12, "index");
     CHECK(fabs(sim_path_string(row, 0, 1, arm_m) - 0.014) < 1e-12, "thumb, bent backwards");
     CHECK(fabs(sim_path_string(row, 0, -1, arm_m) - 0.02) < 1e-12, "counted down");
-    CHECK(sim_path_string(row, 1, -1, arm_m) == 0 && sim_path_string(row, 4, 1, arm_m) == 0,
-          "none");
+    CHECK(
+        sim_path_string(row, 1, -1, arm_m) == 0 && sim_path_string(row, 4, 1, arm_m) == 0, "none");
     CHECK(sim_path_sign((const double(*)[SIM_SENSORS]) & row, 1) == 1, "sign");
     row[4] = -3;
     CHECK(sim_path_sign((const double(*)[SIM_SENSORS]) & row, 1) == -1, "sign");
@@ -410,7 +410,7 @@ TEST(a_finger_does_what_it_does_alone)
             sim_exo_latch(&one, amp);
             /* The glove cuts its time finer, so the last digits differ, no more. */
             CHECK(fabs(all.finger[i].plant.x_m - one.finger[i].plant.x_m) < 1e-4, "finger %u, %d",
-                  i, n);
+                i, n);
             for (unsigned k = 0; k < SIM_FINGERS; k++) {
                 CHECK(k == i || one.finger[k].now_s == 0, "an absent finger moved");
             }
@@ -423,9 +423,9 @@ TEST(a_finger_does_what_it_does_alone)
 }
 
 TEST_MAIN("finger", a_finger_without_string_swings_in_closed_form,
-          a_moving_target_moves_within_a_piece, pressing_stretches_hand_and_string,
-          the_straight_finger_is_the_end, a_learned_hand_passes_at_the_speed_that_was_asked,
-          friction_costs_little_of_it, approaches_are_counted_varied_and_the_seeds,
-          the_lead_is_what_the_load_takes, joints_share_the_string_as_the_library_has_it,
-          a_recording_is_smooth_and_stays_within_its_rows, string_of_angles,
-          a_finger_does_what_it_does_alone);
+    a_moving_target_moves_within_a_piece, pressing_stretches_hand_and_string,
+    the_straight_finger_is_the_end, a_learned_hand_passes_at_the_speed_that_was_asked,
+    friction_costs_little_of_it, approaches_are_counted_varied_and_the_seeds,
+    the_lead_is_what_the_load_takes, joints_share_the_string_as_the_library_has_it,
+    a_recording_is_smooth_and_stays_within_its_rows, string_of_angles,
+    a_finger_does_what_it_does_alone);

@@ -7,10 +7,7 @@
 #include "lab/fit/search.h"
 #include "sim/plant.h"
 
-static double gap(double a, double b)
-{
-    return a < b ? b - a : a - b;
-}
+static double gap(double a, double b) { return a < b ? b - a : a - b; }
 
 TEST(values_and_units_are_inverse)
 {
@@ -62,16 +59,16 @@ TEST(a_plant_becomes_a_configuration)
         } else if (space_row[i].kind == SPACE_SCENE) {
             CHECK(strcmp(setting[settings].name, space_row[i].name) == 0 &&
                       setting[settings].value == want,
-                  "%s", space_row[i].name);
+                "%s", space_row[i].name);
             settings++;
         }
     }
     CHECK(strcmp(setting[settings].name, "kf") == 0, "%s", setting[settings].name);
     CHECK(gap(setting[settings].value / c.board.device.kf_npa,
               space_value(space_find("kf_gain"), p.u[space_find("kf_gain")])) < 1e-12,
-          "kf");
+        "kf");
     CHECK(c.mon_gain == space_value(space_find("mon_gain"), p.u[space_find("mon_gain")]),
-          "mon_gain %.12g", c.mon_gain);
+        "mon_gain %.12g", c.mon_gain);
     CHECK_EQ_I64(c.settings, settings + 1);
 }
 
@@ -161,7 +158,7 @@ TEST(what_is_pinned_stays)
             CHECK(child[i].u[2] == s.start.u[2], "round %d", r);
             for (int k = 0; k < SPACE_ROWS; k++) {
                 CHECK(child[i].u[k] >= 0 && child[i].u[k] <= 1, "%s: %g", space_row[k].name,
-                      child[i].u[k]);
+                    child[i].u[k]);
             }
         }
     }
@@ -177,20 +174,20 @@ TEST(a_search_goes_on_where_it_was_cut_off)
     snprintf(out, sizeof out, "%s/fit", dir);
     snprintf(journal, sizeof journal, "%s/fit/journal", dir);
     said(&whole, dir, cli_fit,
-         WORDS("fit", "--budget", "9", "--runs", "1", "--further", "0", "--variant",
-               "b-aligned-all", "--out", out));
+        WORDS("fit", "--budget", "9", "--runs", "1", "--further", "0", "--variant", "b-aligned-all",
+            "--out", out));
     CHECK(whole.status == 0, "status %d: %s", whole.status, whole.err);
     CHECK(strstr(whole.out, "b-aligned-all") != NULL, "%s", whole.out);
     size = said_size(journal);
     CHECK(size > 0 && truncate(journal, size - size / 3) == 0, "%ld bytes", size);
     said(&again, dir, cli_fit,
-         WORDS("fit", "--budget", "9", "--runs", "1", "--further", "0", "--variant",
-               "b-aligned-all", "--out", out));
+        WORDS("fit", "--budget", "9", "--runs", "1", "--further", "0", "--variant", "b-aligned-all",
+            "--out", out));
     CHECK(again.status == 0 && strcmp(again.out, whole.out) == 0, "%s", again.out);
     CHECK_EQ_I64(said_size(journal), size);
     said(&refused, dir, cli_fit, WORDS("fit", "--budget", "9", "--seed", "2", "--out", out));
     CHECK(refused.status == 2 && strstr(refused.err, "holds another search") != NULL, "%s",
-          refused.err);
+        refused.err);
     snprintf(journal, sizeof journal, "%s/fit/progress.csv", dir);
     CHECK(said_size(journal) > 0, "a refused search wrote over the progress of another");
     for (int i = 0; i < 3; i++) { /* vel_p is whole, 0..2 */
@@ -206,6 +203,5 @@ TEST(a_search_goes_on_where_it_was_cut_off)
 }
 
 TEST_MAIN("fit", values_and_units_are_inverse, logarithm_undoes_the_exponential,
-          a_plant_becomes_a_configuration, every_reading_finds_its_own_best,
-          the_same_seed_is_the_same_search, what_is_pinned_stays,
-          a_search_goes_on_where_it_was_cut_off);
+    a_plant_becomes_a_configuration, every_reading_finds_its_own_best,
+    the_same_seed_is_the_same_search, what_is_pinned_stays, a_search_goes_on_where_it_was_cut_off);

@@ -17,10 +17,7 @@ static uint32_t place_of(const char *name)
     return unit_vars();
 }
 
-static int put_in(const char *name, double value)
-{
-    return unit_set(place_of(name), value);
-}
+static int put_in(const char *name, double value) { return unit_set(place_of(name), value); }
 
 static double off_m(void)
 {
@@ -44,9 +41,9 @@ TEST(a_stiff_device_is_as_steady_as_the_programs)
         CHECK(unit_start(&which) == 0, "%s: refused: %s", row[i].name, which);
         CHECK(sim_device_set(&d, row[i].name, row[i].value, &named) == 0 &&
                   assign_step(&d, 0, 0) == 0,
-              "%s", row[i].name);
+            "%s", row[i].name);
         CHECK(unit_get(place_of("substep")) == d.substep_s, "%s: steps of %g s, the program's %g s",
-              row[i].name, unit_get(place_of("substep")), d.substep_s);
+            row[i].name, unit_get(place_of("substep")), d.substep_s);
         for (int k = 0; k < 3000; k++) {
             CHECK(unit_step() == 0, "%s: step %d", row[i].name, k);
             most_m = off_m() > most_m || !(off_m() < 1) ? off_m() : most_m;
@@ -61,12 +58,12 @@ TEST(a_step_that_is_given_and_will_not_do_is_refused)
     unit_reset();
     CHECK(put_in("rotor", 0.0001) == 0 && put_in("substep", 1e-4) == 0, "values");
     CHECK(unit_start(&which) == -EXH_E_RANGE && strncmp(which, "substep:", 8) == 0, "taken, or: %s",
-          which);
+        which);
     unit_reset();
     CHECK(put_in("rotor", 0.0001) == 0 && put_in("cable_b", 1000) == 0, "values");
     CHECK(unit_start(&which) == -EXH_E_RANGE && strncmp(which, "substep:", 8) == 0,
-          "none will do: %s", which);
+        "none will do: %s", which);
 }
 
 TEST_MAIN("fmi_device", a_stiff_device_is_as_steady_as_the_programs,
-          a_step_that_is_given_and_will_not_do_is_refused);
+    a_step_that_is_given_and_will_not_do_is_refused);

@@ -32,8 +32,8 @@ static int rests(const struct sim_device *d, double rate_Hz, double k, double b,
  * they without friction where the linear test says so. */
 TEST(the_papers_points)
 {
-    static const double row[][3] = {{90, 1500, 0},   {100, 2000, 0},    {200, 2000, 15},
-                                    {500, 6000, 20}, {1000, 10000, 40}, {2000, 20000, 60}};
+    static const double row[][3] = {{90, 1500, 0}, {100, 2000, 0}, {200, 2000, 15}, {500, 6000, 20},
+        {1000, 10000, 40}, {2000, 20000, 60}};
     const struct sim_device d = sim_device_default();
     struct sim_device smooth = d;
     smooth.mu_motor = smooth.mu_mass = smooth.coulomb_n = 0;
@@ -112,14 +112,14 @@ TEST(the_rule_is_inside_everywhere)
                 if (!exh_gains_ok(&rule, k_q10, b_q20)) { continue; }
                 asked++;
                 CHECK(region_allows(&g, k_q10 / 1024.0, b_q20 / 1048576.0), "lattice %d: k %g b %g",
-                      n, k, b);
+                    n, k, b);
             }
         }
         /* The knots themselves, where the line is nearest. */
         for (int i = 0; i < rule.knots; i++) {
             CHECK(exh_gains_ok(&rule, rule.k_Npm_q10[i], rule.b_Nspm_q20[i]) ==
                       (rule.k_Npm_q10[i] >= rule.k_min_Npm_q10),
-                  "lattice %d: knot %d", n, i);
+                "lattice %d: knot %d", n, i);
         }
     }
     CHECK(rules > 40 && asked > 100000, "only %d rules, %ld pairs", rules, asked);
@@ -136,8 +136,8 @@ TEST(a_full_lattice_is_taken)
     CHECK(gains_rule(&rule, &g) == 0, "no rule");
     CHECK(rule.knots == 2 && rule.b_Nspm_q20[0] == 0, "%d knots", (int)rule.knots);
     CHECK(exh_gains_ok(&rule, (int32_t)(1024 * (g.k_top_Npm - 2)),
-                       (int32_t)(1048576 * (g.b_top_Nspm - 0.001))),
-          "the corner is missing");
+              (int32_t)(1048576 * (g.b_top_Nspm - 0.001))),
+        "the corner is missing");
     CHECK(!exh_gains_ok(&rule, (int32_t)(1024 * g.k_top_Npm), 0), "the border is inside");
 }
 
@@ -183,13 +183,9 @@ TEST(over_the_wire_too)
         uint16_t id;
         int32_t raw;
         int result;
-    } ask[] = {{0x0401, 8001 * 1024, -EXH_E_GAINS},
-               {0x0401, 8000 * 1024, 0},
-               {0x0402, 25 * 1048576, -EXH_E_GAINS},
-               {0x0401, 5000 * 1024, 0},
-               {0x0402, 25 * 1048576, 0},
-               {0x0401, -1, -EXH_E_RANGE},
-               {0x1220, 9000 * 1024, 0}}; /* not locked here */
+    } ask[] = {{0x0401, 8001 * 1024, -EXH_E_GAINS}, {0x0401, 8000 * 1024, 0},
+        {0x0402, 25 * 1048576, -EXH_E_GAINS}, {0x0401, 5000 * 1024, 0}, {0x0402, 25 * 1048576, 0},
+        {0x0401, -1, -EXH_E_RANGE}, {0x1220, 9000 * 1024, 0}}; /* not locked here */
     struct exh_wire_tx tx = {7, 0};
     struct exh_wire_rx rx;
     struct exh_wire_packet p, got;
@@ -207,8 +203,8 @@ TEST(over_the_wire_too)
         p.type = EXH_WIRE_ACK;
         p.u.ack = (struct exh_wire_ack){param, (int16_t)result, 1};
         n = exh_wire_encode(&tx, &p, 0, buf, sizeof buf);
-        CHECK(n > 0 && exh_wire_decode(&rx, &got, buf, (size_t)n) == EXH_WIRE_ACK, "ask %d",
-              (int)i);
+        CHECK(
+            n > 0 && exh_wire_decode(&rx, &got, buf, (size_t)n) == EXH_WIRE_ACK, "ask %d", (int)i);
         CHECK(got.u.ack.result == ask[i].result, "ask %d: %d", (int)i, got.u.ack.result);
     }
     exh_params_apply(exh_scene_guarded.params);
@@ -223,20 +219,20 @@ TEST(a_pair_is_judged)
 {
     char *dir = said_dir();
     said(&s, dir, lab_advise,
-         WORDS("advise", "gains", "--rate", "500", "--k", "4000", "--b", "15", SMALL));
+        WORDS("advise", "gains", "--rate", "500", "--k", "4000", "--b", "15", SMALL));
     CHECK(s.status == 0 && strstr(s.out, ": allowed (") && strstr(s.out, "margin: k "), "%d\n%s%s",
-          s.status, s.out, s.err);
+        s.status, s.out, s.err);
     said(&s, dir, lab_advise,
-         WORDS("advise", "gains", "--rate", "500", "--k", "14000", "--b", "15", SMALL));
+        WORDS("advise", "gains", "--rate", "500", "--k", "14000", "--b", "15", SMALL));
     CHECK(s.status == 1 && strstr(s.out, "NOT allowed") && strstr(s.out, "largest k at this b"),
-          "%d\n%s%s", s.status, s.out, s.err);
+        "%d\n%s%s", s.status, s.out, s.err);
     said(&s, dir, lab_advise,
-         WORDS("advise", "gains", "--rate", "500", "--k", "1000000", "--b", "15", SMALL));
+        WORDS("advise", "gains", "--rate", "500", "--k", "1000000", "--b", "15", SMALL));
     CHECK(s.status == 1 && strstr(s.out, "beyond all"), "%d\n%s%s", s.status, s.out, s.err);
     said(&s, dir, lab_advise, WORDS("advise", "gains", "--rate", "500", "--rule", SMALL));
     CHECK(s.status == 0 &&
               strncmp(s.out, "--set rule_on=1 --set rule_rate=500 --set rule_n=", 49) == 0,
-          "%d\n%s%s", s.status, s.out, s.err);
+        "%d\n%s%s", s.status, s.out, s.err);
     said_clean(dir);
 }
 
@@ -247,12 +243,12 @@ TEST(a_run_is_refused_by_its_rule)
     "--set", "rule_on=1", "--set", "rule_rate=500", "--set", "rule_b1=30", "--set", \
         "rule_k0=9000", "--set", "rule_k1=2000"
     said(&s, dir, lab_drop,
-         WORDS("drop", "--guarded", "--rate", "500", "--falls", "1", "--k", "9001", "--b", "0",
-               RULE));
+        WORDS(
+            "drop", "--guarded", "--rate", "500", "--falls", "1", "--k", "9001", "--b", "0", RULE));
     CHECK(s.status == 2 && strstr(s.err, "outside the rule of gains"), "%d %s", s.status, s.err);
     said(&s, dir, lab_drop,
-         WORDS("drop", "--guarded", "--rate", "500", "--falls", "1", "--k", "5000", "--b", "15",
-               RULE));
+        WORDS("drop", "--guarded", "--rate", "500", "--falls", "1", "--k", "5000", "--b", "15",
+            RULE));
     CHECK(s.status == 0, "%d %s", s.status, s.err);
     said_clean(dir);
 }
@@ -281,7 +277,7 @@ TEST(bad_usage_is_named)
         for (int k = 0; k < 4 && row[i].word[k]; k++) { word[k + 2] = row[i].word[k]; }
         said(&s, dir, lab_advise, word);
         CHECK(s.status == row[i].status && strstr(s.err, row[i].says), "row %d: %d %s", (int)i,
-              s.status, s.err);
+            s.status, s.err);
     }
     said_clean(dir);
 }
@@ -295,18 +291,18 @@ TEST(a_map_is_judged)
     f = fopen(path, "w");
     CHECK(f != NULL, "%s", path);
     fprintf(f,
-            "# exhand drop --sweep falls=10 columns=2 rows=2 more=1\nrate_hz,k\n"
-            "500,3000,0,10,10,,1\n500,14000,0,10,10,,1\n500,3000,15,8,10,,1\n500,14000,15,0,10,,1\n"
-            "500,4000,12,10,10,,1\n");
+        "# exhand drop --sweep falls=10 columns=2 rows=2 more=1\nrate_hz,k\n"
+        "500,3000,0,10,10,,1\n500,14000,0,10,10,,1\n500,3000,15,8,10,,1\n500,14000,15,0,10,,1\n"
+        "500,4000,12,10,10,,1\n");
     fclose(f);
     said(&s, dir, lab_advise, WORDS("advise", "gains", "--judge", path, "--out", dir, SMALL));
     CHECK(s.status == 1 && strstr(s.out, "   500 |      2      2 |  50.0 %   50.0 % |  50.0 % |"),
-          "%d\n%s%s", s.status, s.out, s.err);
+        "%d\n%s%s", s.status, s.out, s.err);
     CHECK(strstr(s.out, "|       3        1 |     30            2\n"), "%s", s.out);
     remove(path);
     said_clean(dir);
 }
 
 TEST_MAIN("gains", the_papers_points, cases_fill_all_phases, the_rule_is_inside_everywhere,
-          a_full_lattice_is_taken, the_scene_refuses_by_name, over_the_wire_too, a_pair_is_judged,
-          a_run_is_refused_by_its_rule, bad_usage_is_named, a_map_is_judged);
+    a_full_lattice_is_taken, the_scene_refuses_by_name, over_the_wire_too, a_pair_is_judged,
+    a_run_is_refused_by_its_rule, bad_usage_is_named, a_map_is_judged);

@@ -42,11 +42,11 @@ static struct exh_scene scene(int32_t every)
 {
     static int32_t kept;
     const struct exh_scene s = {.name = "kept",
-                                .rate_Hz = 1000,
-                                .read_glove = exh_board_read_glove,
-                                .glove_every = every ? &kept : NULL,
-                                .setup = setup,
-                                .tick = tick};
+        .rate_Hz = 1000,
+        .read_glove = exh_board_read_glove,
+        .glove_every = every ? &kept : NULL,
+        .setup = setup,
+        .tick = tick};
     kept = every;
     return s;
 }
@@ -101,15 +101,15 @@ TEST(frames_come_every_so_many_ticks_and_age_between)
         for (unsigned n = 0; n < TICKS; n++) {
             const struct exh_scene_in *in = &seen.in[n];
             CHECK(in->glove_new == (n % step == 0), "every %u, tick %u: new %u", step, n,
-                  in->glove_new);
+                in->glove_new);
             CHECK(in->glove.age_ticks == n % step, "every %u, tick %u: age %u", step, n,
-                  in->glove.age_ticks);
-            CHECK(n % step == 0 ||
-                      memcmp(in->glove.raw, in[-1].glove.raw, sizeof in->glove.raw) == 0,
-                  "every %u, tick %u: codes changed", step, n);
+                in->glove.age_ticks);
+            CHECK(
+                n % step == 0 || memcmp(in->glove.raw, in[-1].glove.raw, sizeof in->glove.raw) == 0,
+                "every %u, tick %u: codes changed", step, n);
         }
         CHECK(step > TICKS / 2 || memcmp(seen.in[0].glove.raw, seen.in[step].glove.raw, 44) != 0,
-              "every %u: noise does not change", step);
+            "every %u: noise does not change", step);
     }
 }
 
@@ -121,7 +121,7 @@ TEST(a_scan_that_does_not_fit_is_older)
         double interval_s;
         unsigned every;
     } row[] = {{20000, 4e-6, 2}, {10000, 4e-6, 1}, {11360, 4e-6, 1}, {11370, 4e-6, 2},
-               {2000, 20e-6, 1}, {2500, 20e-6, 2}, {10000, 20e-6, 5}};
+        {2000, 20e-6, 1}, {2500, 20e-6, 2}, {10000, 20e-6, 5}};
     for (size_t k = 0; k < LEN(row); k++) {
         struct posix_config c = with_glove();
         c.glove_par.interval_s = row[k].interval_s;
@@ -129,8 +129,8 @@ TEST(a_scan_that_does_not_fit_is_older)
         for (unsigned n = 0; n < TICKS; n++) {
             const unsigned age = n % row[k].every;
             CHECK(seen.in[n].glove.age_ticks == age && seen.in[n].glove_new == (age == 0),
-                  "row %zu, tick %u: age %u, new %u", k, n, seen.in[n].glove.age_ticks,
-                  seen.in[n].glove_new);
+                "row %zu, tick %u: age %u, new %u", k, n, seen.in[n].glove.age_ticks,
+                seen.in[n].glove_new);
         }
     }
 }
@@ -153,7 +153,7 @@ TEST(codes_are_the_poses)
             for (unsigned n = 0; n < TICKS; n++) {
                 const double off = seen.in[n].glove.raw[i] - code;
                 CHECK(off <= 0.501 && off >= -0.501, "%s, %s: %.3f codes off", sim_pose[pose].name,
-                      s->name, off);
+                    s->name, off);
             }
         }
     }
@@ -222,7 +222,7 @@ TEST(a_glove_changes_nothing_of_the_drive)
     for (unsigned n = 0; n < TICKS; n++) {
         CHECK(with[n].mon_raw[0] == seen.in[n].drive.mon_raw[0] &&
                   with[n].enc_raw[0] == seen.in[n].drive.enc_raw[0],
-              "tick %u", n);
+            "tick %u", n);
     }
 }
 
@@ -245,7 +245,7 @@ TEST(encoder_jitter_is_one_step)
                 if (v > hi) { hi = v; }
             }
             CHECK(hi - lo <= (jitter[k] > 0) + (jitter[k] > 1), "%g: %d steps", jitter[k],
-                  (int)(hi - lo));
+                (int)(hi - lo));
             steps += hi > lo;
         }
         CHECK(jitter[k] < 1 || steps >= 15, "%g: %d of 19 jitter", jitter[k], steps);
@@ -284,7 +284,7 @@ TEST(only_frames_with_a_glove_hold_one)
 }
 
 TEST_MAIN("glove_board", a_board_without_a_glove_stops_the_loop,
-          a_scene_that_names_no_glove_gets_none, frames_come_every_so_many_ticks_and_age_between,
-          a_scan_that_does_not_fit_is_older, codes_are_the_poses, the_hand_goes_where_it_is_asked,
-          recorded_frames_come_one_a_read, a_glove_changes_nothing_of_the_drive,
-          encoder_jitter_is_one_step, only_frames_with_a_glove_hold_one);
+    a_scene_that_names_no_glove_gets_none, frames_come_every_so_many_ticks_and_age_between,
+    a_scan_that_does_not_fit_is_older, codes_are_the_poses, the_hand_goes_where_it_is_asked,
+    recorded_frames_come_one_a_read, a_glove_changes_nothing_of_the_drive,
+    encoder_jitter_is_one_step, only_frames_with_a_glove_hold_one);

@@ -24,12 +24,12 @@ static struct exh_glove_cal made_by(const char *dir, const char *miss_deg, const
     struct exh_glove_error bad;
     FILE *f;
     said(&s, dir, cli_calibrate_glove,
-         WORDS("calibrate", "--glove", "--out", dir, "--miss", miss_deg, "--device", couple,
-               "--user", "5", "--id", "6", "--day", "20000", "--valid", "30"));
+        WORDS("calibrate", "--glove", "--out", dir, "--miss", miss_deg, "--device", couple,
+            "--user", "5", "--id", "6", "--day", "20000", "--valid", "30"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     f = fopen(said_path(dir, "glove.bin"), "rb");
     CHECK(f != NULL && fread(image, 1, sizeof image, f) == sizeof image && getc(f) == EOF,
-          "glove.bin");
+        "glove.bin");
     fclose(f);
     CHECK_EQ_I64(exh_glove_cal_load(&cal, image, sizeof image, &bad), 0);
     CHECK_EQ_I64(exh_glove_cal_check(&cal, 5, 6, 20030, &bad), 0);
@@ -103,15 +103,15 @@ TEST(a_good_hand_is_found_back)
     char *dir = said_dir();
     const struct exh_glove_cal cal = made_by(dir, "0", "couple=0.3");
     const double gain = worst_gain(&cal), rad = worst_of_many(&cal, 0.3);
-    check_note("poses hit exactly: gains within %.3f %%, angles within %.2f mrad", gain * 100,
-               rad * 1e3);
+    check_note(
+        "poses hit exactly: gains within %.3f %%, angles within %.2f mrad", gain * 100, rad * 1e3);
     CHECK(gain > 1e-6 && gain < 2e-3, "%.3g", gain);
     CHECK(rad > 1e-5 && rad < 2e-3, "%.3g", rad);
     CHECK(fabs(cal.sensor[10].cross_q30[0] / 1073741824.0 + 0.15) < 2e-3 &&
               fabs(cal.sensor[10].cross_q30[1] / 1073741824.0 + 0.15) < 2e-3 &&
               fabs(cal.sensor[3].cross_q30[0] / 1073741824.0 + 0.3) < 2e-3,
-          "%.4f %.4f", cal.sensor[10].cross_q30[0] / 1073741824.0,
-          cal.sensor[10].cross_q30[1] / 1073741824.0);
+        "%.4f %.4f", cal.sensor[10].cross_q30[0] / 1073741824.0,
+        cal.sensor[10].cross_q30[1] / 1073741824.0);
     said_clean(dir);
 }
 
@@ -125,11 +125,11 @@ TEST(a_real_hand_is_found_back)
     check_note("poses missed by up to 1 deg: gains within %.2f %%, angles within %.1f mrad; the "
                "default calibration: "
                "%.1f mrad",
-               gain * 100, rad * 1e3, fallback * 1e3);
+        gain * 100, rad * 1e3, fallback * 1e3);
     CHECK(gain > 2e-3 && gain < 0.08, "%.3g", gain);
     CHECK(rad > 5e-3 && rad < 0.08, "%.3g", rad);
     CHECK(fallback > 0.05 && fallback < 0.2, "%.3g",
-          fallback); /* no cross terms, but this hand's lines */
+        fallback); /* no cross terms, but this hand's lines */
     said_clean(dir);
 }
 
@@ -148,12 +148,10 @@ TEST(exit_status_says_what_happened)
         {0, {"--check", "@/glove.bin", "--day", "20090", "--user", "5"}, NULL},
         {1, {"--check", "@/glove.bin", "--day", "20091", "--user", "5"}, "stale"},
         {1, {"--check", "@/glove.bin", "--day", "19999", "--user", "5"}, "from the future"},
-        {1,
-         {"--check", "@/glove.bin", "--day", "20000", "--user", "6"},
-         "made for user 5, this is 6"},
-        {1,
-         {"--check", "@/glove.bin", "--day", "20000", "--user", "5", "--id", "2"},
-         "made for glove 1, this is 2"},
+        {1, {"--check", "@/glove.bin", "--day", "20000", "--user", "6"},
+            "made for user 5, this is 6"},
+        {1, {"--check", "@/glove.bin", "--day", "20000", "--user", "5", "--id", "2"},
+            "made for glove 1, this is 2"},
         {1, {"--check", "@/glove.csv"}, "image"},
         {3, {"--check", "@/none"}, "No such file"},
         {2, {"--check", "@"}, "can't be read"},
@@ -189,8 +187,8 @@ TEST(exit_status_says_what_happened)
         size_t n = 0;
         for (; n < 8 && row[i].word[n] != NULL; n++) {
             const char *w = row[i].word[n];
-            snprintf(with[n], sizeof with[n], "%s%s", w[0] == '@' ? dir : "",
-                     w[0] == '@' ? w + 1 : w);
+            snprintf(
+                with[n], sizeof with[n], "%s%s", w[0] == '@' ? dir : "", w[0] == '@' ? w + 1 : w);
             word[2 + n] = with[n];
         }
         said(&s, dir, cli_calibrate_glove, word);
@@ -207,12 +205,12 @@ TEST(all_that_is_wrong_is_told_at_once)
     static struct said s;
     char *dir = said_dir();
     said(&s, dir, cli_calibrate_glove,
-         WORDS("calibrate", "--glove", "--out", dir, "--wrong", "IndexMPJ=open", "--wrong",
-               "ThumbIJ=stuck"));
+        WORDS("calibrate", "--glove", "--out", dir, "--wrong", "IndexMPJ=open", "--wrong",
+            "ThumbIJ=stuck"));
     CHECK_EQ_I64(s.status, 1);
     CHECK(strstr(s.err, "IndexMPJ: at") && strstr(s.err, "ThumbIJ: movement") &&
               strstr(s.err, "MiddleIndexAb: cross"),
-          "%s", s.err);
+        "%s", s.err);
     CHECK(strstr(s.err, "RingMPJ") == NULL, "%s", s.err);
     CHECK(said_size(said_path(dir, "glove.bin")) < 0, "written");
     said_clean(dir);
@@ -262,9 +260,9 @@ TEST(lines_of_a_pose_are_averaged)
 TEST(a_glove_of_18_sensors_lacks_the_last_joints)
 {
     static const char *const line[] = {"\nIndexDIJ         +0.6667 of IndexPIJ (not measured)\n",
-                                       "\nMiddleDIJ        +0.6667 of MiddlePIJ (not measured)\n",
-                                       "\nRingDIJ          +0.6667 of RingPIJ (not measured)\n",
-                                       "\nPinkieDIJ        +0.6667 of PinkiePIJ (not measured)\n"};
+        "\nMiddleDIJ        +0.6667 of MiddlePIJ (not measured)\n",
+        "\nRingDIJ          +0.6667 of RingPIJ (not measured)\n",
+        "\nPinkieDIJ        +0.6667 of PinkiePIJ (not measured)\n"};
     static struct said s;
     char *dir = said_dir();
     said(&s, dir, cli_calibrate_glove, WORDS("calibrate", "--glove", "--sensors", "18"));
@@ -280,18 +278,18 @@ TEST(bad_lines_are_told_by_number)
     static const char *const nine = "1,1,1,1,1,1,1,1,1,";
     static const struct {
         const char *tail, *says;
-    } row[] = {{"1,1,1", "too few"},       {"1,1,1,1,1", "too many"}, {"1,1,1,x", "no code"},
-               {"1,1,1,32768", "no code"}, {"1,1,1,1e", "no code"},   {"1,1,1,nan", "no code"}};
+    } row[] = {{"1,1,1", "too few"}, {"1,1,1,1,1", "too many"}, {"1,1,1,x", "no code"},
+        {"1,1,1,32768", "no code"}, {"1,1,1,1e", "no code"}, {"1,1,1,nan", "no code"}};
     static struct said s;
     char *dir = said_dir(), text[300];
     const char *path = said_path(dir, "in.csv");
     for (size_t i = 0; i < LEN(row); i++) {
-        snprintf(text, sizeof text, "%sflat,%s%s%s\n", i % 2 ? "\n" : "\r\n", nine, nine,
-                 row[i].tail);
+        snprintf(
+            text, sizeof text, "%sflat,%s%s%s\n", i % 2 ? "\n" : "\r\n", nine, nine, row[i].tail);
         write_text(path, text);
         said(&s, dir, cli_calibrate_glove, WORDS("calibrate", "--glove", "--poses", path));
         CHECK(s.status == 2 && strstr(s.err, "line 2") && strstr(s.err, row[i].says),
-              "row %zu: %d: %s", i, s.status, s.err);
+            "row %zu: %d: %s", i, s.status, s.err);
     }
     write_text(path, "flat\n");
     said(&s, dir, cli_calibrate_glove, WORDS("calibrate", "--glove", "--poses", path));
@@ -309,11 +307,11 @@ TEST(recorded_poses_give_the_same)
     struct exh_glove_error bad;
     snprintf(again, sizeof again, "%s/again", dir);
     said(&s, dir, cli_calibrate_glove,
-         WORDS("calibrate", "--glove", "--out", dir, "--day", "20000"));
+        WORDS("calibrate", "--glove", "--out", dir, "--day", "20000"));
     CHECK_EQ_I64(s.status, 0);
     said(&s, dir, cli_calibrate_glove,
-         WORDS("calibrate", "--glove", "--out", again, "--day", "20000", "--poses",
-               said_path(dir, "poses.csv")));
+        WORDS("calibrate", "--glove", "--out", again, "--day", "20000", "--poses",
+            said_path(dir, "poses.csv")));
     CHECK(s.status == 0, "%s", s.err);
     for (int k = 0; k < 2; k++) {
         FILE *f = fopen(said_path(k ? again : dir, "glove.bin"), "rb");
@@ -323,10 +321,10 @@ TEST(recorded_poses_give_the_same)
     }
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { /* four decimals of a code */
         CHECK(fabs((double)(cal[0].sensor[i].zero_raw_q15 - cal[1].sensor[i].zero_raw_q15)) < 32,
-              "%u", i);
+            "%u", i);
         CHECK(fabs((double)cal[0].sensor[i].gain_turnpraw_q38 / cal[1].sensor[i].gain_turnpraw_q38 -
                    1) < 1e-6,
-              "%u", i);
+            "%u", i);
     }
     said_clean(dir);
 }
@@ -345,11 +343,11 @@ TEST(poses_know_enough)
             high = deg > high ? deg : high;
         }
         CHECK(n >= 2 && high - low >= 20, "%s: %d poses, %d .. %d", exh_glove_sensor_text(i), n,
-              low, high);
+            low, high);
     }
 }
 
 TEST_MAIN("sim/glove_calibrate", a_good_hand_is_found_back, a_real_hand_is_found_back,
-          exit_status_says_what_happened, all_that_is_wrong_is_told_at_once,
-          lines_of_a_pose_are_averaged, a_glove_of_18_sensors_lacks_the_last_joints,
-          bad_lines_are_told_by_number, recorded_poses_give_the_same, poses_know_enough);
+    exit_status_says_what_happened, all_that_is_wrong_is_told_at_once, lines_of_a_pose_are_averaged,
+    a_glove_of_18_sensors_lacks_the_last_joints, bad_lines_are_told_by_number,
+    recorded_poses_give_the_same, poses_know_enough);

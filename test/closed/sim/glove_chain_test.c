@@ -109,23 +109,13 @@ TEST(codes_round_and_saturate)
     static const struct {
         double v;
         int code;
-    } row[] = {{0, 0},
-               {LSB_V * 0.499, 0},
-               {LSB_V * 0.501, 1},
-               {-LSB_V * 0.501, -1},
-               {9.99969, 32767},
-               {10, 32767},
-               {12, 32767},
-               {1e9, 32767},
-               {-10, -32768},
-               {-10.0001, -32768},
-               {-1e9, -32768},
-               {-LSB_V * 0.499, 0},
-               {10 - LSB_V * 1.6, 32766}};
+    } row[] = {{0, 0}, {LSB_V * 0.499, 0}, {LSB_V * 0.501, 1}, {-LSB_V * 0.501, -1},
+        {9.99969, 32767}, {10, 32767}, {12, 32767}, {1e9, 32767}, {-10, -32768}, {-10.0001, -32768},
+        {-1e9, -32768}, {-LSB_V * 0.499, 0}, {10 - LSB_V * 1.6, 32766}};
     const struct sim_glove_par p = clean();
     for (size_t i = 0; i < LEN(row); i++) {
         CHECK(sim_glove_code(&p, row[i].v) == row[i].code, "%.9g V: %d", row[i].v,
-              sim_glove_code(&p, row[i].v));
+            sim_glove_code(&p, row[i].v));
     }
 }
 
@@ -165,7 +155,7 @@ TEST(a_step_is_an_exponential)
             const double want_rad = (double)(1.2L - exp_neg(x));
             const double got_V = sim_glove_volt(&g, 5, t_s);
             CHECK(fabs(got_V - static_V(&p, 5, want_rad)) < 1e-11, "%g Hz, %.6f s: %.12f V",
-                  p.cutoff_Hz, t_s, got_V);
+                p.cutoff_Hz, t_s, got_V);
         }
     }
 }
@@ -214,7 +204,7 @@ TEST(polynomials_come_as_the_equation_says)
     struct sim_glove g = settled(&p, 0);
     sim_glove_move(&g, 5, &ramp);
     CHECK(fabs(sim_lag_at(&g.angle_rad[5], 0.4) - 2 * (0.4 - tau)) < 1e-14, "ramp: %.15f",
-          sim_lag_at(&g.angle_rad[5], 0.4));
+        sim_lag_at(&g.angle_rad[5], 0.4));
     CHECK(fabs(sim_lag_at(&g.angle_rad[5], tau) - 2 * tau * 0.36787944117144233) < 1e-15, "knee");
     sim_glove_move(&g, 5, &all);
     for (int n = 1; n < 1000; n++) {
@@ -225,7 +215,7 @@ TEST(polynomials_come_as_the_equation_says)
         CHECK(fabs(left) < 1e-9, "%.4f s: %.3g", t_s, left);
     }
     CHECK(fabs(sim_lag_at(&g.angle_rad[5], 0.5) - 2 * (0.5 - tau)) < 1e-13,
-          "it goes on from where it is");
+        "it goes on from where it is");
 }
 
 /* ---- Scan, multiplexer, noise ---------------------------------------------------------- */
@@ -261,7 +251,7 @@ TEST(channels_are_held_one_interval_apart)
             const double want_s = 0.01 - (22 - i) * interval_s[k];
             const double code_s = 0.5 / fabs(per_rad * speed) + lag_s * 5e-5; /* e^-10 is left */
             CHECK(fabs(held_s - want_s) <= code_s, "%g us, channel %u: %.3f us, want %.3f",
-                  interval_s[k] * 1e6, i, held_s * 1e6, want_s * 1e6);
+                interval_s[k] * 1e6, i, held_s * 1e6, want_s * 1e6);
             CHECK(code_s < interval_s[k], "channel %u is too coarse to tell: %.3g s", i, code_s);
             CHECK(fabs(sim_glove_held_s(&p, i, 0.01) - want_s) < 1e-15, "channel %u", i);
         }
@@ -285,9 +275,9 @@ TEST(the_multiplexer_keeps_some_of_the_channel_before)
             const double want = v + (before - v) * left;
             at_s = sim_glove_held_s(&p, i, 1);
             CHECK(fabs(sim_glove_convert(&g, i, at_s) * LSB_V - want) <= LSB_V * 0.501,
-                  "%g us, channel %u", settle_s[k] * 1e6, i);
+                "%g us, channel %u", settle_s[k] * 1e6, i);
             CHECK(fabs(g.held_V - want) < 1e-9, "%g us, channel %u: %.9f V, want %.9f",
-                  settle_s[k] * 1e6, i, g.held_V, want);
+                settle_s[k] * 1e6, i, g.held_V, want);
             before = want;
         }
     }
@@ -324,7 +314,7 @@ TEST(noise_is_the_papers_peak_to_peak)
                 worst_V = (hi[i] - lo[i]) * LSB_V;
             }
             CHECK(n % 2000 != 1999 || hi[i] - lo[i] <= want + 2, "channel %u: %d codes", i,
-                  hi[i] - lo[i]);
+                hi[i] - lo[i]);
         }
     }
     CHECK(worst_V > 0.0052, "least in a second: %.2f mV", worst_V * 1e3);
@@ -333,7 +323,7 @@ TEST(noise_is_the_papers_peak_to_peak)
     CHECK(fabs(sum) < 0.02e-3, "mean %.4f mV", sum * 1e3); /* settling and rounding are in it */
     CHECK(squares > 0.98e-6 && squares < 1.08e-6, "deviation^2 %.4f mV^2", squares * 1e6);
     check_note("noise: least peak to peak of a second and channel %.2f mV, mean square %.3f mV^2",
-               worst_V * 1e3, squares * 1e6);
+        worst_V * 1e3, squares * 1e6);
 }
 
 /* ---- Faults -------------------------------------------------------------------------- */
@@ -343,10 +333,8 @@ TEST(faults_read_as_they_would)
     static const struct {
         unsigned char fault;
         int code;
-    } row[] = {{SIM_GLOVE_OPEN, 32767},
-               {SIM_GLOVE_SHORT, -32768},
-               {SIM_GLOVE_RAIL_HIGH, 32767},
-               {SIM_GLOVE_RAIL_LOW, -32768}};
+    } row[] = {{SIM_GLOVE_OPEN, 32767}, {SIM_GLOVE_SHORT, -32768}, {SIM_GLOVE_RAIL_HIGH, 32767},
+        {SIM_GLOVE_RAIL_LOW, -32768}};
     const struct sim_glove_par p = sim_glove_default();
     for (size_t k = 0; k < LEN(row); k++) {
         struct sim_glove g = settled(&p, 0.2), well = settled(&p, 0.2);
@@ -360,7 +348,7 @@ TEST(faults_read_as_they_would)
                     CHECK_EQ_I64(code, row[k].code);
                 } else { /* its neighbour sees at most a code of it through the multiplexer */
                     CHECK(code - want <= (i == 10) && want - code <= (i == 10), "%u: %d, want %d",
-                          i, code, want);
+                        i, code, want);
                 }
             }
         }
@@ -405,7 +393,7 @@ TEST(poses_lie_in_range_and_show_both_ends)
         for (int k = 0; k < sim_poses; k++) {
             const double deg = sim_pose[k].deg[i];
             CHECK(deg >= s->lo_deg && deg <= s->hi_deg, "%s in %s: %g", s->name, sim_pose[k].name,
-                  deg);
+                deg);
             if (deg < lo) { lo = deg; }
             if (deg > hi) { hi = deg; }
         }
@@ -444,7 +432,7 @@ TEST(a_movement_is_minimum_jerk)
     CHECK(fabs(op.end_s - 1.4) < 1e-12, "ends at %.6f", op.end_s);
     CHECK(fabs(last - PI / 2) < 1e-9, "%.9f", last);
     CHECK(fastest > 0.998 * 1.875 * PI / 2 / 0.4 && fastest < 1.875 * PI / 2 / 0.4, "%.4f rad/s",
-          fastest);
+        fastest);
     sim_operator_start(&op, &o, &g, &p, 1);
     sim_operator_go(&op, sim_pose_find("fist"));
     sim_operator_advance(&op, &g, 0);
@@ -501,7 +489,7 @@ TEST(advance_does_not_depend_on_its_steps)
         sim_operator_advance(&b, &gb, 6.999);
         for (unsigned i = 0; i < SENSORS; i++) {
             CHECK(sim_lag_at(&ga.angle_rad[i], 7) == sim_lag_at(&gb.angle_rad[i], 7), "%zu: %u", k,
-                  i);
+                i);
         }
     }
 }
@@ -552,12 +540,11 @@ TEST(codes_hang_on_the_seed_alone)
 }
 
 TEST_MAIN("glove_chain", sine_and_cosine_are_good_to_their_bound, volt_and_code_of_an_angle,
-          end_points_span_what_the_default_calibration_says, codes_round_and_saturate,
-          abduction_is_bent_by_its_neighbours, a_step_is_an_exponential,
-          a_sine_comes_smaller_and_later, polynomials_come_as_the_equation_says,
-          channels_are_held_one_interval_apart, the_multiplexer_keeps_some_of_the_channel_before,
-          the_default_card_settles_to_a_code, noise_is_the_papers_peak_to_peak,
-          faults_read_as_they_would, a_stuck_code_stays, parameters_are_refused_by_range,
-          poses_lie_in_range_and_show_both_ends, a_movement_is_minimum_jerk,
-          scripts_go_on_by_themselves, advance_does_not_depend_on_its_steps,
-          a_recording_is_played_through_its_rows, codes_hang_on_the_seed_alone);
+    end_points_span_what_the_default_calibration_says, codes_round_and_saturate,
+    abduction_is_bent_by_its_neighbours, a_step_is_an_exponential, a_sine_comes_smaller_and_later,
+    polynomials_come_as_the_equation_says, channels_are_held_one_interval_apart,
+    the_multiplexer_keeps_some_of_the_channel_before, the_default_card_settles_to_a_code,
+    noise_is_the_papers_peak_to_peak, faults_read_as_they_would, a_stuck_code_stays,
+    parameters_are_refused_by_range, poses_lie_in_range_and_show_both_ends,
+    a_movement_is_minimum_jerk, scripts_go_on_by_themselves, advance_does_not_depend_on_its_steps,
+    a_recording_is_played_through_its_rows, codes_hang_on_the_seed_alone);

@@ -60,16 +60,16 @@ TEST(bad_recordings_are_refused_by_line)
         {"S01\nS02\n", "in.csv: line 2, column 1: \"S02\" is no number"},
         {ROW_A "\n"
                "0.1,0.2\n",
-         "in.csv: line 2: 2 columns (22 wanted)"},
+            "in.csv: line 2: 2 columns (22 wanted)"},
         {ROW_A "\r\n\r\n" ROW_A "\r\n1,2,3\r\n", "in.csv: line 4: 3 columns (22 wanted)"},
         {ROW_A "\r" ROW_A "\r1,2,x,4\r", "in.csv: line 3, column 3: \"x\" is no number"},
         {ROW_A "\n"
                "S01,S02\n",
-         "in.csv: line 2, column 1: \"S01\" is no number"},
+            "in.csv: line 2, column 1: \"S01\" is no number"},
         {"nan," ROW_A "\n" ROW_A "\n", "in.csv: line 1, column 1: \"nan\" is no number"},
         {"," ROW_A "\n" ROW_A "\n", "in.csv: line 1, column 1: \"\" is no number"},
         {ROW_A "\n00000000000000000000000000000000000000000000000000000000000000001,2\n",
-         "line 2, column 1: "},
+            "line 2, column 1: "},
         {"1,nan,3\n", "in.csv: line 1, column 2: \"nan\" is no number"},
         {"1,inf,3\n", "in.csv: line 1, column 2: \"inf\""},
         {"1,,3\n", "in.csv: line 1, column 2: \"\" is no number"},
@@ -78,9 +78,9 @@ TEST(bad_recordings_are_refused_by_line)
         {"t_s,x\n0," ROW_A "\n0.1,0.1,0.2\n", "in.csv: line 3: 3 columns (23 wanted)"},
         {CODES_22 "\n40000"
                   "," CODES_22 "\n",
-         "line 2: more than 22"},
+            "line 2: more than 22"},
         {"t\n40000,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22\n",
-         "codes are whole numbers"},
+            "codes are whole numbers"},
         {"t\n4.5,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22\n", "within half a turn"},
     };
     const char *dir = said_dir();
@@ -102,29 +102,28 @@ TEST(units_are_guessed_or_told)
 {
     const char *dir = said_dir();
     const char *csv = said_path(dir, "in.csv");
-    write_text(csv,
-               "10,20,30,40,50,60,70,80,90,100,110,120,130,140,150,-10,-20,-30,-40,-50,-60,-70\n");
+    write_text(
+        csv, "10,20,30,40,50,60,70,80,90,100,110,120,130,140,150,-10,-20,-30,-40,-50,-60,-70\n");
     said(&s, dir, lab_glove,
-         WORDS("glove", "--csv", csv, "--rate", "200", "--unit", "deg", "--deg", "--set",
-               "glove_bits=24", "--set", "glove_hyst=0", "--set", "glove_order=0"));
+        WORDS("glove", "--csv", csv, "--rate", "200", "--unit", "deg", "--deg", "--set",
+            "glove_bits=24", "--set", "glove_hyst=0", "--set", "glove_order=0"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     for (int i = 0; i < SENSORS; i++) { /* a code is 0.0055 degrees */
         const double want = i < 15 ? 10 * (i + 1) : -10 * (i - 14);
         const double got = number_after(s.out, "\n0", i);
         CHECK(got > want - 0.003 && got < want + 0.003, "column %d: %g, want %g", i, got, want);
     }
-    write_text(
-        csv,
+    write_text(csv,
         ".25,.01,.02,.03,.04,.05,.06,.07,.08,.09,.1,.11,.12,.13,.14,-.1,-.2,-.3,-.4,-.45,0,0\n");
     said(&s, dir, lab_glove,
-         WORDS("glove", "--csv", csv, "--rate", "200", "--unit", "turn", "--deg", "--set",
-               "glove_bits=24", "--set", "glove_hyst=0", "--set", "glove_order=0"));
+        WORDS("glove", "--csv", csv, "--rate", "200", "--unit", "turn", "--deg", "--set",
+            "glove_bits=24", "--set", "glove_hyst=0", "--set", "glove_order=0"));
     CHECK(number_after(s.out, "\n0", 0) > 89.99 && number_after(s.out, "\n0", 0) < 90.01, "%s",
-          s.out);
+        s.out);
     CHECK(number_after(s.out, "\n0", 19) > -162.01 && number_after(s.out, "\n0", 19) < -161.99,
-          "%s", s.out);
-    write_text(csv,
-               "10,20,30,40,50,60,70,80,90,100,110,120,130,140,150,-10,-20,-30,-40,-50,-60,-70\n");
+        "%s", s.out);
+    write_text(
+        csv, "10,20,30,40,50,60,70,80,90,100,110,120,130,140,150,-10,-20,-30,-40,-50,-60,-70\n");
     said(&s, dir, lab_glove, WORDS("glove", "--csv", csv, "--rate", "200", "--unit", "radians"));
     CHECK(s.status == 2 && strstr(s.err, "--unit: codes, rad, deg or turn"), "%s", s.err);
     said(&s, dir, lab_glove, WORDS("glove", "--csv", csv, "--rate", "200", "--deg"));
@@ -148,26 +147,26 @@ TEST(angles_pass_a_calibration_and_back)
     cal.sensor[10].cross_q30[1] = 1 << 27;
     CHECK_EQ_I64(exh_glove_cal_save(&cal, image, sizeof image, NULL), EXH_GLOVE_CAL_IMAGE_B);
     f = fopen(cal_path, "wb");
-    CHECK(f != NULL && fwrite(image, 1, sizeof image, f) == sizeof image && fclose(f) == 0,
-          "image");
+    CHECK(
+        f != NULL && fwrite(image, 1, sizeof image, f) == sizeof image && fclose(f) == 0, "image");
     write_text(csv, ".1,.2,.3,.4,.5,.6,.7,.8,.9,1,.3,1.2,1.3,1.4,.4,.6,.7,.8,.3,.2,.1,-.1\n");
     said(&s, dir, lab_glove,
-         WORDS("glove", "--csv", csv, "--rate", "200", "--calibration", cal_path, "--set",
-               "glove_bits=24", "--set", "glove_hyst=0", "--set", "glove_order=0"));
+        WORDS("glove", "--csv", csv, "--rate", "200", "--calibration", cal_path, "--set",
+            "glove_bits=24", "--set", "glove_hyst=0", "--set", "glove_order=0"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     for (int i = 0; i < SENSORS; i++) {
-        static const double want[] = {.1,  .2,  .3,  .4, .5, .6, .7, .8, .9, 1,  .3,
-                                      1.2, 1.3, 1.4, .4, .6, .7, .8, .3, .2, .1, -.1};
+        static const double want[] = {.1, .2, .3, .4, .5, .6, .7, .8, .9, 1, .3, 1.2, 1.3, 1.4, .4,
+            .6, .7, .8, .3, .2, .1, -.1};
         const double code_rad = abs(cal.sensor[i].gain_turnpraw_q38) / 274877906944.0 * 6.2832;
         const double off = fabs(number_after(s.out, "\n0", i) - want[i]);
         CHECK(off <= 0.51 * code_rad + (i == 10 ? 1e-4 : 0), "column %d: %.6f rad off", i, off);
     }
     image[30] ^= 1;
     f = fopen(cal_path, "wb");
-    CHECK(f != NULL && fwrite(image, 1, sizeof image, f) == sizeof image && fclose(f) == 0,
-          "image");
+    CHECK(
+        f != NULL && fwrite(image, 1, sizeof image, f) == sizeof image && fclose(f) == 0, "image");
     said(&s, dir, lab_glove,
-         WORDS("glove", "--csv", csv, "--rate", "200", "--calibration", cal_path));
+        WORDS("glove", "--csv", csv, "--rate", "200", "--calibration", cal_path));
     CHECK(s.status == 2 && strstr(s.err, "user.glove: ") && strstr(s.err, "damaged"), "%s", s.err);
     said_clean(dir);
 }
@@ -182,17 +181,17 @@ TEST(its_own_output_is_an_input)
     for (int k = 0; k < 40; k++) {
         for (int i = 0; i < SENSORS; i++) {
             n += snprintf(text + n, sizeof text - (size_t)n, "%.5f%c",
-                          ((k * 37 + i * 91) % 300) * 0.01 - 1.5, i < 21 ? ',' : '\r');
+                ((k * 37 + i * 91) % 300) * 0.01 - 1.5, i < 21 ? ',' : '\r');
         }
     }
     write_text(csv, text);
     said(&s, dir, lab_glove,
-         WORDS("glove", "--csv", csv, "--rate", "60", "--set", "glove_order=0", "--tips"));
+        WORDS("glove", "--csv", csv, "--rate", "60", "--set", "glove_order=0", "--tips"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     strcpy(first, s.out);
     write_text(back, first);
     said(&s, dir, lab_glove,
-         WORDS("glove", "--csv", back, "--rate", "60", "--set", "glove_order=0", "--tips"));
+        WORDS("glove", "--csv", back, "--rate", "60", "--set", "glove_order=0", "--tips"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     CHECK(strcmp(first, s.out) == 0, "not the same");
     said_clean(dir);
@@ -216,7 +215,7 @@ TEST(a_real_recording_comes_through)
         return;
     }
     said(&s, dir, lab_glove,
-         WORDS("glove", "--csv", in_path, "--rate", "10", "--set", "glove_order=0"));
+        WORDS("glove", "--csv", in_path, "--rate", "10", "--set", "glove_order=0"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     out = fopen(said_path(dir, "said.out"), "r");
     CHECK(out != NULL && fgets(out_line, sizeof out_line, out), "no answer");
@@ -251,7 +250,7 @@ TEST(the_low_pass_fits_the_rate)
     write_text(csv, ROW_A "\n" ROW_B "\n");
     said(&s, dir, lab_glove, WORDS("glove", "--csv", csv, "--rate", "60"));
     CHECK(s.status == 0 && strstr(s.err, "at 60 Hz the low-pass is at 15 Hz"), "%d: %s", s.status,
-          s.err);
+        s.err);
     said(&s, dir, lab_glove, WORDS("glove", "--csv", csv, "--rate", "60", "--set", "glove_fc=30"));
     CHECK(s.status == 2 && strstr(s.err, "cut-off"), "%d: %s", s.status, s.err);
     said(&s, dir, lab_glove, WORDS("glove", "--csv", csv, "--rate", "60", "--set", "glove_fc=29"));
@@ -282,7 +281,7 @@ TEST(bad_usage_is_refused_by_name)
         {{"--selftest", "--device", "mass=9"}, "mass: 9 (allowed"},
         {{"--selftest", "--device", "none=9"}, "none: no such value"},
         {{"--selftest", "--device", "rotor=0.0001", "--device", "substep=1e-4"},
-         "give --device substep=1e-05"},
+            "give --device substep=1e-05"},
         {{"--record", "/nowhere/x"}, "/nowhere/x: No such file"},
         {{"--record", "x", "--pose", "none"}, "--pose: none: no such pose"},
         {{"--record", "x", "--does", "none"}, "--does: none"},
@@ -290,9 +289,9 @@ TEST(bad_usage_is_refused_by_name)
         {{"--selftest", "--does", "wave"}, "go with --record"},
         {{"--skew", "--pose", "fist"}, "go with --record, --pose with --serial"},
         {{"--serial", "x", "--pose", "flat", "--calibration", "x"},
-         "codes as they come: leave --record"},
+            "codes as they come: leave --record"},
         {{"--serial", "x", "--pose", "flat", "--set", "glove_fc=20"},
-         "codes as they come: leave --record"},
+            "codes as they come: leave --record"},
         {{"--serial", "x", "--pose", "flat", "--deg"}, "codes as they come: leave --record"},
         {{"--record", "x", "--play", "y", "--does", "wave"}, "--play: says what"},
         {{"--selftest", "--to", "1"}, "of a recording"},
@@ -356,8 +355,7 @@ TEST(help_and_parameters_are_listed)
 }
 
 TEST_MAIN("glove_command", every_line_end_and_header_reads_alike,
-          bad_recordings_are_refused_by_line, units_are_guessed_or_told,
-          angles_pass_a_calibration_and_back, its_own_output_is_an_input,
-          a_real_recording_comes_through, the_low_pass_fits_the_rate, bad_usage_is_refused_by_name,
-          what_is_not_there_is_said_by_status, an_interrupt_is_no_success,
-          help_and_parameters_are_listed);
+    bad_recordings_are_refused_by_line, units_are_guessed_or_told,
+    angles_pass_a_calibration_and_back, its_own_output_is_an_input, a_real_recording_comes_through,
+    the_low_pass_fits_the_rate, bad_usage_is_refused_by_name, what_is_not_there_is_said_by_status,
+    an_interrupt_is_no_success, help_and_parameters_are_listed);

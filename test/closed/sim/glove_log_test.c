@@ -45,21 +45,19 @@ TEST(a_log_replays_bit_for_bit_from_any_keyframe)
 {
     static const struct {
         const char *rate, *every, *does, *device;
-    } row[] = {{"2000", "every=1", "poses", "seed=1"},
-               {"2000", "every=7", "grasp", "noise=0.02"},
-               {"90", "every=1", "wave", "couple=0.2"},
-               {"20000", "every=3", "grasp", "interval=0.00002"}};
+    } row[] = {{"2000", "every=1", "poses", "seed=1"}, {"2000", "every=7", "grasp", "noise=0.02"},
+        {"90", "every=1", "wave", "couple=0.2"}, {"20000", "every=3", "grasp", "interval=0.00002"}};
     char *dir = said_dir();
     for (size_t i = 0; i < LEN(row); i++) {
         const char *log = said_path(dir, "glove.exh");
         const char *device = i ? row[i].device : "noise=0.0061";
         said(&s, dir, cli_glove,
-             WORDS("glove", "--record", log, "--rate", row[i].rate, "--set", row[i].every, "--does",
-                   row[i].does, "--device", device, "--seconds",
-                   i == 2   ? "30"
-                   : i == 3 ? "0.3"
-                            : "3",
-                   i == 2 ? "--set" : "--seed", i == 2 ? "glove_fc=20" : "5"));
+            WORDS("glove", "--record", log, "--rate", row[i].rate, "--set", row[i].every, "--does",
+                row[i].does, "--device", device, "--seconds",
+                i == 2   ? "30"
+                : i == 3 ? "0.3"
+                         : "3",
+                i == 2 ? "--set" : "--seed", i == 2 ? "glove_fc=20" : "5"));
         CHECK(s.status == 0, "row %zu: %d: %s", i, s.status, s.err);
         replay_from(dir, log, "0", 0);
         CHECK(strstr(s.out, " identical") != NULL, "%s", s.out);
@@ -86,8 +84,8 @@ TEST(a_record_is_as_long_as_it_should_be)
     char *dir = said_dir();
     const char *log = said_path(dir, "glove.exh"), *csv = said_path(dir, "in.csv");
     long size;
-    said(&s, dir, cli_glove,
-         WORDS("glove", "--record", log, "--rate", "100", "--seconds", "0.001"));
+    said(
+        &s, dir, cli_glove, WORDS("glove", "--record", log, "--rate", "100", "--seconds", "0.001"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     said(&s, dir, cli_replay, WORDS("replay", log));
     CHECK(s.status == 0 && strstr(s.out, ": 1 ticks "), "%s%s", s.out, s.err);
@@ -101,14 +99,14 @@ TEST(a_record_is_as_long_as_it_should_be)
     for (int n = 0; n < 150; n++) { strcat(text, ROW_A "\n"); }
     write_text(csv, text);
     said(&s, dir, cli_glove,
-         WORDS("glove", "--record", log, "--play", csv, "--rate", "70", "--set", "glove_fc=9"));
+        WORDS("glove", "--record", log, "--play", csv, "--rate", "70", "--set", "glove_fc=9"));
     CHECK(s.status == 0 && s.err[0] == '\0', "%d: %s", s.status, s.err);
     said(&s, dir, cli_replay, WORDS("replay", log));
     CHECK(s.status == 0 && strstr(s.out, ": 150 ticks "), "%s%s", s.out, s.err);
-    said(&s, dir, cli_glove,
-         WORDS("glove", "--record", log, "--rate", "20000", "--seconds", "0.1"));
+    said(
+        &s, dir, cli_glove, WORDS("glove", "--record", log, "--rate", "20000", "--seconds", "0.1"));
     CHECK(s.status == 0 && strstr(s.err, "1000 frames in 2000 ticks: a scan takes longer"), "%s",
-          s.err);
+        s.err);
     said_clean(dir);
 }
 
@@ -149,8 +147,8 @@ TEST(angles_are_those_of_the_hand)
     const char *log = said_path(dir, "glove.exh"), *csv = said_path(dir, "glove.csv");
     for (int pose = 0; pose < sim_poses; pose++) {
         said(&s, dir, cli_glove,
-             WORDS("glove", "--record", log, "--seconds", "0.05", "--pose", sim_pose[pose].name,
-                   "--device", "couple=0"));
+            WORDS("glove", "--record", log, "--seconds", "0.05", "--pose", sim_pose[pose].name,
+                "--device", "couple=0"));
         CHECK(s.status == 0, "%d: %s", s.status, s.err);
         said(&s, dir, cli_csv, WORDS("csv", log, "--all", "--out", csv));
         CHECK(s.status == 0, "%d: %s", s.status, s.err);
@@ -160,7 +158,7 @@ TEST(angles_are_those_of_the_hand)
             const double off = last_value(csv, i + 1) * 360 - sim_pose[pose].deg[i];
             const double codes = off / deg_per_code;
             CHECK(codes < 27 && codes > -27, "%s, %s: %.3f deg off, %.1f codes",
-                  sim_pose[pose].name, n->name, off, codes);
+                sim_pose[pose].name, n->name, off, codes);
         }
         CHECK(last_value(csv, SENSORS + 1) == 0, "faults: %s", sim_pose[pose].name);
     }
@@ -183,8 +181,8 @@ TEST(a_recording_moves_the_simulated_hand)
     }
     write_text(csv, text);
     said(&s, dir, cli_glove,
-         WORDS("glove", "--record", log, "--play", csv, "--rate", "100", "--seconds", "1", "--set",
-               "glove_fc=20"));
+        WORDS("glove", "--record", log, "--play", csv, "--rate", "100", "--seconds", "1", "--set",
+            "glove_fc=20"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     said(&s, dir, cli_csv, WORDS("csv", log, "--out", csv));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
@@ -195,13 +193,13 @@ TEST(a_recording_moves_the_simulated_hand)
     replay_from(dir, log, "0", 0);
     write_text(csv, text); /* and not before its time */
     said(&s, dir, cli_glove,
-         WORDS("glove", "--record", log, "--play", csv, "--rate", "100", "--seconds", "0.49",
-               "--set", "glove_fc=20"));
+        WORDS("glove", "--record", log, "--play", csv, "--rate", "100", "--seconds", "0.49",
+            "--set", "glove_fc=20"));
     said(&s, dir, cli_csv, WORDS("csv", log, "--out", csv));
     CHECK(s.status == 0 && last_value(csv, 6) < 0.005, "%g turn", last_value(csv, 6));
     said_clean(dir);
 }
 
 TEST_MAIN("glove_log", a_log_replays_bit_for_bit_from_any_keyframe,
-          a_record_is_as_long_as_it_should_be, a_changed_code_is_found,
-          angles_are_those_of_the_hand, a_recording_moves_the_simulated_hand);
+    a_record_is_as_long_as_it_should_be, a_changed_code_is_found, angles_are_those_of_the_hand,
+    a_recording_moves_the_simulated_hand);

@@ -14,10 +14,7 @@
 #define ROWS_MAX 7000
 #define COLS_MAX 34
 
-static int nearest(double v)
-{
-    return (int)(v < 0 ? v - 0.5 : v + 0.5); /* the cast cuts it off */
-}
+static int nearest(double v) { return (int)(v < 0 ? v - 0.5 : v + 0.5); /* the cast cuts it off */ }
 
 /* --- the files --- */
 
@@ -75,12 +72,12 @@ struct recording {
     const double *step_rad;
 };
 
-static const double graspdb[22 + 1] = {
-    0.01584, 0.01459, 0.01427, 0.00502, 0.01616, 0.01459, 0, 0, 0.01725, 0.01804, 0,      0,
-    0.01757, 0.01788, 0,       0,       0.01663, 0.01820, 0, 0, 0.00910, 0.00863, 0.00392};
+static const double graspdb[22 + 1] = {0.01584, 0.01459, 0.01427, 0.00502, 0.01616, 0.01459, 0, 0,
+    0.01725, 0.01804, 0, 0, 0.01757, 0.01788, 0, 0, 0.01663, 0.01820, 0, 0, 0.00910, 0.00863,
+    0.00392};
 static const double libras[22] = {0.01584, 0.01459, 0.01427, 0.00502, 0.01616, 0.01459, 0.00753, 0,
-                                  0.01725, 0.01804, 0.01051, 0,       0.01757, 0.01788, 0.01051, 0,
-                                  0.01663, 0.01820, 0.00988, 0,       0.00910, 0.00863};
+    0.01725, 0.01804, 0.01051, 0, 0.01757, 0.01788, 0.01051, 0, 0.01663, 0.01820, 0.00988, 0,
+    0.00910, 0.00863};
 
 static const struct recording recording[] = {
     {"glove-cyberglove-graspdb14/00_calib-rad-su01.txt", 6674, 7, 23, 74, graspdb},
@@ -99,8 +96,8 @@ struct chain {
     unsigned sensors;
 };
 
-static void set_up(struct chain *c, const struct recording *r, int scale,
-                   const struct exh_glove_par *par)
+static void set_up(
+    struct chain *c, const struct recording *r, int scale, const struct exh_glove_par *par)
 {
     memset(c, 0, sizeof *c);
     c->scale = scale;
@@ -125,8 +122,8 @@ static int code_of(const struct recording *r, int row, int col)
     return nearest(cell[row][r->first + col] / r->step_rad[col]);
 }
 
-static void feed(struct chain *c, const struct recording *r, int row,
-                 int32_t angle[EXH_GLOVE_SENSORS])
+static void feed(
+    struct chain *c, const struct recording *r, int row, int32_t angle[EXH_GLOVE_SENSORS])
 {
     struct exh_glove_in in = {{0}, 0};
     for (unsigned i = 0; i < c->sensors; i++) {
@@ -139,15 +136,14 @@ static void feed(struct chain *c, const struct recording *r, int row,
 static struct exh_glove_par par_of(int order, int bits, int hyst_raw)
 {
     const struct exh_signal *row = exh_glove_rows;
-    const struct exh_glove_par par = {order,       20 * 65536,  bits,        hyst_raw * 65536,
-                                      row[4].dflt, row[5].dflt, row[6].dflt, row[7].dflt,
-                                      row[8].dflt};
+    const struct exh_glove_par par = {order, 20 * 65536, bits, hyst_raw * 65536, row[4].dflt,
+        row[5].dflt, row[6].dflt, row[7].dflt, row[8].dflt};
     return par;
 }
 
 /* Every angle: its code comes back, and it is the file's to the rounding of gain and angle. */
-static double check_angles(const struct chain *c, const struct recording *r, int row,
-                           const int32_t *angle)
+static double check_angles(
+    const struct chain *c, const struct recording *r, int row, const int32_t *angle)
 {
     double worst = 0;
     for (unsigned i = 0; i < c->sensors; i++) {
@@ -157,9 +153,9 @@ static double check_angles(const struct chain *c, const struct recording *r, int
         const double bound =
             abs(code) * c->scale * (TURN_RAD / 549755813888.0) + TURN_RAD / 8589934592.0;
         CHECK(nearest(rad / r->step_rad[col]) == code, "%s row %d column %d: code %d", r->name, row,
-              col + 1, code);
+            col + 1, code);
         CHECK(off <= bound * 1.000001, "%s row %d column %d: %.9g, %.9g", r->name, row, col + 1,
-              rad, file);
+            rad, file);
         worst = off > worst ? off : worst;
     }
     return worst;
@@ -172,7 +168,7 @@ static void check_grid(const struct recording *r, int rows)
         for (int row = 0; row < rows && r->step_rad[col] > 0; row++) {
             const double codes = cell[row][r->first + col] / r->step_rad[col];
             CHECK(fabs(codes - nearest(codes)) < 1e-9, "%s row %d column %d: %.9g", r->name, row,
-                  col + 1, codes);
+                col + 1, codes);
         }
     }
 }
@@ -209,7 +205,7 @@ TEST(codes_come_back_exactly)
             }
         }
         check_note("%s: %d rows of %u sensors, all codes back, angles within %.2g urad", r->name,
-                   rows, c.sensors, worst * 1e6);
+            rows, c.sensors, worst * 1e6);
     }
 }
 
@@ -237,12 +233,12 @@ TEST(angles_stand_still_while_the_row_repeats)
             if (run < 12) { continue; } /* 0.2 s at 60 Hz and 20 Hz */
             settled++;
             CHECK(memcmp(angle[0], angle[1], sizeof last) == 0, "%s row %d: not settled", r->name,
-                  row);
+                row);
         }
         CHECK(r->repeated_percent < 0 || abs(100 * repeated / rows - r->repeated_percent) <= 1,
-              "%s: %d of %d rows repeat", r->name, repeated, rows);
+            "%s: %d of %d rows repeat", r->name, repeated, rows);
         check_note("%s: %d of %d rows repeat, %d of them settled behind 20 Hz: no angle moved",
-                   r->name, repeated, rows, settled);
+            r->name, repeated, rows, settled);
     }
 }
 
@@ -302,7 +298,7 @@ TEST(a_hand_at_rest_has_stable_bits)
             tried++;
             without += changes(i, from, rows, b, 0) > 1;
             CHECK(changes(i, from, rows, b, pp) <= 1, "sensor %d, %d counts peak to peak, %d bits",
-                  i, pp, b);
+                i, pp, b);
         }
     }
     CHECK(live >= 3, "%d live channels", live);
@@ -313,8 +309,8 @@ TEST(a_hand_at_rest_has_stable_bits)
         line, worst_bits);
     check_note("with hysteresis of as much no value moves twice at any number of bits; without, %d "
                "of %d do",
-               without, tried);
+        without, tried);
 }
 
 TEST_MAIN("sim/glove_recordings", codes_come_back_exactly, angles_stand_still_while_the_row_repeats,
-          a_hand_at_rest_has_stable_bits);
+    a_hand_at_rest_has_stable_bits);

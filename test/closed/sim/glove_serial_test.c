@@ -177,10 +177,10 @@ static void seen_tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 }
 
 static const struct exh_scene scene = {.name = "seen",
-                                       .rate_Hz = RATE_HZ,
-                                       .read_glove = exh_board_read_glove,
-                                       .setup = seen_setup,
-                                       .tick = seen_tick};
+    .rate_Hz = RATE_HZ,
+    .read_glove = exh_board_read_glove,
+    .setup = seen_setup,
+    .tick = seen_tick};
 
 static struct posix_config on_the_line(unsigned seconds)
 {
@@ -201,7 +201,7 @@ static void run(unsigned seconds, void (*at)(uint64_t))
     CHECK_EQ_I64(exh_loop(&scene, 0, NULL), 0);
     CHECK_EQ_I64(seen.ticks, seconds * RATE_HZ);
     CHECK(seen.wrong == 0, "kind %d of each %lu: %lu", far.glove.kind,
-          (unsigned long)far.glove.every, (unsigned long)seen.wrong);
+        (unsigned long)far.glove.every, (unsigned long)seen.wrong);
 }
 
 /* ---- Frames ------------------------------------------------------------------------------ */
@@ -213,7 +213,7 @@ TEST(frames_come_at_the_rate_that_was_asked_for)
     run(10, NULL);
     CHECK_EQ_I64(far.glove.period_ns, 11111111);
     CHECK(far.glove.status == 1 && far.glove.refused == 0 && tty.in.told,
-          "its status was not asked for");
+        "its status was not asked for");
     CHECK(seen.frames >= 870 && seen.frames <= 880, "%lu frames", (unsigned long)seen.frames);
     CHECK_EQ_I64(tty.in.frames, seen.frames);
     CHECK_EQ_I64(tty.told, 1);
@@ -236,7 +236,7 @@ TEST(a_glove_that_takes_no_command_is_heard_all_the_same)
     run(10, NULL);
     CHECK(!tty.in.told && tty.in.status == 0, "status %d", tty.in.status);
     CHECK(seen.frames >= 99 - CYBERGLOVE_SURE && seen.frames <= 100, "%lu",
-          (unsigned long)seen.frames);
+        (unsigned long)seen.frames);
     CHECK(seen.oldest >= 100 && seen.oldest <= 3 + 101, "%d", seen.oldest);
     glove_tty_close(&tty);
     end();
@@ -282,12 +282,12 @@ TEST(whatever_it_does_no_wrong_frame_comes_and_the_next_good_ones_do)
             /* silent for so long it ages; with three good ones of four it does not, and in the end
              * it is well */
             CHECK(harmless || every > 1 ? seen.oldest < 60 : seen.oldest > 1900, "kind %d: %d",
-                  kind, seen.oldest);
+                kind, seen.oldest);
             for (unsigned k = 4 * RATE_HZ + RATE_HZ / 2; k < 5 * RATE_HZ; k++) {
                 CHECK(seen.age[k] <= 3 + 12, "kind %d: tick %u: %d", kind, k, seen.age[k]);
             }
             CHECK(harmless || every > 1 ? tty.told == 1 : tty.told >= 2, "kind %d: told %lu", kind,
-                  (unsigned long)tty.told);
+                (unsigned long)tty.told);
             glove_tty_close(&tty);
             end();
         }
@@ -367,8 +367,8 @@ TEST(the_box_takes_its_silence_for_a_lost_glove)
  */
 
 /* In a process of its own, this one being the glove until it ends. */
-static void command_of(struct said *s, const char *dir, int (*run_it)(int, char **),
-                       const char *const *word)
+static void command_of(
+    struct said *s, const char *dir, int (*run_it)(int, char **), const char *const *word)
 {
     pid_t pid;
     siginfo_t info = {.si_pid = 0};
@@ -413,13 +413,13 @@ TEST(the_command_writes_rows_or_a_log)
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     CHECK(strncmp(s.out, "t_s,thumb_rotate_deg,", 21) == 0 && strstr(s.out, "little_z_m") &&
               lines(s.out) > 3,
-          "%s", s.out);
+        "%s", s.out);
     CHECK(strstr(s.err, " frames at 90 Hz, discarded: zero sample 0,") && !strstr(s.err, "silent"),
-          "%s", s.err);
+        "%s", s.err);
     command(&s, dir, WORDS("glove", "--serial", far.link, "--seconds", "2", "--record", log));
     CHECK(s.status == 0 && strstr(s.out, " frames at 90 Hz") && !strstr(s.out, ": 0 frames") &&
               s.err[0] == '\0',
-          "%d: %s", s.status, s.err);
+        "%d: %s", s.status, s.err);
     said(&s, dir, cli_replay, WORDS("replay", log));
     CHECK(s.status == 0, "%s", s.err);
     said(&s, dir, cli_csv, WORDS("csv", log, "--all"));
@@ -438,22 +438,22 @@ TEST(a_box_that_goes_on_has_it_for_its_glove)
         if (begin() < 0) { return; }
         far.glove.kind = silent ? EMU_CYBER_SILENT : EMU_CYBER_WELL;
         command_of(&s, dir, cli_run,
-                   WORDS("run", "--scene", "bilateral", "--pace", "--slack", "1", "--rate", "200",
-                         "--seconds", "3", "--glove-serial", far.link, "--log", log));
+            WORDS("run", "--scene", "bilateral", "--pace", "--slack", "1", "--rate", "200",
+                "--seconds", "3", "--glove-serial", far.link, "--log", log));
         CHECK(s.status == 0 && strstr(s.out, silent ? "glove" : "faults none"), "%d: %s%s",
-              s.status, s.out, s.err);
+            s.status, s.out, s.err);
         said(&s, dir, cli_replay, WORDS("replay", log));
         CHECK(s.status == 0, "%s", s.err);
         end();
     }
     said(&s, dir, cli_run, WORDS("run", "--glove-serial", "/dev/null", "--seconds", "1"));
     CHECK(s.status == 2 && strstr(s.err, "--glove-serial: goes with --scene bilateral and --pace"),
-          "%d: %s", s.status, s.err);
+        "%d: %s", s.status, s.err);
     said(&s, dir, cli_run,
-         WORDS("run", "--scene", "bilateral", "--pace", "--glove-serial", "/dev/null", "--seconds",
-               "1"));
+        WORDS("run", "--scene", "bilateral", "--pace", "--glove-serial", "/dev/null", "--seconds",
+            "1"));
     CHECK(s.status == 3 && strstr(s.err, "--glove-serial: /dev/null: is no serial line"), "%d: %s",
-          s.status, s.err);
+        s.status, s.err);
     said_clean(dir);
 }
 
@@ -487,15 +487,9 @@ TEST(its_nominal_calibration_is_the_published_one)
     static const struct {
         int at, sample;
         double deg;
-    } row[] = {{4, 1 + 109 /* .429 */, 0},
-               {4, 1 + 166 /* .654 */, 90},
-               {3, 1 + 201 /* .791 */, 0},
-               {3, 1 + 89 /* .350 */, 50},
-               {9, 1, 0},
-               {21, 1 + 235 /* .925 */, -30},
-               {21, 1 + 60 /* .236 */, 10},
-               {20, 1 + 39, -30},
-               {20, 1 + 158, 40}};
+    } row[] = {{4, 1 + 109 /* .429 */, 0}, {4, 1 + 166 /* .654 */, 90}, {3, 1 + 201 /* .791 */, 0},
+        {3, 1 + 89 /* .350 */, 50}, {9, 1, 0}, {21, 1 + 235 /* .925 */, -30},
+        {21, 1 + 60 /* .236 */, 10}, {20, 1 + 39, -30}, {20, 1 + 158, 40}};
     for (size_t i = 0; i < LEN(row); i++) {
         const struct exh_glove_sensor *c = &exh_glove_cal_default.sensor[row[i].at];
         const double step_deg = 58982.4 / 254 * 360.0 * c->gain_turnpraw_q38 / 274877906944.0;
@@ -510,9 +504,8 @@ TEST(its_nominal_calibration_is_the_published_one)
  */
 TEST(a_user_calibrates_it_by_poses)
 {
-    static const char *const pose[] = {"flat",    "spread", "knuckles", "hook",  "index",
-                                       "middle",  "ring",   "little",   "thumb", "across",
-                                       "opposed", "cup",    "up",       "down",  "side"};
+    static const char *const pose[] = {"flat", "spread", "knuckles", "hook", "index", "middle",
+        "ring", "little", "thumb", "across", "opposed", "cup", "up", "down", "side"};
     static struct said s;
     char *dir = said_dir();
     const char *csv = said_path(dir, "poses.csv"), *image = said_path(dir, "glove.bin"),
@@ -526,14 +519,14 @@ TEST(a_user_calibrates_it_by_poses)
         for (unsigned i = 0; i < SENSORS; i++) { raw[i] = cyberglove_raw(far.glove.sample[i]); }
         if (p < 2) { /* the others would be as these, two seconds each */
             command(&s, dir,
-                    WORDS("glove", "--serial", far.link, "--pose", pose[p], "--glove-rate", "20",
-                          "--seconds", "2"));
-            CHECK(s.status == 0 && strncmp(s.out, pose[p], strlen(pose[p])) == 0 &&
-                      lines(s.out) > 3,
-                  "%d: %s%s", s.status, s.out, s.err);
+                WORDS("glove", "--serial", far.link, "--pose", pose[p], "--glove-rate", "20",
+                    "--seconds", "2"));
+            CHECK(
+                s.status == 0 && strncmp(s.out, pose[p], strlen(pose[p])) == 0 && lines(s.out) > 3,
+                "%d: %s%s", s.status, s.out, s.err);
         }
-        f = fopen(csv,
-                  "ab"); /* not open while a process is made, which would write its buffer, too */
+        f = fopen(
+            csv, "ab"); /* not open while a process is made, which would write its buffer, too */
         p < 2 ? (void)fputs(s.out, f) : glove_poses_row(f, pose[p], raw);
         fclose(f);
     }
@@ -541,30 +534,30 @@ TEST(a_user_calibrates_it_by_poses)
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     hand_in("knuckles");
     command(&s, dir,
-            WORDS("glove", "--serial", far.link, "--calibration", image, "--deg", "--glove-rate",
-                  "20", "--seconds", "2"));
+        WORDS("glove", "--serial", far.link, "--calibration", image, "--deg", "--glove-rate", "20",
+            "--seconds", "2"));
     CHECK(s.status == 0 && last_is_near(s.out, EXH_GLOVE_INDEX_MPJ, 80, 1.5) &&
               last_is_near(s.out, EXH_GLOVE_LITTLE_PIJ, 0, 1.5),
-          "%d: %s%s", s.status, s.out, s.err);
-    command(&s, dir,
-            WORDS("glove", "--serial", far.link, "--calibration", csv, "--seconds", "0.5"));
-    CHECK(s.status == 2 && strstr(s.err, "--calibration: ") &&
-              strstr(s.err, ": give the glove.bin"),
-          "%d: %s", s.status, s.err);
+        "%d: %s%s", s.status, s.out, s.err);
+    command(
+        &s, dir, WORDS("glove", "--serial", far.link, "--calibration", csv, "--seconds", "0.5"));
+    CHECK(
+        s.status == 2 && strstr(s.err, "--calibration: ") && strstr(s.err, ": give the glove.bin"),
+        "%d: %s", s.status, s.err);
     command(&s, dir, WORDS("glove", "--serial", far.link, "--pose", "fist"));
     CHECK(s.status == 2 && strstr(s.err, "--pose: fist: no such pose"), "%d: %s", s.status, s.err);
     command_of(&s, dir, cli_run,
-               WORDS("run", "--scene", "bilateral", "--pace", "--slack", "1", "--rate", "200",
-                     "--seconds", "1", "--glove-serial", far.link, "--glove-calibration", image));
+        WORDS("run", "--scene", "bilateral", "--pace", "--slack", "1", "--rate", "200", "--seconds",
+            "1", "--glove-serial", far.link, "--glove-calibration", image));
     CHECK(s.status == 0 && strstr(s.out, "faults none"), "%d: %s%s", s.status, s.out, s.err);
     said(&s, dir, cli_run,
-         WORDS("run", "--scene", "bilateral", "--pace", "--glove-serial", far.link,
-               "--glove-calibration", none, "--seconds", "1"));
+        WORDS("run", "--scene", "bilateral", "--pace", "--glove-serial", far.link,
+            "--glove-calibration", none, "--seconds", "1"));
     CHECK(s.status == 3 && strstr(s.err, "--glove-calibration: "), "%d: %s", s.status, s.err);
     said(&s, dir, cli_run,
-         WORDS("run", "--scene", "bilateral", "--glove-calibration", image, "--seconds", "1"));
+        WORDS("run", "--scene", "bilateral", "--glove-calibration", image, "--seconds", "1"));
     CHECK(s.status == 2 && strstr(s.err, "--glove-calibration: the simulated glove is calibrated"),
-          "%d: %s", s.status, s.err);
+        "%d: %s", s.status, s.err);
     far.fixed = 0;
     end();
     said_clean(dir);
@@ -578,7 +571,7 @@ TEST(what_it_cannot_use_it_names)
         const char *path, *says;
     } row[] = {
         {"/tmp/no/such/line",
-         "--serial: /tmp/no/such/line: No such file or directory: is it plugged in?"},
+            "--serial: /tmp/no/such/line: No such file or directory: is it plugged in?"},
         {"/dev/null", "--serial: /dev/null: is no serial line: give a serial line"},
     };
     for (size_t i = 0; i < LEN(row); i++) {
@@ -608,14 +601,14 @@ TEST(what_it_cannot_use_it_names)
 TEST(a_name_that_is_no_serial_line_is_refused)
 {
     CHECK(glove_tty_open(&tty, "/tmp/no/such/line", 90) < 0 && errno == ENOENT, "%s",
-          strerror(errno));
+        strerror(errno));
     CHECK(glove_tty_open(&tty, "/dev/null", 90) < 0 && errno == ENOTTY, "%s", strerror(errno));
 }
 
 TEST_MAIN("sim/glove_serial", frames_come_at_the_rate_that_was_asked_for,
-          the_line_is_its_own_while_it_is_open, a_glove_that_takes_no_command_is_heard_all_the_same,
-          whatever_it_does_no_wrong_frame_comes_and_the_next_good_ones_do,
-          a_device_that_is_pulled_out_ages_and_comes_back, a_name_that_is_no_serial_line_is_refused,
-          the_box_takes_its_silence_for_a_lost_glove, the_command_writes_rows_or_a_log,
-          a_box_that_goes_on_has_it_for_its_glove, its_nominal_calibration_is_the_published_one,
-          a_user_calibrates_it_by_poses, what_it_cannot_use_it_names);
+    the_line_is_its_own_while_it_is_open, a_glove_that_takes_no_command_is_heard_all_the_same,
+    whatever_it_does_no_wrong_frame_comes_and_the_next_good_ones_do,
+    a_device_that_is_pulled_out_ages_and_comes_back, a_name_that_is_no_serial_line_is_refused,
+    the_box_takes_its_silence_for_a_lost_glove, the_command_writes_rows_or_a_log,
+    a_box_that_goes_on_has_it_for_its_glove, its_nominal_calibration_is_the_published_one,
+    a_user_calibrates_it_by_poses, what_it_cannot_use_it_names);

@@ -16,8 +16,8 @@ TEST(the_selftest_gives_the_papers_rows)
     for (size_t i = 0; i < LEN(seed) * LEN(rate); i++) {
         double pp;
         said(&s, dir, lab_glove,
-             WORDS("glove", "--selftest", "--seed", seed[i % LEN(seed)], "--rate",
-                   rate[i / LEN(seed)], "--seconds", i / LEN(seed) == 2 ? "2" : "30"));
+            WORDS("glove", "--selftest", "--seed", seed[i % LEN(seed)], "--rate",
+                rate[i / LEN(seed)], "--seconds", i / LEN(seed) == 2 ? "2" : "30"));
         CHECK(s.status == 0, "status %d: %s%s", s.status, s.err, s.out);
         pp = number_after(s.out, "joint angle     ", 0);
         CHECK(pp >= 5.79 && pp <= 6.42, "%g mV", pp); /* a code either side of 6.1 */
@@ -26,7 +26,7 @@ TEST(the_selftest_gives_the_papers_rows)
         pp = number_after(s.out, "motor current   ", 0);
         CHECK(pp > 35 && pp < 47.8, "%g mA", pp); /* its bound, and a code */
         CHECK(strstr(s.out, "20 V                         11   6.1 mV            11\n") != NULL,
-              "%s", s.out);
+            "%s", s.out);
         CHECK(strstr(s.out, " 9   1 encoder step     9\n") != NULL, "%s", s.out);
         CHECK(strstr(s.out, " 7   47.2 mA            7\n") != NULL, "%s", s.out);
         CHECK(strstr(s.out, "changes of its 22 angles 0\n") != NULL, "%s", s.out);
@@ -42,11 +42,9 @@ TEST(a_low_pass_gives_bits_for_delay)
         const char *fc;
         double rms, delay_ms;
         int bits_lo, bits_hi;
-    } row[] = {{"\n       300", 0.577, 0.7503, 12, 12},
-               {"\n       100", 0.333, 2.2508, 12, 13},
-               {"\n        30", 0.182, 7.5026, 13, 14},
-               {"\n        10", 0.105, 22.508, 14, 15},
-               {"\n         3", 0.0577, 75.026, 15, 16}};
+    } row[] = {{"\n       300", 0.577, 0.7503, 12, 12}, {"\n       100", 0.333, 2.2508, 12, 13},
+        {"\n        30", 0.182, 7.5026, 13, 14}, {"\n        10", 0.105, 22.508, 14, 15},
+        {"\n         3", 0.0577, 75.026, 15, 16}};
     const char *dir = said_dir();
     said(&s, dir, lab_glove, WORDS("glove", "--selftest", "--seconds", "30"));
     for (size_t i = 0; i < LEN(row); i++) {
@@ -57,7 +55,7 @@ TEST(a_low_pass_gives_bits_for_delay)
         CHECK(pp > 5.2 * row[i].rms && pp < 9.5 * row[i].rms, "%s: %g mV", row[i].fc, pp);
         CHECK(bits >= row[i].bits_lo && bits <= row[i].bits_hi, "%s: %d bits", row[i].fc, bits);
         CHECK(delay > row[i].delay_ms - 0.08 && delay < row[i].delay_ms + 0.02, "%s: %g ms",
-              row[i].fc, delay);
+            row[i].fc, delay);
     }
     CHECK(strstr(s.out, "\n      none") != NULL, "%s", s.out);
     CHECK(number_after(strstr(s.out, "\n      none"), "ms", 0) > 1000, "a quantizer alone flips");
@@ -85,7 +83,7 @@ TEST(too_much_noise_falls_short)
     said(&s, dir, lab_glove, WORDS("glove", "--selftest", "--travel", "0.033"));
     CHECK(s.status == 1 && strstr(s.out, "497)") &&
               strstr(s.out, " 8   1 encoder step     9   falls"),
-          "%s", s.out);
+        "%s", s.out);
     said(&s, dir, lab_glove, WORDS("glove", "--selftest", "--device", "decode=4"));
     CHECK(s.status == 0 && strstr(s.out, " 11   1 encoder step     9\n"), "%s", s.out);
     said_clean(dir);
@@ -98,7 +96,7 @@ TEST(a_dead_glove_fails)
     said(&s, dir, lab_glove, WORDS("glove", "--selftest", "--device", "excite=0.1"));
     CHECK(s.status == 1, "%d: %s", s.status, s.out);
     CHECK(strstr(s.out, "Not believed: ThumbRotate ThumbMPJ ") && strstr(s.out, " WristYaw\n"),
-          "%s", s.out);
+        "%s", s.out);
     said_clean(dir);
 }
 
@@ -112,22 +110,22 @@ TEST(frames_have_a_rate_of_their_own)
         {"2000", "every=5", "interval=0.000004", "\n4000 frames of 22 channels at 400 Hz, 10 s"},
         {"2000", "every=1", "interval=0.00006", "\n6667 frames of 22 channels at 666.667 Hz, 10 s"},
         {"20000", "every=1", "interval=0.000004",
-         "\n100000 frames of 22 channels at 10000 Hz, 10 s"}};
+            "\n100000 frames of 22 channels at 10000 Hz, 10 s"}};
     const char *dir = said_dir();
     for (size_t i = 0; i < LEN(row); i++) {
         said(&s, dir, lab_glove,
-             WORDS("glove", "--selftest", "--rate", row[i].rate, "--set", row[i].set, "--device",
-                   row[i].device));
+            WORDS("glove", "--selftest", "--rate", row[i].rate, "--set", row[i].set, "--device",
+                row[i].device));
         CHECK(s.status == 0 && strstr(s.out, row[i].says), "row %zu: %d: %s", i, s.status, s.out);
         CHECK(number_after(strstr(s.out, "\n        30"), "mV", 1) < 7.52, "row %zu: %s", i, s.out);
     }
     said(&s, dir, lab_glove,
-         WORDS("glove", "--record", "/dev/null", "--set", "every=5", "--set", "glove_fc=199"));
+        WORDS("glove", "--record", "/dev/null", "--set", "every=5", "--set", "glove_fc=199"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     said(&s, dir, lab_glove,
-         WORDS("glove", "--record", "/dev/null", "--set", "every=5", "--set", "glove_fc=201"));
+        WORDS("glove", "--record", "/dev/null", "--set", "every=5", "--set", "glove_fc=201"));
     CHECK(s.status == 2 && strstr(s.err, "at or above half the rate"), "of 400 Hz: %d: %s",
-          s.status, s.err);
+        s.status, s.err);
     said_clean(dir);
 }
 
@@ -141,7 +139,7 @@ TEST(the_selftest_takes_recordings)
         for (int i = 0; i < SENSORS; i++) {
             char cell[16];
             snprintf(cell, sizeof cell, "%d%c", 1000 * i + n % 4 + (i == 5 ? n % 2 * 29 : 0),
-                     i < 21 ? ',' : '\n');
+                i < 21 ? ',' : '\n');
             strcat(text, cell);
         }
     }
@@ -149,15 +147,14 @@ TEST(the_selftest_takes_recordings)
     said(&s, dir, lab_glove, WORDS("glove", "--selftest", "--csv", csv, "--rate", "100"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     CHECK(strstr(s.out, "(32 codes)") && strstr(s.out, "IndexPIJ") && strstr(s.out, " 11   6.1 mV"),
-          "%s", s.out);
+        "%s", s.out);
     CHECK(strstr(s.out, "motor") == strstr(s.out, "motor at rest"), "no motor in it: %s", s.out);
-    said(
-        &s, dir, lab_glove,
-        WORDS("glove", "--selftest", "--csv", csv, "--rate", "100", "--to", "0.01", "--span", "5"));
-    CHECK(s.status == 0 && strstr(s.out, "(1 codes)") && strstr(s.out, " 14   6.1 mV"), "%s",
-          s.out);
     said(&s, dir, lab_glove,
-         WORDS("glove", "--selftest", "--csv", csv, "--rate", "100", "--from", "0.2"));
+        WORDS("glove", "--selftest", "--csv", csv, "--rate", "100", "--to", "0.01", "--span", "5"));
+    CHECK(
+        s.status == 0 && strstr(s.out, "(1 codes)") && strstr(s.out, " 14   6.1 mV"), "%s", s.out);
+    said(&s, dir, lab_glove,
+        WORDS("glove", "--selftest", "--csv", csv, "--rate", "100", "--from", "0.2"));
     CHECK(s.status == 2 && strstr(s.err, "it ends at 0.2 s"), "%d: %s", s.status, s.err);
     said(&s, dir, lab_glove, WORDS("glove", "--record", log, "--seconds", "5"));
     CHECK_EQ_I64(s.status, 0);
@@ -194,13 +191,13 @@ TEST(skew_grows_with_interval_and_speed)
     }
     for (int c = 0; c < 4; c++) {
         CHECK(um[0][4][c] > 4.95 * um[0][0][c] && um[0][4][c] < 5.05 * um[0][0][c],
-              "interval, column %d", c);
+            "interval, column %d", c);
         CHECK(um[1][0][c] > 2.47 * um[0][0][c] && um[1][0][c] < 2.53 * um[0][0][c],
-              "speed, column %d", c);
+            "speed, column %d", c);
     }
     /* Once found to be so: also which channel comes first matters. */
     CHECK(um[0][0][0] > 36.0 && um[0][0][0] < 36.6 && um[0][0][2] > 12.3 && um[0][0][2] < 12.6,
-          "%g %g um", um[0][0][0], um[0][0][2]);
+        "%g %g um", um[0][0][0], um[0][0][2]);
     /* 338 deg/s at three joints, 25 mm at each lever: below 5.9 * 0.105 * (1 + 0.48 + 0.24) m/s */
     CHECK(um[0][0][0] > 20 && um[0][0][0] < 88e-6 * 1.1e6, "%g um", um[0][0][0]);
     CHECK(um[0][0][2] < um[0][0][0] / 2 && um[0][0][1] < um[0][0][0], "%g um", um[0][0][2]);
@@ -208,5 +205,5 @@ TEST(skew_grows_with_interval_and_speed)
 }
 
 TEST_MAIN("glove_table1", the_selftest_gives_the_papers_rows, a_low_pass_gives_bits_for_delay,
-          too_much_noise_falls_short, a_dead_glove_fails, frames_have_a_rate_of_their_own,
-          the_selftest_takes_recordings, skew_grows_with_interval_and_speed);
+    too_much_noise_falls_short, a_dead_glove_fails, frames_have_a_rate_of_their_own,
+    the_selftest_takes_recordings, skew_grows_with_interval_and_speed);

@@ -9,12 +9,12 @@
 static const char *dir;
 static struct said s;
 
-static void refused_by(int (*command)(int, char **), int status, const char *says,
-                       const char *const *word)
+static void refused_by(
+    int (*command)(int, char **), int status, const char *says, const char *const *word)
 {
     said(&s, dir, command, word);
     CHECK(s.status == status && strstr(s.err, says) != NULL, "status %d, want %d and %s: %s",
-          s.status, status, says, s.err);
+        s.status, status, says, s.err);
     CHECK(s.out[0] == '\0', "it ran: %s", s.out);
 }
 
@@ -29,15 +29,15 @@ TEST(refusals)
     refused(2, "--gpio: without --pace", WORDS("drop", "--rate", "200", "--gpio", LINES));
     refused(2, "--gpio: one rate and one run", WORDS("drop", "--pace", "--gpio", LINES));
     refused_by(lab_drop, 2, "--gpio: one rate and one run",
-               WORDS("drop", "--rate", "200", "--pace", "--spread", "2", "--gpio", LINES));
+        WORDS("drop", "--rate", "200", "--pace", "--spread", "2", "--gpio", LINES));
     refused_by(lab_drop, 2, "--gpio: one rate and one run",
-               WORDS("drop", "--rate", "200", "--pace", "--sweep", "--gpio", LINES));
+        WORDS("drop", "--rate", "200", "--pace", "--sweep", "--gpio", LINES));
     refused(2, "--gpio: given twice",
-            WORDS("drop", "--rate", "200", "--pace", "--gpio", LINES, "--gpio", LINES));
-    refused(2, "--gpio: estopp=4: there are",
-            WORDS("drop", "--pace", "--gpio", "gpiochip0:estopp=4"));
+        WORDS("drop", "--rate", "200", "--pace", "--gpio", LINES, "--gpio", LINES));
+    refused(
+        2, "--gpio: estopp=4: there are", WORDS("drop", "--pace", "--gpio", "gpiochip0:estopp=4"));
     refused(3, "--gpio: this program was built without libgpiod: install libgpiod-dev",
-            WORDS("drop", "--rate", "200", "--pace", "--gpio", LINES));
+        WORDS("drop", "--rate", "200", "--pace", "--gpio", LINES));
     said_clean(dir);
 }
 

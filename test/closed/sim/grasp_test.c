@@ -57,8 +57,8 @@ TEST(five_fingers_hold_one_ball_at_once)
         CHECK_EQ_I64(bilateral_run(&c, &r), 0);
         CHECK_EQ_I64(r.faults, 0);
         CHECK(held(&r) > 1000,
-              "%g m/s: %zu ticks of half a millisecond with more than 1 N at each of five", mps[k],
-              held(&r));
+            "%g m/s: %zu ticks of half a millisecond with more than 1 N at each of five", mps[k],
+            held(&r));
         for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
             CHECK(r.finger[f].unfrozen == 0, "finger %u: felt before its freeze", f);
         }
@@ -94,4 +94,4 @@ TEST(a_mesh_is_felt_where_there_are_rays_into_it_and_else_it_is_said_what_is_mis
 }
 
 TEST_MAIN("five fingers on one ball; a mesh", five_fingers_hold_one_ball_at_once,
-          a_mesh_is_felt_where_there_are_rays_into_it_and_else_it_is_said_what_is_missing);
+    a_mesh_is_felt_where_there_are_rays_into_it_and_else_it_is_said_what_is_missing);

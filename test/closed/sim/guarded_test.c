@@ -48,8 +48,8 @@ TEST(no_contact_gives_out_more_than_the_bound)
             for (int on = 1; on <= 2; on++) {
                 const struct table2_result r = run(p->rate_Hz, k, b, on, NULL);
                 CHECK(r.done && r.guard.ticks > 0 && r.guard.out_J <= ROUND * r.guard.bound_J,
-                      "%g Hz, k %g, b %g, on %d: %g of %g mJ", p->rate_Hz, k, b, on,
-                      1e3 * r.guard.out_J, 1e3 * r.guard.bound_J);
+                    "%g Hz, k %g, b %g, on %d: %g of %g mJ", p->rate_Hz, k, b, on,
+                    1e3 * r.guard.out_J, 1e3 * r.guard.bound_J);
             }
         }
     }
@@ -66,10 +66,10 @@ TEST(stable_gains_lose_nothing)
         const struct table2_result late = run(p->rate_Hz, p->k_Npm, p->b_Nspm, 2, NULL);
         CHECK(in_time.done && in_time.guard.force_Ns > 0.1 && in_time.guard.acted == 0 &&
                   in_time.b_Npm == off.b_Npm && in_time.oscillating == off.oscillating,
-              "%g Hz", p->rate_Hz);
-        CHECK(late.guard.taken_Ns < 1e-3 * late.guard.force_Ns &&
-                  late.oscillating == off.oscillating,
-              "%g Hz: %g of %g Ns", p->rate_Hz, late.guard.taken_Ns, late.guard.force_Ns);
+            "%g Hz", p->rate_Hz);
+        CHECK(
+            late.guard.taken_Ns < 1e-3 * late.guard.force_Ns && late.oscillating == off.oscillating,
+            "%g Hz: %g of %g Ns", p->rate_Hz, late.guard.taken_Ns, late.guard.force_Ns);
     }
 }
 
@@ -83,7 +83,7 @@ TEST(it_damps_what_oscillates)
         const struct table2_result on =
             run(cell[i].rate_Hz, cell[i].k_Npm, cell[i].b_Nspm, 2, NULL);
         CHECK(off.oscillating >= 3 && on.oscillating <= 1, "%zu: %d, with it %d of %d", i,
-              off.oscillating, on.oscillating, on.falls);
+            off.oscillating, on.oscillating, on.falls);
     }
 }
 
@@ -142,16 +142,16 @@ TEST(no_run_in_a_wall_that_owes)
     par.drop.own.q_lim_m_q30 = -EXH_Q(15, 1000, EXH_Q_POS);
     for (int n = 0; n < 20; n++) { at(cnt -= 4, EXH_CMD_NONE); }
     CHECK(exh_safety_is_running(&box.drop.safety) && box.passivity.energy_Ncnt_q20 < 0, "state %d",
-          told.drop.state);
+        told.drop.state);
     at(cnt, EXH_CMD_OFF);
     for (int n = 0; n < 100; n++) { at(cnt, EXH_CMD_NONE); }
     CHECK_EQ_I64(told.drop.state, EXH_STATE_OFF);
     at(cnt, EXH_CMD_RUN);
     for (int n = 0; n < 1300; n++) { at(cnt, EXH_CMD_NONE); }
     CHECK(told.drop.state == EXH_STATE_OFF && told.drop.arm_step == EXH_ARM_SMALL_FORCE,
-          "state %d, step %d", told.drop.state, told.drop.arm_step);
+        "state %d, step %d", told.drop.state, told.drop.arm_step);
 }
 
 TEST_MAIN("guarded", its_state_is_seen, no_run_in_a_wall_that_owes,
-          no_contact_gives_out_more_than_the_bound, stable_gains_lose_nothing,
-          it_damps_what_oscillates, its_log_replays);
+    no_contact_gives_out_more_than_the_bound, stable_gains_lose_nothing, it_damps_what_oscillates,
+    its_log_replays);

@@ -12,12 +12,12 @@
 static struct sim_exo_par exo_par;
 
 /* A row of the timed kind: knuckle, first and last joint of the index, the rest 0. */
-static void timed(char *to, size_t cap, double minute, double second, double knuckle, double first,
-                  double last)
+static void timed(
+    char *to, size_t cap, double minute, double second, double knuckle, double first, double last)
 {
     const size_t n = strlen(to);
     snprintf(to + n, cap - n, "2014 09 15 23 %.0f %.5f 1 0 0 0 0 %.6f %.6f %.6f 0.3", minute,
-             second, knuckle, first, last);
+        second, knuckle, first, last);
     for (int k = 8; k < 23; k++) { strcat(to, " 0"); }
     strcat(to, "\n");
 }
@@ -35,17 +35,17 @@ TEST(rows_with_a_clock_go_onto_an_even_grid)
          n++) { /* the knuckle bends, counted down, at 1 rad/s, by a bad clock */
         const double t = n * 0.0155 + (n % 3) * 0.004;
         timed(text, sizeof text, t + 59.2 < 60 ? 58 : 59, t + 59.2 < 60 ? t + 59.2 : t - 0.8, -t,
-              -0.5, -0.25);
+            -0.5, -0.25);
     }
     name = file_of(text);
     CHECK_EQ_I64(hand_record_read(&h, name, 5, &exo_par), 0);
     (void)remove(name);
-    CHECK(h.row_hz == 60 && h.rows == (long)(1.5345 * 60) + 1, "%ld rows at %g Hz", h.rows,
-          h.row_hz);
+    CHECK(
+        h.row_hz == 60 && h.rows == (long)(1.5345 * 60) + 1, "%ld rows at %g Hz", h.rows, h.row_hz);
     for (long n = 0; n < h.rows; n++) {
         const double want = arm[0] * ((double)n / 60) + arm[1] * 0.5 + arm[2] * 0.25;
         CHECK(fabs(h.string_m[1][n] - want) < 1e-6, "row %ld: %.9f, want %.9f", n, h.string_m[1][n],
-              want);
+            want);
         CHECK(h.string_m[0][n] == 0 && h.string_m[2][n] == 0 && h.string_m[4][n] == 0, "others");
     }
     hand_record_free(&h);
@@ -74,7 +74,7 @@ TEST(every_finger_gets_its_own_angles)
         const double *arm = exo_par.finger[i].arm_m;
         const double m = 0.01 * (arm[0] * want[i][0] + arm[1] * want[i][1] + arm[2] * want[i][2]);
         CHECK(fabs(h.string_m[i][30] - m) < 1e-9, "finger %u: %.6f, want %.6f", i,
-              h.string_m[i][30], m);
+            h.string_m[i][30], m);
     }
     hand_record_free(&h);
 }
@@ -110,10 +110,9 @@ TEST(bad_files_are_refused_with_the_line)
     static const struct {
         const char *first, *second, *why;
     } row[] = {{"1", "1", "line 2: its clock stands or jumps"},
-               {"2", "1", "line 2: its clock stands or jumps"},
-               {"1", "12", "line 2: its clock stands or jumps"},
-               {"1", "2 2", "line 2: not 30 numbers"},
-               {"1", "x", "line 2: not 30 numbers"}};
+        {"2", "1", "line 2: its clock stands or jumps"},
+        {"1", "12", "line 2: its clock stands or jumps"}, {"1", "2 2", "line 2: not 30 numbers"},
+        {"1", "x", "line 2: not 30 numbers"}};
     static const char *const word[] = {"hand", NULL};
     struct said s;
     char dir[] = "/tmp/hand_record_test.XXXXXX", path[64];
@@ -132,7 +131,7 @@ TEST(bad_files_are_refused_with_the_line)
         (void)remove(bad_path);
         CHECK(s.status == (missing ? 3 : 2) &&
                   strstr(s.err, missing ? "No such file" : row[i].why) != NULL,
-              "row %zu: %d, %s", i, s.status, s.err);
+            "row %zu: %d, %s", i, s.status, s.err);
     }
     snprintf(path, sizeof path, "%s/said.out", dir);
     (void)remove(path);
@@ -177,7 +176,7 @@ static void follow(const char *file, double row_hz, double run_s)
         }
     }
     check_note("%s: %.1f s, %.1f..%.1f mm of string, up to %.2f m/s, at most %.1f mm off", file,
-               (double)h.rows / h.row_hz, 1e3 * least_m, 1e3 * most_m, fastest_mps, 1e3 * late_m);
+        (double)h.rows / h.row_hz, 1e3 * least_m, 1e3 * most_m, fastest_mps, 1e3 * late_m);
     CHECK(most_m > 0.02 && most_m < 0.13 && least_m >= 0, "%.4f..%.4f m", least_m, most_m);
     CHECK(late_m > 0 && late_m < 0.01, "%.4f m off", late_m);
     CHECK(fastest_mps > 0.02 && fastest_mps < 3, "%.3f m/s", fastest_mps);
@@ -193,5 +192,5 @@ TEST(fingers_follow_real_hands)
 }
 
 TEST_MAIN("hand_record", rows_with_a_clock_go_onto_an_even_grid, every_finger_gets_its_own_angles,
-          rows_without_a_clock_have_the_rate_they_are_given, bad_files_are_refused_with_the_line,
-          fingers_follow_real_hands);
+    rows_without_a_clock_have_the_rate_they_are_given, bad_files_are_refused_with_the_line,
+    fingers_follow_real_hands);

@@ -18,9 +18,9 @@ static const struct {
     const char *path;
     int columns, first; /* in a line; where the angles begin, radians */
 } file[] = {{"glove-cyberglove-libras-alphabet/alphabet.csv", 22, 0},
-            {"glove-cyberglove-graspdb14/00_calib-rad-su01.txt", 30, 7},
-            {"glove-cyberglove-graspdb14/10_ex01-rad-003-grasp-su04.txt", 30, 7},
-            {"glove-cyberglove-graspdb14/04_ex01-rad-045-grasp-su03.txt", 30, 7}};
+    {"glove-cyberglove-graspdb14/00_calib-rad-su01.txt", 30, 7},
+    {"glove-cyberglove-graspdb14/10_ex01-rad-003-grasp-su04.txt", 30, 7},
+    {"glove-cyberglove-graspdb14/04_ex01-rad-045-grasp-su03.txt", 30, 7}};
 #define FILES (sizeof file / sizeof file[0])
 
 struct tally {
@@ -63,19 +63,14 @@ static int numbers(const char *line, double *v, int cap)
     return n;
 }
 
-static int32_t turn_q32(double rad)
-{
-    return (int32_t)(rad * 683565275.5764316);
-}
+static int32_t turn_q32(double rad) { return (int32_t)(rad * 683565275.5764316); }
 
 /* The glove's 22 from the model's 22: bending turned round, and turns to the side as the
  * distance between neighbours. */
 static void to_sensors(const double *column, int32_t *sensor)
 {
-    static const uint8_t bend[][2] = {{EXH_GLOVE_INDEX_MPJ, 4},
-                                      {EXH_GLOVE_MIDDLE_MPJ, 8},
-                                      {EXH_GLOVE_RING_MPJ, 12},
-                                      {EXH_GLOVE_LITTLE_MPJ, 16}};
+    static const uint8_t bend[][2] = {{EXH_GLOVE_INDEX_MPJ, 4}, {EXH_GLOVE_MIDDLE_MPJ, 8},
+        {EXH_GLOVE_RING_MPJ, 12}, {EXH_GLOVE_LITTLE_MPJ, 16}};
     memset(sensor, 0, EXH_GLOVE_SENSORS * sizeof sensor[0]);
     for (size_t i = 0; i < 4; i++) {
         sensor[EXH_GLOVE_THUMB_ROTATE + i] = turn_q32(-column[i]);
@@ -100,7 +95,7 @@ static void follow(const double *column, struct tally *t)
         for (unsigned j = 0; j < EXH_HAND_JOINTS; j++) {
             const struct exh_hand_joint *limit = &exh_hit2_map.joint[f][j];
             CHECK(q[j] >= limit->lo_turn_q32 && q[j] <= limit->hi_turn_q32,
-                  "finger %u, joint %u: %" PRId32, f, j, q[j]);
+                "finger %u, joint %u: %" PRId32, f, j, q[j]);
             t->clamped[f][j] += clamped >> j & 1;
         }
     }
@@ -124,10 +119,10 @@ static void print(const char *name, const struct tally *t)
     for (unsigned f = 0; f < EXH_FINGERS; f++) {
         for (unsigned j = 0; j < EXH_HAND_JOINTS; j++) {
             n += snprintf(text + n, sizeof text - (size_t)n, "%s%.2f",
-                          j   ? " "
-                          : f ? " | "
-                              : "",
-                          100.0 * t->clamped[f][j] / t->rows);
+                j   ? " "
+                : f ? " | "
+                    : "",
+                100.0 * t->clamped[f][j] / t->rows);
         }
     }
     check_note("%s, %u rows: clamped %% q0 q1 q2 of thumb to little: %s", name, t->rows, text);
@@ -155,15 +150,15 @@ TEST(joints_keep_their_limits)
     }
     if (missing > 0) {
         check_note("%u of %u recordings are not there: share clamped not judged", missing,
-                   (unsigned)FILES);
+            (unsigned)FILES);
         return;
     }
     print("all", &all);
     for (unsigned k = 0; k < EXH_FINGERS * EXH_HAND_JOINTS; k++) {
         CHECK(1000 * (uint64_t)all.clamped[k / 3][k % 3] <=
                   CLAMPED_MAX_PER_MILLE * (uint64_t)all.rows,
-              "finger %u, joint %u: %u of %u rows clamped", k / 3, k % 3, all.clamped[k / 3][k % 3],
-              all.rows);
+            "finger %u, joint %u: %u of %u rows clamped", k / 3, k % 3, all.clamped[k / 3][k % 3],
+            all.rows);
     }
 }
 

@@ -37,15 +37,15 @@ static void check_same(const struct run *all, const struct run *r, const struct 
 {
     CHECK(all->ticks == r->ticks && all->faults == r->faults && all->log.falls == r->log.falls &&
               all->log.samples == r->log.samples,
-          "%u Hz, %g N/m, %g Ns/m: %" PRIu64 " and %" PRIu64 " ticks, faults %x and %x", c->rate_Hz,
-          c->k_Npm, c->b_Nspm, all->ticks, r->ticks, all->faults, r->faults);
+        "%u Hz, %g N/m, %g Ns/m: %" PRIu64 " and %" PRIu64 " ticks, faults %x and %x", c->rate_Hz,
+        c->k_Npm, c->b_Nspm, all->ticks, r->ticks, all->faults, r->faults);
     for (size_t i = 0; i < all->log.falls; i++) {
         CHECK(all->log.start[i] == r->log.start[i], "fall %zu", i);
     }
     for (size_t i = 0; i < all->log.samples; i++) {
         CHECK(sample_same(&all->log.sample[i], &r->log.sample[i]),
-              "%u Hz, %g N/m, %g Ns/m: sample %zu of %zu", c->rate_Hz, c->k_Npm, c->b_Nspm, i,
-              all->log.samples);
+            "%u Hz, %g N/m, %g Ns/m: sample %zu of %zu", c->rate_Hz, c->k_Npm, c->b_Nspm, i,
+            all->log.samples);
     }
 }
 
@@ -115,7 +115,7 @@ TEST(what_is_not_run_is_what_running_gives)
             r[c.all] = table2_measure_more(&c, NULL, TABLE2_SAME, readings_judge);
         }
         CHECK(r[0].done && r[1].done && verdicts_same(&r[0], &r[1]), "%u Hz, %g N/m, friction %s",
-              c.rate_Hz, c.k_Npm, friction[i / LEN(rate_Hz) / LEN(part)].name);
+            c.rate_Hz, c.k_Npm, friction[i / LEN(rate_Hz) / LEN(part)].name);
         if (r[0].oscillating == r[0].falls) {
             CHECK(not_run == 0, "%u Hz, %g N/m: %" PRIu64, c.rate_Hz, c.k_Npm, not_run);
         }
@@ -132,7 +132,7 @@ TEST(what_is_not_run_is_what_running_gives)
     check_note("%d walls stable, %d unstable, %d at times: the same either way; of the ticks of "
                "stable ones with friction "
                "%.0f %% need not be run",
-               stable, unstable, marginal, 100.0 * (double)known / (double)all);
+        stable, unstable, marginal, 100.0 * (double)known / (double)all);
 }
 
 /* A mass that stands while something goes on behind it, or a controller in which more than usual
@@ -145,38 +145,14 @@ TEST(what_still_happens_at_rest_is_run)
         struct run_setting set[2];
         unsigned faults;
     } row[] = {
-        {"I2t takes current away, unfelt as yet",
-         20000,
-         5000,
-         30,
-         0.0472,
-         10e-3,
-         {{"i_cont", 1.35}, {"peak_time", 300}},
-         0},
-        {"I2t lets the mass go",
-         2000,
-         5000,
-         30,
-         0.0472,
-         0,
-         {{"i_cont", 1.0}, {"peak_time", 1000}},
-         0},
-        {"not one count for a second is a fault",
-         2000,
-         5000,
-         30,
-         0.0472,
-         0,
-         {{"stuck_time", 1000}, {"f0", 0.107}},
-         EXH_FAULT_STUCK},
-        {"noise adds up to a fault of tracking",
-         2000,
-         5000,
-         30,
-         0.6,
-         0,
-         {{"track_tol", 0.1}, {"track_time", 1}},
-         EXH_FAULT_TRACKING},
+        {"I2t takes current away, unfelt as yet", 20000, 5000, 30, 0.0472, 10e-3,
+            {{"i_cont", 1.35}, {"peak_time", 300}}, 0},
+        {"I2t lets the mass go", 2000, 5000, 30, 0.0472, 0, {{"i_cont", 1.0}, {"peak_time", 1000}},
+            0},
+        {"not one count for a second is a fault", 2000, 5000, 30, 0.0472, 0,
+            {{"stuck_time", 1000}, {"f0", 0.107}}, EXH_FAULT_STUCK},
+        {"noise adds up to a fault of tracking", 2000, 5000, 30, 0.6, 0,
+            {{"track_tol", 0.1}, {"track_time", 1}}, EXH_FAULT_TRACKING},
         {"at the force limit", 2000, 5000, 0, 0.0472, 0, {{"f_max", 4.6}, {"f0", 0.107}}, 0},
     };
     for (size_t i = 0; i < LEN(row); i++) {
@@ -192,7 +168,7 @@ TEST(what_still_happens_at_rest_is_run)
         CHECK_EQ_I64(run_drop(&c, &r), 0);
         CHECK((r.faults & row[i].faults) == row[i].faults, "%s: faults %x", row[i].name, r.faults);
         check_note("%s: %.0f %% of the ticks known", row[i].name,
-                   100.0 * (double)r.known / (double)r.ticks);
+            100.0 * (double)r.known / (double)r.ticks);
         run_free(&r);
     }
 }
@@ -261,7 +237,7 @@ TEST(what_is_called_still_does_not_move)
         if (!is) { continue; }
         CHECK(memcmp(&m.plant, &was, sizeof was) == 0, "%d: moved", i);
         CHECK(m.servo_s == passed.servo_s && m.now_s == passed.now_s && m.ref_A == passed.ref_A,
-              "%d: another time", i);
+            "%d: another time", i);
         CHECK(!sim_mass_pass(&passed, 1), "%d: passed the fall's end", i);
     }
     CHECK(still > 1000 && moved > 2000, "%d still, %d moved", still, moved);
@@ -306,10 +282,7 @@ static void seen(uint32_t tick, const struct exh_scene_in *in, const struct exh_
 {
     (void)tick, (void)in, (void)out;
 }
-static void given(uint32_t tick, struct exh_scene_in *in)
-{
-    (void)tick, (void)in;
-}
+static void given(uint32_t tick, struct exh_scene_in *in) { (void)tick, (void)in; }
 static void begun(const struct exh_scene *sc, struct exh_scene_board board)
 {
     (void)sc, (void)board;
@@ -340,5 +313,5 @@ TEST(whoever_watches_sees_every_tick)
 }
 
 TEST_MAIN("idle", what_is_not_run_is_what_running_gives, what_still_happens_at_rest_is_run,
-          a_velocity_still_on_its_way_is_run, what_is_called_still_does_not_move,
-          an_output_on_its_way_is_waited_for, whoever_watches_sees_every_tick);
+    a_velocity_still_on_its_way_is_run, what_is_called_still_does_not_move,
+    an_output_on_its_way_is_waited_for, whoever_watches_sees_every_tick);

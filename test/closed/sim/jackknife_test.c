@@ -28,7 +28,7 @@ static void check_tally(const struct tally *t, const char *name)
     CHECK(mean > 0.99 && mean < 1.01, "%s: mean %g of the slope", name, mean);
     CHECK(ratio2 > 0.8 * 0.8 && ratio2 < 1.2 * 1.2, "%s: width^2 is %g of expected", name, ratio2);
     CHECK(t->inside > 0.86 * t->runs && t->inside < 0.99 * t->runs, "%s: %d of %d contain it", name,
-          t->inside, t->runs);
+        t->inside, t->runs);
 }
 
 TEST(jackknife_width)

@@ -11,15 +11,11 @@ static const struct {
     int (*was)(int, char **), (*is)(int, char **);
     const char *name, *option[9];
 } moved[] = {
-    {cli_drop,
-     lab_drop,
-     "drop",
-     {"spread", "readings", "sweep", "grid", "shard", "border-check", "friction", "preset"}},
+    {cli_drop, lab_drop, "drop",
+        {"spread", "readings", "sweep", "grid", "shard", "border-check", "friction", "preset"}},
     {cli_bilateral, lab_bilateral, "bilateral", {"preset", "sweep", "check", "hands", "crisp"}},
-    {cli_glove,
-     lab_glove,
-     "glove",
-     {"selftest", "skew", "log", "from", "to", "span", "travel", "span-current"}},
+    {cli_glove, lab_glove, "glove",
+        {"selftest", "skew", "log", "from", "to", "span", "travel", "span-current"}},
     {cli_advise, lab_advise, "advise", {"judge", "out"}},
 };
 
@@ -33,14 +29,14 @@ TEST(an_option_says_where_it_went)
             char word[40], says[100];
             snprintf(word, sizeof word, "--%s", *o);
             snprintf(says, sizeof says, "exhand %s: %s: a study: `exhand-lab %s` has it",
-                     moved[i].name, word, moved[i].name);
+                moved[i].name, word, moved[i].name);
             said(&s, dir, moved[i].was,
-                 gains ? WORDS(moved[i].name, "gains", word) : WORDS(moved[i].name, word));
+                gains ? WORDS(moved[i].name, "gains", word) : WORDS(moved[i].name, word));
             CHECK(s.status == 2 && strncmp(s.err, says, strlen(says)) == 0, "%d: %s", s.status,
-                  s.err);
+                s.err);
             CHECK(strchr(s.err, '\n') == s.err + strlen(s.err) - 1, "%s", s.err);
             said(&s, dir, moved[i].is,
-                 gains ? WORDS(moved[i].name, "gains", "--help") : WORDS(moved[i].name, "--help"));
+                gains ? WORDS(moved[i].name, "gains", "--help") : WORDS(moved[i].name, "--help"));
             CHECK(s.status == 0 && strstr(s.out, word), "%s: %s", word, s.out);
         }
     }
@@ -62,7 +58,7 @@ TEST(a_command_says_where_it_went)
     for (size_t i = 0; i < LEN(gone); i++) {
         said(&s, dir, as_exhand, WORDS("exhand", gone[i], "--help"));
         CHECK(s.status == 2 && strstr(s.err, "a study: `exhand-lab") && s.out[0] == '\0', "%d: %s",
-              s.status, s.err);
+            s.status, s.err);
     }
     said(&s, dir, as_exhand, WORDS("exhand", "fault"));
     CHECK(s.status == 2 && strstr(s.err, "fault: no such command"), "%d: %s", s.status, s.err);
@@ -77,11 +73,11 @@ TEST(the_glove_wants_a_mode)
     const char *dir = said_dir();
     said(&s, dir, cli_glove, WORDS("glove"));
     CHECK(s.status == 2 && strstr(s.err, "what to do is missing: --csv, --record or --serial"),
-          "%d: %s", s.status, s.err);
+        "%d: %s", s.status, s.err);
     said(&s, dir, cli_glove, WORDS("glove", "--csv", "x", "--rate", "5", "--record", "y"));
     CHECK(s.status == 2 && strstr(s.err, "one at a time"), "%d: %s", s.status, s.err);
     said_clean(dir);
 }
 
-TEST_MAIN("lab", an_option_says_where_it_went, a_command_says_where_it_went,
-          the_glove_wants_a_mode);
+TEST_MAIN(
+    "lab", an_option_says_where_it_went, a_command_says_where_it_went, the_glove_wants_a_mode);

@@ -63,8 +63,8 @@ static void frame(void *ctx, struct sim_link *link, double t_s)
     CHECK(newest.number > peer.last, "%d after %d", newest.number, peer.last);
     peer.last = newest.number;
     newest.frame_s = t_s;
-    CHECK_EQ_I64(sim_link_send(&link->way[SIM_LINK_IN], t_s, &newest, sizeof newest),
-                 sizeof newest);
+    CHECK_EQ_I64(
+        sim_link_send(&link->way[SIM_LINK_IN], t_s, &newest, sizeof newest), sizeof newest);
 }
 
 /* Every tick sends its number; how many answers came, and the worst and best round trip. */
@@ -108,9 +108,12 @@ TEST(a_peer_in_this_process_answers_in_virtual_time)
         double delay_s, frame_s, least_s, most_s;
         int answers;
     } row[] = {
-        {0, 0, 0.001, 0.001, TICKS - 1},         {0.0103, 0, 0.021, 0.021, TICKS - 21},
-        {0.0004, 0, 0.001, 0.001, TICKS - 1},    {0.0103, 0.00251, 0.021, 0.022, 790},
-        {0, 0.01, 0.001, 0.001, TICKS / 10 - 1}, {0.2505, 0.01, 0.502, 0.502, 150},
+        {0, 0, 0.001, 0.001, TICKS - 1},
+        {0.0103, 0, 0.021, 0.021, TICKS - 21},
+        {0.0004, 0, 0.001, 0.001, TICKS - 1},
+        {0.0103, 0.00251, 0.021, 0.022, 790},
+        {0, 0.01, 0.001, 0.001, TICKS / 10 - 1},
+        {0.2505, 0.01, 0.502, 0.502, 150},
     };
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
         struct posix_config c = linked();
@@ -123,11 +126,11 @@ TEST(a_peer_in_this_process_answers_in_virtual_time)
         start(&c);
         answers = ticks(&least_s, &most_s);
         CHECK(answers >= row[i].answers - 6 && answers <= row[i].answers + 6, "row %zu: %d answers",
-              i, answers);
+            i, answers);
         CHECK(least_s > row[i].least_s - 1e-9 && least_s < row[i].least_s + 0.0010001,
-              "row %zu: %.6f s", i, least_s);
+            "row %zu: %.6f s", i, least_s);
         CHECK(most_s > row[i].most_s - 0.0010001 && most_s < row[i].most_s + 1e-9,
-              "row %zu: %.6f s", i, most_s);
+            "row %zu: %.6f s", i, most_s);
         for (int n = 0; row[i].frame_s > 0 && n < peer.frames; n++) {
             CHECK(peer.at_s[n] == n * row[i].frame_s, "frame %d at %.9f", n, peer.at_s[n]);
         }
@@ -200,16 +203,8 @@ TEST(a_bad_line_is_its_seed)
 
 TEST(bad_addresses_are_refused)
 {
-    static const char *const bad[] = {"",
-                                      "127.0.0.1",
-                                      ":80",
-                                      "127.0.0.1:",
-                                      "127.0.0.1:x",
-                                      "127.0.0.1:65536",
-                                      "localhost:80",
-                                      "127.0.0.1:-1",
-                                      "1.2.3:4",
-                                      "127.0.0.1:80 "};
+    static const char *const bad[] = {"", "127.0.0.1", ":80", "127.0.0.1:", "127.0.0.1:x",
+        "127.0.0.1:65536", "localhost:80", "127.0.0.1:-1", "1.2.3:4", "127.0.0.1:80 "};
     struct udp u;
     struct posix_config c = linked();
     struct exh_period T;
@@ -301,7 +296,7 @@ TEST(the_peer_is_whose_packet_was_good)
     c.line.udp_local = at;
     start(&c);
     CHECK(udp_open(&world, "127.0.0.1:0", at) == 0 && udp_open(&other, "127.0.0.1:0", at) == 0,
-          "sockets");
+        "sockets");
     post(&world, &good, EXH_WIRE_HELLO, 0);
     for (int n = 0; n < 20; n++) {
         post(&other, &bad, EXH_WIRE_HELLO, 1);  /* damaged */
@@ -365,7 +360,7 @@ static void end_world(pid_t pid)
     int status;
     CHECK_EQ_I64(kill(pid, SIGKILL), 0);
     CHECK(waitpid(pid, &status, 0) == pid && WIFSIGNALED(status), "it had ended by itself: %#x",
-          (unsigned)status);
+        (unsigned)status);
 }
 
 /* Ticks of the board, sending, until one answer with this mark comes: 1; 0 after patience_ms. */
@@ -498,8 +493,8 @@ TEST(a_socket_behind_a_bad_way)
 }
 
 TEST_MAIN("line", a_link_that_is_off_takes_nothing, a_peer_in_this_process_answers_in_virtual_time,
-          a_peer_that_takes_nothing_stops_nobody, too_long_a_packet_is_an_error,
-          a_bad_line_is_its_seed, bad_addresses_are_refused, strangers_and_cut_packets_are_dropped,
-          a_flood_is_taken_in_parts, the_peer_is_whose_packet_was_good,
-          two_processes_survive_each_others_restart, world_in_a_namespace,
-          controller_in_a_namespace, two_network_namespaces, a_socket_behind_a_bad_way);
+    a_peer_that_takes_nothing_stops_nobody, too_long_a_packet_is_an_error, a_bad_line_is_its_seed,
+    bad_addresses_are_refused, strangers_and_cut_packets_are_dropped, a_flood_is_taken_in_parts,
+    the_peer_is_whose_packet_was_good, two_processes_survive_each_others_restart,
+    world_in_a_namespace, controller_in_a_namespace, two_network_namespaces,
+    a_socket_behind_a_bad_way);

@@ -43,8 +43,8 @@ TEST(the_flow_is_the_closed_form)
         if (fabs(p - q) < 0.01 * q) { continue; } /* there the closed form cancels */
         for (size_t i = 0; i < LEN(row); i++) {
             CHECK(fabs(row[i].got - row[i].want) <= 1e-10 * (1e-3 + fabs(row[i].want)),
-                  "m %g c %g tau %g t %g, entry %zu: %.15g, want %.15g", m, c, tau, t, i,
-                  row[i].got, row[i].want);
+                "m %g c %g tau %g t %g, entry %zu: %.15g, want %.15g", m, c, tau, t, i, row[i].got,
+                row[i].want);
         }
     }
 }
@@ -80,7 +80,7 @@ TEST(flows_follow_each_other)
                 g += b.phi[i][j] * a.gamma[j];
                 for (int k = 0; k < p.n; k++) { sum += b.phi[i][k] * a.phi[k][j]; }
                 CHECK(fabs(sum - both.phi[i][j]) <= 1e-9 * (1 + fabs(sum)), "%d %d: %.15g %.15g", i,
-                      j, sum, both.phi[i][j]);
+                    j, sum, both.phi[i][j]);
             }
             CHECK(fabs(g - both.gamma[i]) <= 1e-9 * (1 + fabs(g)), "%d: %.15g", i, g);
         }
@@ -134,7 +134,7 @@ TEST(the_radius_of_known_eigenvalues)
         const struct matrix M = companion(row[i].real, row[i].reals, row[i].pair, row[i].pairs);
         const double rho = eigen_radius(&M);
         CHECK(fabs(rho - row[i].rho) <= row[i].error, "row %zu: %.15g, want %.15g", i, rho,
-              row[i].rho);
+            row[i].rho);
     }
 }
 
@@ -197,10 +197,10 @@ TEST(one_mass_has_the_radii_of_theory)
     } column[] = {{0, 0, 0}, {0, 1, 0}, {0, 1, 0.4e-3}, {5, 1, 0.4e-3}, {10, 0, 0}};
     for (size_t i = 0; i < LEN(row); i++) {
         for (size_t j = 0; j < LEN(column); j++) {
-            const double rho = one_mass(row[i].rate, row[i].k, row[i].b, 0.52, column[j].c,
-                                        column[j].h, column[j].tau);
+            const double rho = one_mass(
+                row[i].rate, row[i].k, row[i].b, 0.52, column[j].c, column[j].h, column[j].tau);
             CHECK(fabs(rho - row[i].rho[j]) <= 0.6e-9, "%g Hz, column %zu: %.10f, want %.9f",
-                  row[i].rate, j, rho, row[i].rho[j]);
+                row[i].rate, j, rho, row[i].rho[j]);
         }
     }
 }
@@ -209,7 +209,7 @@ TEST(one_mass_has_the_radii_of_theory)
 TEST(one_mass_has_the_border_of_theory)
 {
     static const double border[2][7] = {{.1810, .3273, .4435, .5333, .6000, .6462, .6857},
-                                        {.0592, .1032, .1316, .1440, .1397, .1181, .0202}};
+        {.0592, .1032, .1316, .1440, .1397, .1181, .0202}};
     static const double beta[7] = {.1, .2, .3, .4, .5, .6, .8};
     for (int d = 0; d < 2; d++) {
         for (int i = 0; i < 7; i++) {
@@ -217,7 +217,7 @@ TEST(one_mass_has_the_border_of_theory)
             const double rho_in = one_mass(1, in, beta[i], 1, 0, d, 0);
             const double rho_out = one_mass(1, out, beta[i], 1, 0, d, 0);
             CHECK(rho_in < 1 && rho_out > 1, "delay %d, beta %g: %.9f %.9f", d, beta[i], rho_in,
-                  rho_out);
+                rho_out);
         }
     }
 }
@@ -244,13 +244,13 @@ TEST(two_masses_have_the_radii_of_theory)
     static const struct {
         double m1, kc, rho[2];
     } row[] = {{.02, 20e3, {1.119, 1.268}}, {.02, 100e3, {1.189, 1.253}},
-               {.02, 500e3, {1.075, .982}}, {.1, 20e3, {.993, .995}},
-               {.1, 100e3, {.984, 1.039}},  {.1, 500e3, {1.030, 1.057}}};
+        {.02, 500e3, {1.075, .982}}, {.1, 20e3, {.993, .995}}, {.1, 100e3, {.984, 1.039}},
+        {.1, 500e3, {1.030, 1.057}}};
     for (size_t i = 0; i < LEN(row); i++) {
         for (int h = 0; h < 2; h++) {
             const double rho = two_masses(row[i].m1, row[i].kc, h);
             CHECK(fabs(rho - row[i].rho[h]) <= 0.6e-3, "row %zu, h %d: %.4f, want %.3f", i, h, rho,
-                  row[i].rho[h]);
+                row[i].rho[h]);
         }
     }
 }
@@ -260,8 +260,8 @@ TEST(the_device_has_the_radii_found_before)
 {
     static const struct {
         double rate, k, b, rho;
-    } row[] = {{90, 1500, 0, 1.031},   {100, 2000, 0, 1.023},    {200, 2000, 15, 1.144},
-               {500, 6000, 20, 1.100}, {1000, 10000, 40, 1.060}, {2000, 20000, 60, 1.023}};
+    } row[] = {{90, 1500, 0, 1.031}, {100, 2000, 0, 1.023}, {200, 2000, 15, 1.144},
+        {500, 6000, 20, 1.100}, {1000, 10000, 40, 1.060}, {2000, 20000, 60, 1.023}};
     struct sim_device d = sim_device_default();
     d.rotor_kg = 0.056392025322190724;
     d.cable_npm = 1791.4934353071067;
@@ -273,7 +273,7 @@ TEST(the_device_has_the_radii_found_before)
     for (size_t i = 0; i < LEN(row); i++) {
         const double rho = linear_rho(&d, 1 / row[i].rate, row[i].k, row[i].b, 2);
         CHECK(fabs(rho - row[i].rho) <= 0.6e-3, "%g Hz: %.4f, want %.3f", row[i].rate, rho,
-              row[i].rho);
+            row[i].rho);
     }
 }
 
@@ -292,8 +292,8 @@ TEST(a_stiff_string_is_one_mass)
     p = linear_two_mass(&d);
     CHECK(linear_monodromy(&M, &p, &w) == 0, "two");
     two = eigen_radius(&M);
-    p = linear_one_mass(d.mass_kg + d.rotor_kg, d.viscous_nspm,
-                        1 / (6.283185307179586 * d.current_hz));
+    p = linear_one_mass(
+        d.mass_kg + d.rotor_kg, d.viscous_nspm, 1 / (6.283185307179586 * d.current_hz));
     CHECK(linear_monodromy(&M, &p, &w) == 0, "one");
     one = eigen_radius(&M);
     CHECK(fabs(two - one) < 1e-6, "%.9f, want %.9f", two, one);
@@ -313,7 +313,7 @@ TEST(the_radius_has_no_step_at_a_whole_tick)
             rho[i] = eigen_radius(&M);
         }
         CHECK(fabs(rho[0] - rho[1]) < 1e-7 && fabs(rho[2] - rho[1]) < 1e-7, "%d: %.12f %.12f %.12f",
-              tick, rho[0], rho[1], rho[2]);
+            tick, rho[0], rho[1], rho[2]);
     }
 }
 
@@ -354,7 +354,7 @@ TEST(the_matrix_does_what_the_plant_does)
         }
         memcpy(z, next, sizeof z);
         CHECK(fabs(z[0] - p.q_m) < 1e-6 && fabs(z[2] - (p.x_m - taut_m)) < 1e-6,
-              "tick %d: q %.9f and %.9f, x %.9f and %.9f", tick, z[0], p.q_m, z[2], p.x_m - taut_m);
+            "tick %d: q %.9f and %.9f, x %.9f and %.9f", tick, z[0], p.q_m, z[2], p.x_m - taut_m);
     }
 }
 
@@ -367,9 +367,9 @@ TEST(too_long_a_delay_is_refused)
 }
 
 TEST_MAIN("linear", the_flow_is_the_closed_form, the_flow_without_lag_is_the_closed_form,
-          flows_follow_each_other, the_radius_of_known_eigenvalues, the_root_squared_is_the_number,
-          the_radius_does_not_hang_on_units, one_mass_has_the_radii_of_theory,
-          one_mass_has_the_border_of_theory, two_masses_have_the_radii_of_theory,
-          the_device_has_the_radii_found_before, a_stiff_string_is_one_mass,
-          the_radius_has_no_step_at_a_whole_tick, the_matrix_does_what_the_plant_does,
-          too_long_a_delay_is_refused);
+    flows_follow_each_other, the_radius_of_known_eigenvalues, the_root_squared_is_the_number,
+    the_radius_does_not_hang_on_units, one_mass_has_the_radii_of_theory,
+    one_mass_has_the_border_of_theory, two_masses_have_the_radii_of_theory,
+    the_device_has_the_radii_found_before, a_stiff_string_is_one_mass,
+    the_radius_has_no_step_at_a_whole_tick, the_matrix_does_what_the_plant_does,
+    too_long_a_delay_is_refused);

@@ -58,14 +58,11 @@ static void run(const struct sim_link_par *p, const struct sim_trace *trace, uin
     take(&way, 1e9);
     CHECK(way.counts.sent + way.counts.doubled ==
               way.counts.arrived + way.counts.lost + way.counts.in_hole + way.counts.overflow,
-          "counts do not add up");
+        "counts do not add up");
     CHECK_EQ_I64((int64_t)way.counts.arrived, seen.arrived);
 }
 
-static double delay_of(int n)
-{
-    return seen.due_s[n] - n * GAP_S;
-}
+static double delay_of(int n) { return seen.due_s[n] - n * GAP_S; }
 
 /* ---- Delay ----------------------------------------------------------------------------------- */
 
@@ -75,7 +72,7 @@ TEST(a_perfect_link_is_not_there)
     run(&p, NULL, 1);
     for (int n = 0; n < N; n++) {
         CHECK(seen.order[n] == n && delay_of(n) == 0, "packet %d: %.9g s, place of %d", n,
-              delay_of(n), seen.order[n]);
+            delay_of(n), seen.order[n]);
     }
 }
 
@@ -139,16 +136,16 @@ TEST(jitter_has_the_shape_that_was_asked)
                 const double want = kind == SIM_LINK_UNIFORM ? 0.1 : bell[b < 5 ? b : 9 - b];
                 const double tol = 5 * root_of(want / N * 2 * rare) + 5e-4;
                 CHECK(fabs(s.bin[b] - want) < tol, "kind %d, memory %g, bin %d: %.5f, want %.5f",
-                      kind, memory[m], b, s.bin[b], want);
+                    kind, memory[m], b, s.bin[b], want);
             }
-            CHECK(fabs(s.mean) < 5 * root_of(2 * rare / N) / 1.7, "kind %d: mean %.5f", kind,
-                  s.mean);
+            CHECK(
+                fabs(s.mean) < 5 * root_of(2 * rare / N) / 1.7, "kind %d: mean %.5f", kind, s.mean);
             CHECK(fabs(s.deviation - (kind == SIM_LINK_UNIFORM ? 0.57735 : 0.3315)) <
                       0.003 * root_of(rare),
-                  "kind %d, memory %g: deviation %.5f", kind, memory[m], s.deviation);
+                "kind %d, memory %g: deviation %.5f", kind, memory[m], s.deviation);
             CHECK(fabs(s.next - r) < 0.016, "kind %d: memory %.4f, want %g", kind, s.next, r);
             CHECK(s.lo >= -1 - 1e-9 && s.hi <= 1 + 1e-9 && s.lo < -0.97 && s.hi > 0.97,
-                  "kind %d: %.4f..%.4f", kind, s.lo, s.hi);
+                "kind %d: %.4f..%.4f", kind, s.lo, s.hi);
         }
     }
 }
@@ -186,14 +183,14 @@ TEST(packets_arrive_in_the_order_of_time)
         for (int n = 0; n < seen.arrived; n++) {
             CHECK(n == 0 || seen.due_s[seen.order[n]] > seen.due_s[seen.order[n - 1]] ||
                       (seen.due_s[seen.order[n]] == seen.due_s[seen.order[n - 1]] &&
-                       seen.order[n] > seen.order[n - 1]),
-                  "arrival %d", n);
+                          seen.order[n] > seen.order[n - 1]),
+                "arrival %d", n);
             overtaken += seen.order[n] < newest;
             newest = seen.order[n] > newest ? seen.order[n] : newest;
         }
         CHECK(overtaken == way.counts.overtaken, "%d counted", (int)way.counts.overtaken);
-        CHECK(k % 3 == 1 ? overtaken > 1000 : overtaken == 0, "%d: %d overtaken", k,
-              (int)overtaken);
+        CHECK(
+            k % 3 == 1 ? overtaken > 1000 : overtaken == 0, "%d: %d overtaken", k, (int)overtaken);
     }
 }
 
@@ -208,14 +205,14 @@ TEST(shares_of_what_happens_to_packets)
         p.loss = share[i];
         run(&p, NULL, 6);
         CHECK(fabs((double)way.counts.lost - share[i] * N) <= tol, "loss %g: %d", share[i],
-              (int)way.counts.lost);
+            (int)way.counts.lost);
         p.loss = 0;
         p.duplicate = share[i];
         p.duplicate_s = 0.004;
         run(&p, NULL, 6);
         for (int n = 0; n < N; n++) { twice += seen.copies[n] == 2; }
         CHECK(fabs(twice - share[i] * N) <= tol && seen.arrived == N + twice, "twice %g: %d",
-              share[i], twice);
+            share[i], twice);
         p.duplicate_s = 0.001; /* before the next packet */
         run(&p, NULL, 6);
         CHECK(way.counts.overtaken == 0, "a double is not overtaken by its original");
@@ -225,12 +222,12 @@ TEST(shares_of_what_happens_to_packets)
         run(&p, NULL, 6);
         for (int n = 0; n < N; n++) {
             CHECK(fabs(delay_of(n) - 0.01) < 1e-9 || fabs(delay_of(n) - 0.016) < 1e-9, "%.9f",
-                  delay_of(n));
+                delay_of(n));
             back += delay_of(n) > 0.013;
         }
         CHECK(fabs(back - share[i] * N) <= tol, "held back %g: %d", share[i], back);
         CHECK((way.counts.overtaken > 0) == (share[i] > 0 && share[i] < 1), "overtaken: %d",
-              (int)way.counts.overtaken);
+            (int)way.counts.overtaken);
     }
 }
 
@@ -285,12 +282,12 @@ TEST(nothing_arrives_in_a_hole_and_all_outside)
                 if (fabs(since) < 1e-6 || fabs(since - row[i].hole) < 1e-6) { continue; }
                 hole = since >= 0 && since < row[i].hole;
                 gone += (uint64_t)hole;
-                CHECK((seen.due_s[n] < 0) == hole, "row %zu, packet %d at %.6f s", i, n,
-                      whole_s[n]);
+                CHECK(
+                    (seen.due_s[n] < 0) == hole, "row %zu, packet %d at %.6f s", i, n, whole_s[n]);
             }
         }
         CHECK(way.counts.in_hole >= gone && way.counts.in_hole <= gone + 3, "%d in holes, want %d",
-              (int)way.counts.in_hole, (int)gone);
+            (int)way.counts.in_hole, (int)gone);
         CHECK(i == 3 ? gone == 0 : gone > 300, "%d", (int)gone);
     }
 }
@@ -365,7 +362,7 @@ TEST(a_trace_replays_exactly)
             const double d = want_s[n % 5];
             const double due = n * GAP_S + (p.delay_s + p.trace_scale * d);
             CHECK(d < 0 ? seen.due_s[n] < 0 : seen.due_s[n] == due, "packet %d: %.9f, want %.9f", n,
-                  seen.due_s[n], due);
+                seen.due_s[n], due);
         }
         CHECK_EQ_I64((int64_t)way.counts.lost, N / 5);
     }
@@ -379,14 +376,13 @@ TEST(bad_traces_are_refused_with_the_line)
         enum sim_trace_kind kind;
         const char *why;
     } row[] = {{"1\n2\nx\n", SIM_TRACE_MS, "line 3: no number"},
-               {"1 2\n", SIM_TRACE_MS, "line 1: no number"},
-               {"-1\n", SIM_TRACE_MS, "line 1: a delay is"},
-               {"nan\n", SIM_TRACE_MS, "line 1: a delay is"},
-               {"losts\n", SIM_TRACE_MS, "line 1: no number"},
-               {"# nothing\n\n", SIM_TRACE_MS, "holds no packet"},
-               {"r,1,2\n", SIM_TRACE_ARRIVAL, "holds no packet"},
-               {"d,1\nr,1\n", SIM_TRACE_ROUND, "line 2: two numbers"},
-               {"r,1,-5\n", SIM_TRACE_ROUND, "line 1: no round trip"}};
+        {"1 2\n", SIM_TRACE_MS, "line 1: no number"}, {"-1\n", SIM_TRACE_MS, "line 1: a delay is"},
+        {"nan\n", SIM_TRACE_MS, "line 1: a delay is"},
+        {"losts\n", SIM_TRACE_MS, "line 1: no number"},
+        {"# nothing\n\n", SIM_TRACE_MS, "holds no packet"},
+        {"r,1,2\n", SIM_TRACE_ARRIVAL, "holds no packet"},
+        {"d,1\nr,1\n", SIM_TRACE_ROUND, "line 2: two numbers"},
+        {"r,1,-5\n", SIM_TRACE_ROUND, "line 1: no round trip"}};
     struct sim_trace t;
     char why[256];
     for (size_t i = 0; i < LEN(row); i++) {
@@ -394,7 +390,7 @@ TEST(bad_traces_are_refused_with_the_line)
         const int err = sim_trace_read(&t, name, row[i].kind, why, sizeof why);
         (void)remove(name);
         CHECK(err == -1 && strstr(why, row[i].why) != NULL && t.n == 0, "row %zu: %d, %s", i, err,
-              why);
+            why);
     }
     CHECK(sim_trace_read(&t, "no/such.xz", SIM_TRACE_MS, why, sizeof why) == -1, "read");
     CHECK(strstr(why, "no/such.xz: No such file") != NULL, "%s", why);
@@ -456,7 +452,7 @@ static void recorded(const char *file, enum sim_trace_kind kind, long n, const d
     for (int k = 0; k < 4; k++) {
         const double ms = 1e3 * sorted[(long)(at[k] * (double)(t.n - 1))];
         CHECK(fabs(ms - want_ms[k]) <= 0.051 + 0.0005 * want_ms[k],
-              "%s: %g of it %.4f ms, want %.4f", file, at[k], ms, want_ms[k]);
+            "%s: %g of it %.4f ms, want %.4f", file, at[k], ms, want_ms[k]);
     }
     sim_trace_free(&t);
 }
@@ -472,9 +468,9 @@ TEST(recorded_networks_replay)
 }
 
 TEST_MAIN("link", a_perfect_link_is_not_there, a_constant_delay_is_exact,
-          jitter_has_the_shape_that_was_asked, no_delay_is_negative,
-          packets_arrive_in_the_order_of_time, shares_of_what_happens_to_packets,
-          chance_is_drawn_apart, nothing_arrives_in_a_hole_and_all_outside,
-          the_queue_is_bounded_and_says_what_it_drops, packets_are_whole_or_not_at_all,
-          parameters_by_name, a_trace_replays_exactly, bad_traces_are_refused_with_the_line,
-          arrivals_are_delays_above_the_quickest, recorded_networks_replay);
+    jitter_has_the_shape_that_was_asked, no_delay_is_negative, packets_arrive_in_the_order_of_time,
+    shares_of_what_happens_to_packets, chance_is_drawn_apart,
+    nothing_arrives_in_a_hole_and_all_outside, the_queue_is_bounded_and_says_what_it_drops,
+    packets_are_whole_or_not_at_all, parameters_by_name, a_trace_replays_exactly,
+    bad_traces_are_refused_with_the_line, arrivals_are_delays_above_the_quickest,
+    recorded_networks_replay);

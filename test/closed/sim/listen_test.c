@@ -154,4 +154,4 @@ TEST(bad_usage)
 }
 
 TEST_MAIN("listen", a_whole_log_in_whatever_order, what_is_missing_is_told_and_leaves_a_hole,
-          silence_ends_it_and_is_told, nothing_in_time_is_told, bad_usage);
+    silence_ends_it_and_is_told, nothing_in_time_is_told, bad_usage);

@@ -29,13 +29,13 @@ TEST(each_scene_goes_on_until_its_time_is_over)
         const char *log = said_path(dir, "a.exh");
         struct said s;
         said(&s, dir, cli_run,
-             WORDS("run", "--scene", scene[i], "--seconds", "12", "--rate", "1000", "--log", log));
+            WORDS("run", "--scene", scene[i], "--seconds", "12", "--rate", "1000", "--log", log));
         CHECK(s.status == 0, "%s: %d %s", scene[i], s.status, s.err);
         CHECK(strcmp(s.out, "12000 ticks, 12 s, faults none\n") == 0, "%s", s.out);
         replay(dir, log, &s);
         CHECK_EQ_I64(times(s.out, "command: run"), 1);
         CHECK(times(s.out, "contact begins") >= 3, "%s: %d contacts", scene[i],
-              times(s.out, "contact begins"));
+            times(s.out, "contact begins"));
         said_clean(dir);
     }
 }
@@ -139,8 +139,7 @@ static int stopped_in_run(void)
     long ticks, missed;
     struct said s;
     int in_run;
-    const pid_t pid = said_start(
-        dir, cli_run,
+    const pid_t pid = said_start(dir, cli_run,
         WORDS("run", "--pace", "--rate", "100", "--seconds", "4", "--slack", "0.3", "--log", log));
     for (int i = 0; i < 1000 && said_size(log) <= 0; i++) { nanosleep(&a_while, NULL); }
     stopped_for(pid, runs, stands);
@@ -177,8 +176,8 @@ TEST(a_log_that_nobody_takes_stalls_nobody)
     fd = open(log, O_RDONLY | O_NONBLOCK);
     CHECK(fd >= 0, "no pipe");
     pid = said_start(dir, cli_run,
-                     WORDS("run", "--scene", "bilateral", "--fingers", "all", "--pace", "--slack",
-                           "0.1", "--rate", "500", "--seconds", "2", "--log", log));
+        WORDS("run", "--scene", "bilateral", "--fingers", "all", "--pace", "--slack", "0.1",
+            "--rate", "500", "--seconds", "2", "--log", log));
     CHECK(ends_within(pid, 60) == 0, "it stands still");
     said_end(&s, dir, pid);
     CHECK(s.status == 1 && strstr(s.err, "pipe: takes nothing for 2 s"), "%d %s", s.status, s.err);
@@ -203,7 +202,7 @@ TEST(the_line_of_status)
     pid_t pid;
     if (terminal_open(&tty) < 0) { return; }
     pid = said_start(dir, run_on_terminal,
-                     WORDS("run", "--pace", "--slack", "1", "--rate", "100", "--seconds", "2"));
+        WORDS("run", "--pace", "--slack", "1", "--rate", "100", "--seconds", "2"));
     text[0] = '\0';
     for (int i = 0; i < 3000 && !ended(pid); i++) {
         const struct timespec a_while = {0, 10000000};
@@ -229,8 +228,8 @@ TEST(a_terminal_that_was_halted_stalls_nobody)
     if (terminal_open(&tty) < 0) { return; }
     CHECK_EQ_I64(tcflow(tty.slave, TCOOFF), 0);
     pid = said_start(dir, run_on_terminal,
-                     WORDS("run", "--pace", "--rate", "50", "--seconds", "2", "--let-go", "1.5",
-                           "--blackbox", said_path(dir, "box.exh"), "--log", log));
+        WORDS("run", "--pace", "--rate", "50", "--seconds", "2", "--let-go", "1.5", "--blackbox",
+            said_path(dir, "box.exh"), "--log", log));
     CHECK(ends_within(pid, 30) == 0, "it stands still");
     said_end(&s, dir, pid);
     CHECK(s.status == 0 && number_before(s.out, "ticks") >= 50, "%d %s", s.status, s.out);
@@ -248,15 +247,14 @@ TEST(dumps_of_a_paced_box)
                *err = said_path(dir, "said.err");
     const struct timespec a_while = {0, 10000000}, until_it_runs = {3, 0}, stands = {1, 500000000};
     struct said s;
-    const pid_t pid =
-        said_start(dir, cli_run,
-                   WORDS("run", "--pace", "--slack", "0.5", "--rate", "100", "--seconds", "10",
-                         "--let-go", "1.5", "--grip", "--blackbox", first));
+    const pid_t pid = said_start(dir, cli_run,
+        WORDS("run", "--pace", "--slack", "0.5", "--rate", "100", "--seconds", "10", "--let-go",
+            "1.5", "--grip", "--blackbox", first));
     for (int i = 0; i < 3000 && said_size(err) <= 0; i++) { nanosleep(&a_while, NULL); }
     stopped_for(pid, until_it_runs, stands);
     said_end(&s, dir, pid);
-    CHECK(s.status == 0 && times(s.err, "black box: fault ") >= 2, "%d %s%s", s.status, s.out,
-          s.err);
+    CHECK(
+        s.status == 0 && times(s.err, "black box: fault ") >= 2, "%d %s%s", s.status, s.out, s.err);
     CHECK(said_size(first) > 2 * 4096, "%ld bytes: one piece", said_size(first));
     replay(dir, first, &s);
     CHECK(strstr(s.out, "end of the log, 0 records lost"), "%s", s.out);
@@ -274,15 +272,15 @@ TEST(a_dump_that_nobody_takes_stalls_nobody)
     pid_t pid;
     CHECK_EQ_I64(mkfifo(dump, 0600), 0);
     pid = said_start(dir, cli_run,
-                     WORDS("run", "--pace", "--slack", "0.5", "--rate", "100", "--seconds", "3",
-                           "--let-go", "1.5", "--blackbox", dump, "--log", log));
+        WORDS("run", "--pace", "--slack", "0.5", "--rate", "100", "--seconds", "3", "--let-go",
+            "1.5", "--blackbox", dump, "--log", log));
     CHECK(ends_within(pid, 60) == 0, "it stands still");
     said_end(&s, dir, pid);
     CHECK(s.status == 1 && strstr(s.err, "pipe: takes nothing for 2 s"), "%d %s", s.status, s.err);
     CHECK(strstr(s.err, "black box: fault") == NULL, "%s", s.err);
     replay(dir, log, &s);
     CHECK(strstr(s.out, "run -> release") && strstr(s.out, "end of the log, 0 records lost"), "%s",
-          s.out);
+        s.out);
     said_clean(dir);
 }
 
@@ -300,8 +298,8 @@ TEST(a_slow_log_is_complete_in_virtual_time)
     fd = open(log, O_RDONLY | O_NONBLOCK);
     CHECK(fd >= 0, "no pipe");
     pid = said_start(dir, cli_run,
-                     WORDS("run", "--scene", "bilateral", "--fingers", "all", "--rate", "1000",
-                           "--seconds", "20", "--log", log));
+        WORDS("run", "--scene", "bilateral", "--fingers", "all", "--rate", "1000", "--seconds",
+            "20", "--log", log));
     nanosleep(&a_while, NULL);
     snprintf(cat, sizeof cat, "cat '%s' > '%s'", log, copy);
     {
@@ -323,22 +321,22 @@ TEST(a_slow_log_is_complete_in_virtual_time)
 /* Whoever holds the mass catches it: else it is metres deep when somebody grips again. */
 TEST(it_runs_again_wherever_the_fault_found_the_mass)
 {
-    static const char *const at[] = {"0.9", "1.05", "2", "4", "7"}, *const rate[] = {"50", "100",
-                                                                                     "500"};
+    static const char *const at[] = {"0.9", "1.05", "2", "4", "7"}, *const rate[] = {
+                                                                        "50", "100", "500"};
     for (size_t i = 0; i < 15; i++) {
         char *dir = said_dir();
         const char *log = said_path(dir, "a.exh");
         struct said s;
         said(&s, dir, cli_run,
-             WORDS("run", "--rate", rate[i / 5], "--seconds", "14", "--let-go", at[i % 5], "--grip",
-                   "--log", log));
-        CHECK(s.status == 0 && strstr(s.out, "faults deadman\n"), "%d %s%s", s.status, s.out,
-              s.err);
+            WORDS("run", "--rate", rate[i / 5], "--seconds", "14", "--let-go", at[i % 5], "--grip",
+                "--log", log));
+        CHECK(
+            s.status == 0 && strstr(s.out, "faults deadman\n"), "%d %s%s", s.status, s.out, s.err);
         replay(dir, log, &s);
         CHECK(times(s.out, "arm -> run") == 2, "%s Hz, let go at %s s: %d", rate[i / 5], at[i % 5],
-              times(s.out, "arm -> run"));
+            times(s.out, "arm -> run"));
         CHECK(times(s.out, "arming is refused") == 0, "%s Hz, let go at %s s: refused", rate[i / 5],
-              at[i % 5]);
+            at[i % 5]);
         said_clean(dir);
     }
 }
@@ -349,23 +347,20 @@ TEST(what_it_cannot_do_is_named)
         const char *word[8], *said;
         int status;
     } row[] = {{{"run", "--scene", "minimal"}, "give drop, guarded or bilateral", 2},
-               {{"run", "--set", "nobody=1"}, "nobody: no such parameter", 2},
-               {{"run", "--set", "k=1e9"}, "allowed 0..", 2},
-               {{"run", "--seconds", "1e9"}, "or leave it out", 2},
-               {{"run", "--load-params", "/nowhere/at.all"}, "image that a run saved", 3},
-               {{"run", "--load-params", "/dev/null"}, "/dev/null: ", 2},
-               {{"run", "--seconds", "1", "--log", "/nowhere/at.all"},
-                "give a file that can be written",
-                2},
-               {{"run", "--log", "/nowhere/at.all"}, "give --seconds, or --pace", 2},
-               {{"run", "--slack", "0.1"}, "only with --pace", 2},
-               {{"run", "--pace", "--slack", "1.1"}, "--slack", 2},
-               {{"run", "--pace", "--slack", "0.1", "--gpio", "gpiochip9:estop=4,deadman=5"},
-                "not with --gpio",
-                2},
-               {{"run", "--seconds", "1", "--log", "/dev/full"},
-                "/dev/full: can't be written: No space",
-                1}};
+        {{"run", "--set", "nobody=1"}, "nobody: no such parameter", 2},
+        {{"run", "--set", "k=1e9"}, "allowed 0..", 2},
+        {{"run", "--seconds", "1e9"}, "or leave it out", 2},
+        {{"run", "--load-params", "/nowhere/at.all"}, "image that a run saved", 3},
+        {{"run", "--load-params", "/dev/null"}, "/dev/null: ", 2},
+        {{"run", "--seconds", "1", "--log", "/nowhere/at.all"}, "give a file that can be written",
+            2},
+        {{"run", "--log", "/nowhere/at.all"}, "give --seconds, or --pace", 2},
+        {{"run", "--slack", "0.1"}, "only with --pace", 2},
+        {{"run", "--pace", "--slack", "1.1"}, "--slack", 2},
+        {{"run", "--pace", "--slack", "0.1", "--gpio", "gpiochip9:estop=4,deadman=5"},
+            "not with --gpio", 2},
+        {{"run", "--seconds", "1", "--log", "/dev/full"}, "/dev/full: can't be written: No space",
+            1}};
     char *dir = said_dir();
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
         struct said s;
@@ -377,8 +372,8 @@ TEST(what_it_cannot_do_is_named)
 }
 
 TEST_MAIN("live", each_scene_goes_on_until_its_time_is_over, the_shortest_time_ends,
-          after_a_fault_it_runs_again_by_the_grip_alone, an_interrupt_leaves_a_complete_log,
-          what_goes_by_while_it_is_stopped_is_missed, a_log_that_nobody_takes_stalls_nobody,
-          dumps_of_a_paced_box, a_dump_that_nobody_takes_stalls_nobody, the_line_of_status,
-          a_terminal_that_was_halted_stalls_nobody, a_slow_log_is_complete_in_virtual_time,
-          it_runs_again_wherever_the_fault_found_the_mass, what_it_cannot_do_is_named);
+    after_a_fault_it_runs_again_by_the_grip_alone, an_interrupt_leaves_a_complete_log,
+    what_goes_by_while_it_is_stopped_is_missed, a_log_that_nobody_takes_stalls_nobody,
+    dumps_of_a_paced_box, a_dump_that_nobody_takes_stalls_nobody, the_line_of_status,
+    a_terminal_that_was_halted_stalls_nobody, a_slow_log_is_complete_in_virtual_time,
+    it_runs_again_wherever_the_fault_found_the_mass, what_it_cannot_do_is_named);

@@ -96,9 +96,9 @@ TEST(a_whole_log_reads_and_replays)
     CHECK_EQ_I64(n.keyframes, (n.last_tick + 1) / EXH_LOG_KEYFRAME_TICKS + 1);
     /* RUN, and a mark at the start of each fall and at the end of two of them */
     CHECK(n.frames > 7500 && n.events == 6, "%lu frames, %lu events", (unsigned long)n.frames,
-          (unsigned long)n.events);
+        (unsigned long)n.events);
     CHECK(n.ended && n.damaged == 0 && n.gaps == 0 && !n.complained, "%lu damaged, %lu gaps",
-          (unsigned long)n.damaged, (unsigned long)n.gaps);
+        (unsigned long)n.damaged, (unsigned long)n.gaps);
     CHECK_EQ_I64(replay(path, NULL), 0);
     CHECK_EQ_I64(replay(path, "3000"), 0);
     CHECK_EQ_I64(replay(path, "4000000"), 0); /* the last keyframe of all */
@@ -139,9 +139,9 @@ TEST(a_damaged_record_is_skipped_and_counted)
         spill(path, &t, t.len);
         n = count_log(path);
         CHECK(n.frames == frames - 1, "row %zu: %lu frames of %lu", i, (unsigned long)n.frames,
-              (unsigned long)frames);
+            (unsigned long)frames);
         CHECK(n.damaged == len_B && n.gaps == 1, "row %zu: %lu damaged, %lu gaps", i,
-              (unsigned long)n.damaged, (unsigned long)n.gaps);
+            (unsigned long)n.damaged, (unsigned long)n.gaps);
         CHECK(n.ended && n.complained, "row %zu: not reported", i);
         CHECK(replay(path, NULL) == 1, "row %zu: replayed over a hole", i);
         t.p[byte] = (char)(t.p[byte] ^ row[i].flip);
@@ -200,10 +200,7 @@ static void forge_keyframe(size_t sound_B)
     free(t.p);
     remove(path);
 }
-TEST(a_keyframe_with_forged_parameters_is_refused)
-{
-    forge_keyframe(0);
-}
+TEST(a_keyframe_with_forged_parameters_is_refused) { forge_keyframe(0); }
 
 TEST(a_keyframe_with_a_forged_state_is_harmless)
 {
@@ -233,5 +230,5 @@ TEST(a_refused_keyframe_changes_nothing)
 }
 
 TEST_MAIN("log", a_whole_log_reads_and_replays, a_damaged_record_is_skipped_and_counted,
-          a_cut_log_is_reported, a_keyframe_with_forged_parameters_is_refused,
-          a_keyframe_with_a_forged_state_is_harmless, a_refused_keyframe_changes_nothing);
+    a_cut_log_is_reported, a_keyframe_with_forged_parameters_is_refused,
+    a_keyframe_with_a_forged_state_is_harmless, a_refused_keyframe_changes_nothing);

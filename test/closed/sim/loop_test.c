@@ -138,7 +138,7 @@ static void before(uint32_t tick, struct exh_scene_in *in)
         if (a->what == STAGE) {
             const int err = exh_params_stage(exh_scene_drop.params, a->id, 0, a->value);
             CHECK(err == a->want, "tick %lu, id %#x: %d, want %d", (unsigned long)tick,
-                  (unsigned)a->id, err, a->want);
+                (unsigned)a->id, err, a->want);
         }
     }
     exh_log_before(tick, in);
@@ -156,8 +156,8 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
 
 /* Runs the drop scene at 1 kHz for so many ticks over the script; the log to path. It must end
  * with `want`. */
-static void run_until(const struct act *act, unsigned acts, uint32_t ticks, const char *path,
-                      int want)
+static void run_until(
+    const struct act *act, unsigned acts, uint32_t ticks, const char *path, int want)
 {
     static const struct exh_loop_hooks hooks = {exh_log_start, before, after};
     struct posix_config c = posix_config_default();
@@ -188,8 +188,8 @@ static void run_script(const struct act *act, unsigned acts, uint32_t ticks, con
 }
 
 /* The events of a log must be these, in this order. */
-static void check_events(const char *path, const struct exh_event *want, const uint32_t *tick,
-                         size_t n)
+static void check_events(
+    const char *path, const struct exh_event *want, const uint32_t *tick, size_t n)
 {
     struct logfile l;
     struct exh_record r;
@@ -203,8 +203,8 @@ static void check_events(const char *path, const struct exh_event *want, const u
         CHECK(i < n, "event %zu too many: type %u at tick %lu", i, e.type, (unsigned long)r.tick);
         CHECK(r.tick == tick[i] && e.type == want[i].type && e.id == want[i].id &&
                   e.instance == want[i].instance && e.value == want[i].value,
-              "event %zu: type %u id %#x value %ld at tick %lu", i, e.type, (unsigned)e.id,
-              (long)e.value, (unsigned long)r.tick);
+            "event %zu: type %u id %#x value %ld at tick %lu", i, e.type, (unsigned)e.id,
+            (long)e.value, (unsigned long)r.tick);
         i++;
     }
     CHECK(i == n, "%zu events, want %zu", i, n);
@@ -243,7 +243,7 @@ TEST(a_parameter_acts_at_the_tick_it_is_logged)
                    : exh_mul_shr(k << EXH_Q_K, s->q_m_q30 - lim, EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE);
         CHECK(s->c == (n >= 30), "tick %lu: c = %ld", (unsigned long)n, (long)s->c);
         CHECK(s->f_des_N_q20 == force, "tick %lu: %.6f N, want %.6f", (unsigned long)n,
-              s->f_des_N_q20 / 1048576.0, (double)force / 1048576.0);
+            s->f_des_N_q20 / 1048576.0, (double)force / 1048576.0);
     }
     CHECK_EQ_I64(replay(path, NULL), 0);
     remove(path);
@@ -264,8 +264,8 @@ TEST(setup_values_are_refused_while_locked)
     const char *path = log_path();
     struct exh_params *p = exh_scene_drop.params;
     exh_scene_drop.defaults();
-    CHECK_EQ_I64(exh_params_stage(p, ID_STEP, 0, EXH_Q(50, 1000000, EXH_Q_STEP)),
-                 0); /* before: fine */
+    CHECK_EQ_I64(
+        exh_params_stage(p, ID_STEP, 0, EXH_Q(50, 1000000, EXH_Q_STEP)), 0); /* before: fine */
     run_script(act, LEN(act), 10, path);
     CHECK_EQ_I64(exh_params_stage(p, ID_STEP, 0, EXH_Q(50, 1000000, EXH_Q_STEP)), -EXH_E_STATE);
     check_events(path, event, tick, LEN(event));
@@ -284,7 +284,7 @@ TEST(missed_ticks_reach_safety)
         {50, COMMAND, 0, EXH_CMD_RUN, 0}, /* not from FAULT */
         {55, MISS, 0, 7, 0},
         {55, COMMAND, 0, EXH_CMD_CLEAR,
-         0}, /* not while the cause is there, which is 64 ticks long */
+            0}, /* not while the cause is there, which is 64 ticks long */
         {240, COMMAND, 0, EXH_CMD_CLEAR, 0}, /* nor before the dead-man was let go */
         {250, OPEN, 0, EXH_DIN_DEADMAN, 0},
         {300, COMMAND, 0, EXH_CMD_CLEAR, 0},
@@ -329,15 +329,15 @@ TEST(missed_ticks_reach_safety)
         const int open = state == EXH_STATE_RUN || state == EXH_STATE_RELEASE || ramp;
         const int force = (n >= 10 && n < let_go - 1) || (n >= 318 && n < off - 1);
         CHECK(s->sig.state == state, "tick %lu: state %ld, want %ld", (unsigned long)n,
-              (long)s->sig.state, (long)state);
+            (long)s->sig.state, (long)state);
         CHECK(s->sig.faults == faults, "tick %lu: faults %#lx", (unsigned long)n,
-              (unsigned long)s->sig.faults);
+            (unsigned long)s->sig.faults);
         CHECK(s->out.enable == open, "tick %lu: enable %u", (unsigned long)n,
-              (unsigned)s->out.enable);
+            (unsigned)s->out.enable);
         CHECK((s->out.dac_raw[0] > DAC_ZERO) == force &&
                   (s->out.dac_raw[0] == DAC_ZERO) == (s->sig.i_des_A_q26 == 0),
-              "tick %lu: code %u, %ld", (unsigned long)n, (unsigned)s->out.dac_raw[0],
-              (long)s->sig.i_des_A_q26);
+            "tick %lu: code %u, %ld", (unsigned long)n, (unsigned)s->out.dac_raw[0],
+            (long)s->sig.i_des_A_q26);
         CHECK_EQ_I64(s->out.alive, (uint8_t)(n + 1));
     }
     check_events(path, event, tick, LEN(event));
@@ -369,20 +369,20 @@ static void cause(struct act what, int32_t fault)
         const struct seen *s = &script.at[n];
         const int force = n < gone || (n >= 70 && !lost);
         CHECK((s->out.dac_raw[0] > DAC_ZERO) == force && (s->sig.f_des_N_q20 > 0) == force,
-              "fault %#lx, tick %lu: code %u", (unsigned long)fault, (unsigned long)n,
-              (unsigned)s->out.dac_raw[0]);
+            "fault %#lx, tick %lu: code %u", (unsigned long)fault, (unsigned long)n,
+            (unsigned)s->out.dac_raw[0]);
         if (n >= 30 && n < gone) {
             CHECK(s->sig.f_des_N_q20 < script.at[n - 1].sig.f_des_N_q20,
-                  "tick %lu: it does not fall", (unsigned long)n);
+                "tick %lu: it does not fall", (unsigned long)n);
         }
         CHECK((s->sig.faults & fault) == (lost || n < 50 ? (n >= 30 ? fault : 0) : 0),
-              "fault %#lx, tick %lu: %#lx", (unsigned long)fault, (unsigned long)n,
-              (unsigned long)s->sig.faults);
+            "fault %#lx, tick %lu: %#lx", (unsigned long)fault, (unsigned long)n,
+            (unsigned long)s->sig.faults);
         CHECK((s->sig.present & fault) == (lost ? (n >= 30 ? fault : 0)
-                                           : n == 30 || (n == 48 && fault == EXH_FAULT_DEADMAN)
-                                               ? fault
-                                               : 0),
-              "fault %#lx, tick %lu: present", (unsigned long)fault, (unsigned long)n);
+                                              : n == 30 || (n == 48 && fault == EXH_FAULT_DEADMAN)
+                                                  ? fault
+                                                  : 0),
+            "fault %#lx, tick %lu: present", (unsigned long)fault, (unsigned long)n);
     }
     if (!lost) {
         CHECK_EQ_I64(script.at[60].sig.state, EXH_STATE_OFF);
@@ -415,7 +415,7 @@ TEST(what_a_hand_can_do_is_no_cause)
     for (uint32_t n = 11; n < 90; n++) {
         const struct seen *s = &script.at[n];
         CHECK(s->out.dac_raw[0] > DAC_ZERO && s->sig.faults == 0 && s->sig.present == 0, "tick %lu",
-              (unsigned long)n);
+            (unsigned long)n);
     }
     remove(path);
 }
@@ -469,7 +469,7 @@ TEST(a_card_that_fails_is_seen_by_one_last_tick)
         CHECK_EQ_I64(script.at[last].sig.state, EXH_STATE_FAULT);
         CHECK_EQ_I64(script.at[last].sig.faults, EXH_FAULT_CARD);
         CHECK(script.at[last].out.dac_raw[0] == DAC_ZERO && script.at[last].out.enable == 0,
-              "current");
+            "current");
         CHECK_EQ_I64(replay(path, NULL), 0);
         remove(path);
     }
@@ -511,6 +511,6 @@ TEST(a_board_that_does_not_fit_is_refused)
 }
 
 TEST_MAIN("loop", a_parameter_acts_at_the_tick_it_is_logged, setup_values_are_refused_while_locked,
-          missed_ticks_reach_safety, causes_reach_the_gate, what_a_hand_can_do_is_no_cause,
-          a_card_that_fails_is_seen_by_one_last_tick, the_loop_commands_nothing_by_itself,
-          a_board_that_does_not_fit_is_refused);
+    missed_ticks_reach_safety, causes_reach_the_gate, what_a_hand_can_do_is_no_cause,
+    a_card_that_fails_is_seen_by_one_last_tick, the_loop_commands_nothing_by_itself,
+    a_board_that_does_not_fit_is_refused);

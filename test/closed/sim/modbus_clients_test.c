@@ -35,7 +35,7 @@ TEST(a_client_that_fetches_no_answer)
     CHECK_EQ_I64(rig_input(&r, RIG_HEAD(EXH_HEAD_TEST_INT)), 0x12345678);
     CHECK(rig_coil(&r, EXH_COIL_OFF) == 0 &&
               rig_wait(&r, RIG_HEAD(EXH_HEAD_STATE), EXH_STATE_OFF) == 0,
-          "not off");
+        "not off");
     rig_end(&r, 130);
     modbus_close(bad);
     modbus_free(bad);
@@ -104,7 +104,7 @@ TEST(no_thread_blocks_the_signals_of_a_crash)
 }
 
 TEST_MAIN("modbus_clients", a_client_that_fetches_no_answer, silent_clients_keep_nobody_out,
-          no_thread_blocks_the_signals_of_a_crash);
+    no_thread_blocks_the_signals_of_a_crash);
 #else
 RIG_NONE("modbus_clients");
 #endif

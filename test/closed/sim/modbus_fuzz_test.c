@@ -93,10 +93,7 @@ static void begin(void)
 
 /* --- requests --- */
 
-static uint32_t below(uint32_t n)
-{
-    return (uint32_t)(check_u64() % n);
-}
+static uint32_t below(uint32_t n) { return (uint32_t)(check_u64() % n); }
 
 /* In a block that this function has, or at its edges; or anywhere. */
 static uint32_t some_address(uint32_t f)
@@ -132,7 +129,7 @@ static void put16(uint8_t *p, uint32_t v)
 static void some_registers(uint8_t *to, uint32_t at, uint32_t n)
 {
     const int as_it_is = below(4) != 0 && exh_regs_read(&ours.r, EXH_REGS_HOLDING, (uint16_t)at,
-                                                        (uint16_t)n, to) == 0;
+                                              (uint16_t)n, to) == 0;
     for (uint32_t i = 0; i < 2 * n; i++) {
         if (!as_it_is) { to[i] = (uint8_t)check_u64(); }
     }
@@ -252,16 +249,16 @@ TEST(the_same_bytes_come_back)
         want = exh_modbus_answer(&ours.r, pdu, len, here, sizeof here);
         got = from_server(pdu, len, there);
         CHECK(got == (uint32_t)want && memcmp(here, there, got) == 0,
-              "request %ld, function %u, address %#x, %u bytes: ours %d: %02x %02x %02x, the "
-              "server's %u: %02x %02x %02x",
-              i, pdu[0], (unsigned)(pdu[1] << 8 | pdu[2]), len, want, here[0], here[1], here[2],
-              got, there[0], there[1], there[2]);
+            "request %ld, function %u, address %#x, %u bytes: ours %d: %02x %02x %02x, the "
+            "server's %u: %02x %02x %02x",
+            i, pdu[0], (unsigned)(pdu[1] << 8 | pdu[2]), len, want, here[0], here[1], here[2], got,
+            there[0], there[1], there[2]);
         exceptions[here[0] & 0x80 ? here[1] & 7 : 0]++;
     }
     check_note("%ld requests: %ld answers, exceptions 1: %ld, 2: %ld, 3: %ld, 6: %ld; all the same",
-               n, exceptions[0], exceptions[1], exceptions[2], exceptions[3], exceptions[6]);
-    CHECK(exceptions[0] > n / 5 && exceptions[1] && exceptions[2] && exceptions[3],
-          "too few kinds");
+        n, exceptions[0], exceptions[1], exceptions[2], exceptions[3], exceptions[6]);
+    CHECK(
+        exceptions[0] > n / 5 && exceptions[1] && exceptions[2] && exceptions[3], "too few kinds");
     close(fd);
     live_modbus_close();
 }

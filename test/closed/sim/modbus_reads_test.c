@@ -72,8 +72,8 @@ static int32_t (*frames_of(const char *log, uint32_t *n))[SIGNALS]
 
 /* What was read is what one tick had: one between the heads read before and behind it. The copy
  * counts ticks from 1, as the box does after its first. */
-static long torn_of(const struct seen *s, long n, int32_t (*frame)[SIGNALS], uint32_t frames,
-                    long *moved)
+static long torn_of(
+    const struct seen *s, long n, int32_t (*frame)[SIGNALS], uint32_t frames, long *moved)
 {
     long torn = 0;
     for (long i = 0; i < n; i++) {
@@ -99,9 +99,8 @@ TEST(no_read_is_torn)
     pid_t other[2];
     struct rig r;
     close(mkstemp(log));
-    rig_start(&r,
-              WORDS("run", "--scene", "bilateral", "--fingers", "all", "--pace", "--rate",
-                    n > 100000 ? "2000" : "10000", "--log", log, "--modbus", "tcp:127.0.0.1:0"));
+    rig_start(&r, WORDS("run", "--scene", "bilateral", "--fingers", "all", "--pace", "--rate",
+                      n > 100000 ? "2000" : "10000", "--log", log, "--modbus", "tcp:127.0.0.1:0"));
     while (rig_input(&r, RIG_HEAD(EXH_HEAD_TICK)) == 0) {
     } /* before the first tick there is no tick to show */
     for (int i = 0; i < 2; i++) { other[i] = hammer(r.port); }
@@ -109,7 +108,7 @@ TEST(no_read_is_torn)
         uint16_t word[2 * SIGNALS];
         seen[i].first = i ? seen[i - 1].last : (uint32_t)rig_input(&r, RIG_HEAD(EXH_HEAD_TICK));
         CHECK(modbus_read_input_registers(r.c, (int)RIG_OUT, 2 * SIGNALS, word) == 2 * SIGNALS,
-              "read %ld", i);
+            "read %ld", i);
         for (unsigned k = 0; k < SIGNALS; k++) { seen[i].value[k] = rig_value(word, k); }
         seen[i].last = (uint32_t)rig_input(&r, RIG_HEAD(EXH_HEAD_TICK));
     }
@@ -120,7 +119,7 @@ TEST(no_read_is_torn)
     CHECK(torn == 0, "%ld of %ld reads are no tick's", torn, n);
     CHECK(moved > n / 100, "only %ld reads differ from the one before", moved);
     check_note("%ld reads of %d values over %lu ticks, %ld other than the one before, none torn", n,
-               SIGNALS, (unsigned long)frames, moved);
+        SIGNALS, (unsigned long)frames, moved);
     free(frame);
     free(seen);
     (void)remove(log);
@@ -162,7 +161,7 @@ TEST(whoever_reads_the_box_does_the_same)
     CHECK(reads > 100, "%d reads", reads);
     CHECK(same_bytes(a, b), "another log");
     check_note("300000 ticks, with %d reads of one of three clients: the same %ld bytes of log",
-               reads, said_size(a));
+        reads, said_size(a));
     said_clean(r.dir);
     said_clean(dir);
 }

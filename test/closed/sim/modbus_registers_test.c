@@ -23,19 +23,19 @@ static void read_block(struct rig *r, read_fn *read, unsigned at, uint32_t value
     for (uint32_t i = 0; i < values; i += 62) {
         const int n = values - i < 62 ? (int)(values - i) : 62;
         CHECK(read(r->c, (int)(at + 2 * i), 2 * n, word) == 2 * n, "%#x: %s", at,
-              modbus_strerror(errno));
+            modbus_strerror(errno));
         for (int k = 0; k < n; k++) { to[i + (uint32_t)k] = rig_value(word, (unsigned)k); }
     }
     /* behind the last value nothing is */
-    CHECK(read(r->c, (int)(at + 2 * values), 1, word) == -1 && errno == EMBXILADD, "%#x goes on",
-          at);
+    CHECK(
+        read(r->c, (int)(at + 2 * values), 1, word) == -1 && errno == EMBXILADD, "%#x goes on", at);
     CHECK(read(r->c, (int)(at + 2 * values) - 1, 2, word) == -1 && errno == EMBXILADD,
-          "%#x goes on", at);
+        "%#x goes on", at);
 }
 
 /* The float block is the raw one in the row's unit. */
 static void check_floats(const struct exh_signal_table *t, const int32_t *raw,
-                         const int32_t *as_float, const int32_t *raw_again)
+    const int32_t *as_float, const int32_t *raw_again)
 {
     for (uint32_t i = 0; i < exh_signal_count(t); i++) {
         const struct exh_signal *row = exh_signal_at(t, i, NULL);
@@ -75,17 +75,17 @@ static void write_one(struct rig *r, const struct exh_signal *row, unsigned i, i
     uint16_t word[2];
     for (int e = 0; e < 2; e++) {
         CHECK(rig_write(r, at, (uint32_t)end[e]) == (fixed && end[e] != now ? EMBXILVAL : 0), "%s",
-              row->name);
+            row->name);
         if (fixed) { continue; }
         CHECK(modbus_read_registers(r->c, (int)at, 2, word) == 2, "%s", row->name);
         CHECK_EQ_I64(rig_value(word, 0), end[e]);
         CHECK(modbus_read_registers(r->c, (int)at_f, 2, word) == 2, "%s", row->name);
         CHECK((uint32_t)rig_value(word, 0) == rig_float(cli_signal_value(row, end[e])), "%s",
-              row->name);
+            row->name);
         CHECK(rig_write(r, at_f, rig_float(cli_signal_value(row, now))) == 0, "%s", row->name);
         CHECK(modbus_read_registers(r->c, (int)at, 2, word) == 2, "%s", row->name);
         CHECK(fabs(rig_value(word, 0) - (double)now) <= fabs((double)now) * ldexp(1, -24), "%s",
-              row->name);
+            row->name);
     }
     if (row->max < INT32_MAX) { CHECK_EQ_I64(rig_write(r, at, (uint32_t)row->max + 1), EMBXILVAL); }
     if (row->min > INT32_MIN) { CHECK_EQ_I64(rig_write(r, at, (uint32_t)row->min - 1), EMBXILVAL); }
@@ -94,7 +94,7 @@ static void write_one(struct rig *r, const struct exh_signal *row, unsigned i, i
     CHECK(modbus_write_register(r->c, (int)at_f, 0) == -1 && errno == EMBXILVAL, "half a float");
     CHECK_EQ_I64(rig_write(r, at, (uint32_t)now), 0); /* by function 6 its low half, as it is */
     CHECK(modbus_write_register(r->c, (int)at + 1, (uint16_t)((uint32_t)now & 0xFFFF)) == 1, "%s",
-          row->name);
+        row->name);
 }
 
 static void write_all(struct rig *r, const struct exh_signal_table *t, const int32_t *now)
@@ -147,8 +147,8 @@ static void check_against_log(const char *log, const int32_t *now, uint32_t n)
 
 TEST(every_register_there_and_back)
 {
-    static const struct exh_scene *const scene[] = {&exh_scene_drop, &exh_scene_guarded,
-                                                    &exh_scene_bilateral};
+    static const struct exh_scene *const scene[] = {
+        &exh_scene_drop, &exh_scene_guarded, &exh_scene_bilateral};
     static int32_t out[VALUES], out_f[VALUES], again[VALUES], par[VALUES], par_f[VALUES],
         held[VALUES];
     rig_tables();
@@ -162,7 +162,7 @@ TEST(every_register_there_and_back)
         close(mkstemp(log));
         /* let go as soon as it was gripped: it stays OFF, and values stand */
         rig_start(&r, WORDS("run", "--scene", sc->name, "--pace", "--rate", "500", "--let-go",
-                            "0.001", "--log", log, "--modbus", "tcp:127.0.0.1:0"));
+                          "0.001", "--log", log, "--modbus", "tcp:127.0.0.1:0"));
         rig_sleep(0.2);
         check_head(&r, sc, 500);
         read_block(&r, modbus_read_input_registers, RIG_OUT, outs, out);

@@ -8,10 +8,7 @@
 #ifndef EXH_MODBUS
 /* Where libmodbus is not. sim/modbus says what the command says then. */
 #define RIG_NONE(name) \
-    TEST(without_libmodbus) \
-    { \
-        check_note("libmodbus is not here: nothing was tested"); \
-    } \
+    TEST(without_libmodbus) { check_note("libmodbus is not here: nothing was tested"); } \
     TEST_MAIN(name, without_libmodbus)
 #else
 
@@ -117,7 +114,7 @@ static inline int32_t rig_input(struct rig *r, unsigned at)
 {
     uint16_t word[2] = {0, 0};
     CHECK(modbus_read_input_registers(r->c, (int)at, 2, word) == 2, "%#x: %s", at,
-          modbus_strerror(errno));
+        modbus_strerror(errno));
     return rig_value(word, 0);
 }
 

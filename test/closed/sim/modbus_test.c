@@ -37,21 +37,21 @@ TEST(over_a_serial_line)
         CHECK_EQ_I64(rig_value(word, 2), 0x12345678);
     }
     CHECK(modbus_read_input_registers(c, 0x0FFF, 2, word) == -1 && errno == EMBXILADD,
-          "no exception 2");
+        "no exception 2");
     CHECK(modbus_write_register(c, 0x5001, 1) == -1 && errno == EMBXILVAL,
-          "no exception 3: step is of the set-up");
+        "no exception 3: step is of the set-up");
     for (int i = 0; i < 2; i++) { /* functions without data: the shortest requests there are */
         const uint8_t shortest[2] = {1, i == 0 ? 7 : 17};
         uint8_t answer[MODBUS_RTU_MAX_ADU_LENGTH] = {0};
         CHECK(modbus_send_raw_request(c, shortest, 2) == 4, "%s", modbus_strerror(errno));
         CHECK(modbus_receive_confirmation(c, answer) == 5 && answer[1] == (shortest[1] | 0x80) &&
                   answer[2] == EXH_MODBUS_FUNCTION,
-              "function %d: %d %d %s", shortest[1], answer[1], answer[2], modbus_strerror(errno));
+            "function %d: %d %d %s", shortest[1], answer[1], answer[2], modbus_strerror(errno));
     }
     modbus_set_slave(c, 2); /* somebody else */
     modbus_set_response_timeout(c, 0, 100000);
     CHECK(modbus_read_input_registers(c, 0, 6, word) == -1 && errno == ETIMEDOUT,
-          "answered for another");
+        "answered for another");
     rig_sleep(
         0.6); /* libmodbus waits so long for the other's answer, and takes what comes for that */
     modbus_set_slave(c, 0); /* all: done, not answered */
@@ -59,7 +59,7 @@ TEST(over_a_serial_line)
     modbus_set_slave(c, 1);
     modbus_set_response_timeout(c, 2, 0);
     CHECK(modbus_read_input_registers(c, (int)RIG_HEAD(EXH_HEAD_DONE), 2, word) == 2, "%s",
-          modbus_strerror(errno));
+        modbus_strerror(errno));
     CHECK_EQ_I64(rig_value(word, 0), 1);
     kill(pid, SIGINT);
     said_end(&s, dir, pid);
@@ -75,11 +75,11 @@ TEST(what_cannot_be_served_is_named)
         const char *where, *said;
         int status;
     } row[] = {{"udp:1.2.3.4:5", "give tcp:ADDRESS:PORT", 2},
-               {"tcp:here:1502", "give tcp:ADDRESS:PORT", 2},
-               {"tcp:127.0.0.1:65536", "give tcp:ADDRESS:PORT", 2},
-               {"tcp:192.0.2.1:1502", "an address of this machine", 3},
-               {"rtu:/dev/nowhere:115200", "a serial line that is here", 3},
-               {"rtu:/dev/null:12", "give tcp:ADDRESS:PORT", 2}};
+        {"tcp:here:1502", "give tcp:ADDRESS:PORT", 2},
+        {"tcp:127.0.0.1:65536", "give tcp:ADDRESS:PORT", 2},
+        {"tcp:192.0.2.1:1502", "an address of this machine", 3},
+        {"rtu:/dev/nowhere:115200", "a serial line that is here", 3},
+        {"rtu:/dev/null:12", "give tcp:ADDRESS:PORT", 2}};
     char *dir = said_dir();
     char where[64];
     struct said s;
@@ -87,7 +87,7 @@ TEST(what_cannot_be_served_is_named)
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
         said(&s, dir, cli_run, WORDS("run", "--seconds", "1", "--modbus", row[i].where));
         CHECK(s.status == row[i].status && strstr(s.err, row[i].said), "%s: %d %s", row[i].where,
-              s.status, s.err);
+            s.status, s.err);
     }
     rig_start(&r, WORDS("run", "--pace", "--modbus", "tcp:127.0.0.1:0"));
     snprintf(where, sizeof where, "tcp:127.0.0.1:%d", r.port);

@@ -38,13 +38,13 @@ TEST(a_running_box_is_watched)
     int n;
     serve(&r, WORDS("run", "--pace", "--modbus", "tcp:127.0.0.1:0"));
     said(&s, r.dir, cli_watch,
-         WORDS("watch", "--modbus", where, "--seconds", "2", "--hz", "20", "--csv",
-               said_path(r.dir, "w.csv"), "--signals", "q,f_des"));
+        WORDS("watch", "--modbus", where, "--seconds", "2", "--hz", "20", "--csv",
+            said_path(r.dir, "w.csv"), "--signals", "q,f_des"));
     CHECK(s.status == 0, "%d %s", s.status, s.err);
     n = lines_of(said_path(r.dir, "w.csv"));
     CHECK(n >= 10 && n <= 41, "%d samples of 40", n);
     CHECK(strstr(s.out, "faults none") && strstr(s.out, "  q ") && !strstr(s.out, "  qd "), "%s",
-          s.out);
+        s.out);
     rig_end(&r, 130);
     said_clean(r.dir);
 }
@@ -98,24 +98,24 @@ TEST(a_trace_has_every_frame_or_says_what_it_lost)
     const char *said_lost;
     serve(&r, WORDS("run", "--pace", "--modbus", "tcp:127.0.0.1:0"));
     said(&s, r.dir, cli_watch,
-         WORDS("watch", "--modbus", where, "--seconds", "2", "--trace", "20", "--csv",
-               said_path(r.dir, "w.csv"), "--signals", "q,f_des,state"));
+        WORDS("watch", "--modbus", where, "--seconds", "2", "--trace", "20", "--csv",
+            said_path(r.dir, "w.csv"), "--signals", "q,f_des,state"));
     missing = missing_of(said_path(r.dir, "w.csv"), 20, &lines);
     CHECK(s.status == 0 && missing == 0 && !strstr(s.err, "lost"), "%d, missing %d %s", s.status,
-          missing, s.err);
+        missing, s.err);
     CHECK(lines >= 100 && lines <= 210, "%d frames of 200", lines);
     said(&s, r.dir, cli_watch,
-         WORDS("watch", "--modbus", where, "--seconds", "3", "--trace", "1", "--hz", "2", "--csv",
-               said_path(r.dir, "w.csv")));
+        WORDS("watch", "--modbus", where, "--seconds", "3", "--trace", "1", "--hz", "2", "--csv",
+            said_path(r.dir, "w.csv")));
     missing = missing_of(said_path(r.dir, "w.csv"), 1, &lines);
     said_lost = strstr(s.err, "exhand watch: ");
     lost = said_lost ? atoi(said_lost + 14) : 0;
     CHECK(s.status == 0 && strstr(s.err, "frames were lost"), "%d %s", s.status, s.err);
     /* told as lost are those before the first that was read, too: of half a second */
     CHECK(lost >= missing && missing > 1000 && lost - missing < 2000, "%d missing, %d told as lost",
-          missing, lost);
-    check_note("looked at twice a second: %d frames of 2000 a second read, %d told as lost", lines,
-               lost);
+        missing, lost);
+    check_note(
+        "looked at twice a second: %d frames of 2000 a second read, %d told as lost", lines, lost);
     rig_end(&r, 130);
     said_clean(r.dir);
 }
@@ -133,5 +133,5 @@ TEST(nobody_there)
 }
 
 TEST_MAIN("modbus_watch", a_running_box_is_watched, a_box_that_falls_silent_and_comes_back,
-          a_trace_has_every_frame_or_says_what_it_lost, nobody_there);
+    a_trace_has_every_frame_or_says_what_it_lost, nobody_there);
 #endif

@@ -29,7 +29,7 @@ TEST(a_run_with_a_writing_client_replays)
     struct rig r;
     rig_tables();
     rig_start(&r, WORDS("run", "--scene", "bilateral", "--pace", "--log", log, "--modbus",
-                        "tcp:127.0.0.1:0"));
+                      "tcp:127.0.0.1:0"));
     for (int i = 0; i < 60; i++) {
         const int32_t done = rig_input(&r, RIG_HEAD(EXH_HEAD_DONE));
         uint32_t k;
@@ -78,8 +78,8 @@ TEST(saved_parameters_come_back)
 TEST(a_place_that_cannot_be_written_is_a_result)
 {
     struct rig r;
-    rig_start(&r,
-              WORDS("run", "--pace", "--save", "/nowhere/at.all", "--modbus", "tcp:127.0.0.1:0"));
+    rig_start(
+        &r, WORDS("run", "--pace", "--save", "/nowhere/at.all", "--modbus", "tcp:127.0.0.1:0"));
     CHECK_EQ_I64(rig_coil(&r, EXH_COIL_SAVE), 0);
     CHECK(rig_wait(&r, RIG_HEAD(EXH_HEAD_DONE), 1) == 0, "nothing came of it");
     CHECK_EQ_I64(rig_input(&r, RIG_HEAD(EXH_HEAD_RESULT)), -EXH_E_IO);
@@ -93,11 +93,11 @@ TEST(commands_run_and_stop_the_box)
 {
     struct rig r;
     rig_start(&r, WORDS("run", "--scene", "bilateral", "--pace", "--rate", "500", "--remote",
-                        "--modbus", "tcp:127.0.0.1:0"));
+                      "--modbus", "tcp:127.0.0.1:0"));
     rig_sleep(0.3);
     CHECK(rig_coil(&r, EXH_COIL_OFF) == 0 &&
               rig_wait(&r, RIG_HEAD(EXH_HEAD_STATE), EXH_STATE_OFF) == 0,
-          "not off");
+        "not off");
     for (int i = 0; i < 20 && rig_input(&r, RIG_HEAD(EXH_HEAD_STATE)) == EXH_STATE_OFF; i++) {
         CHECK_EQ_I64(rig_coil(&r, EXH_COIL_RUN), 0); /* refused while a finger presses */
         rig_sleep(0.1);
@@ -114,10 +114,10 @@ TEST(the_rule_of_gains_holds_here_too)
     int32_t was;
     struct rig r;
     rig_tables();
-    rig_start(&r, WORDS("run", "--scene", "guarded", "--pace", "--rate", "500", "--set",
-                        "rule_on=1", "--set", "rule_rate=500", "--set", "rule_b1=30", "--set",
-                        "rule_k0=9000", "--set", "rule_k1=2000", "--set", "k=5000", "--set", "b=15",
-                        "--modbus", "tcp:127.0.0.1:0"));
+    rig_start(
+        &r, WORDS("run", "--scene", "guarded", "--pace", "--rate", "500", "--set", "rule_on=1",
+                "--set", "rule_rate=500", "--set", "rule_b1=30", "--set", "rule_k0=9000", "--set",
+                "rule_k1=2000", "--set", "k=5000", "--set", "b=15", "--modbus", "tcp:127.0.0.1:0"));
     CHECK(cli_signal_find(exh_scene_guarded.params->table, "k", &k) != NULL, "no k");
     was = rig_input(&r, RIG_RAW + 2 * k);
     CHECK_EQ_I64(rig_write(&r, RIG_FLOAT + 2 * k, rig_float(1e6)), 0);
@@ -132,8 +132,8 @@ TEST(the_rule_of_gains_holds_here_too)
 }
 
 TEST_MAIN("modbus_writes", a_run_with_a_writing_client_replays, saved_parameters_come_back,
-          a_place_that_cannot_be_written_is_a_result, commands_run_and_stop_the_box,
-          the_rule_of_gains_holds_here_too);
+    a_place_that_cannot_be_written_is_a_result, commands_run_and_stop_the_box,
+    the_rule_of_gains_holds_here_too);
 #else
 RIG_NONE("modbus_writes");
 #endif

@@ -60,8 +60,8 @@ struct before {
 
 /* Newtons q20 in a tick: of a slew rate, or of the release law in 15 ms from no more than f_max,
  * missed ticks made up for. */
-static void check_slope(struct before *b, const struct exh_drive_par *par, int32_t force_N_q20,
-                        int open)
+static void check_slope(
+    struct before *b, const struct exh_drive_par *par, int32_t force_N_q20, int open)
 {
     const int64_t up = ((int64_t)par->slew_up_Nps << EXH_Q_FORCE) / RATE_HZ + 2;
     const int64_t down = ((int64_t)par->slew_down_Nps << EXH_Q_FORCE) / RATE_HZ + 2;
@@ -198,9 +198,9 @@ TEST(full_box_within_noise)
         runs += (uint32_t)open;
     }
     CHECK(n < 1000 || (runs > n / 200 && used > n / 200),
-          "open in %" PRIu32 ", force in %" PRIu32 " of %" PRIu32 " ticks", runs, used, n);
+        "open in %" PRIu32 ", force in %" PRIu32 " of %" PRIu32 " ticks", runs, used, n);
     check_note("full box: gate open in %" PRIu32 " of %" PRIu32 " ticks, %" PRIu32 " forces", runs,
-               n, used);
+        n, used);
 }
 
 TEST_MAIN("sim/noise", drop_within_noise, full_box_within_noise);

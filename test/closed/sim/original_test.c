@@ -53,10 +53,10 @@ static int is_nearest(int16_t coarse, int16_t fine)
 TEST(its_samples_have_8_bits_and_come_a_frame_late)
 {
     static const struct exh_scene scene = {.name = "seen",
-                                           .rate_Hz = RATE_HZ,
-                                           .read_glove = exh_board_read_glove,
-                                           .setup = setup,
-                                           .tick = tick};
+        .rate_Hz = RATE_HZ,
+        .read_glove = exh_board_read_glove,
+        .setup = setup,
+        .tick = tick};
     int moved = 0;
     for (int stock = 0; stock < 2; stock++) {
         struct posix_config c = posix_config_default();
@@ -71,10 +71,10 @@ TEST(its_samples_have_8_bits_and_come_a_frame_late)
     }
     for (int n = 2; n < TICKS; n++) { /* before there was none that was late */
         CHECK(seen[1].age[n] == seen[0].age[n] + 1 && seen[1].is_new[n], "tick %d: %d", n,
-              seen[1].age[n]);
+            seen[1].age[n]);
         for (int i = 0; i < SENSORS; i++) {
             CHECK(is_nearest(seen[1].raw[n][i], seen[0].raw[n - 1][i]),
-                  "tick %d, sensor %d: %d of %d", n, i, seen[1].raw[n][i], seen[0].raw[n - 1][i]);
+                "tick %d, sensor %d: %d of %d", n, i, seen[1].raw[n][i], seen[0].raw[n - 1][i]);
             moved += seen[0].raw[n][i] - seen[0].raw[n - 1][i] > 400;
         }
     }
@@ -108,21 +108,21 @@ TEST(a_fall_on_the_wall_of_before_is_soft_and_deep)
     CHECK(value("loop", 0) == 90 && value("loop", 2) == 2000, "%s", s.out);
     CHECK(value("stiffness", 2) > 10 * value("stiffness", 0) && value("stiffness", 0) > 1200 &&
               value("stiffness", 0) < 1800,
-          "%s", s.out);
+        "%s", s.out);
     CHECK(value("deepest", 0) > 4 * value("deepest", 2) && value("deepest", 2) > 0.5, "%s", s.out);
     /* It falls at 1.17 m/s: half a tick of that, and no more than one. */
     CHECK(value("past the wall when", 0) > 1 && value("  at most", 0) < 1.3 * 1e3 * 1.17 / 90, "%s",
-          s.out);
+        s.out);
     CHECK(value("  at most", 2) < 1.3 * 1e3 * 1.17 / 2000 + 0.1, "%s", s.out);
     CHECK(value("falls that do not", 0) == 0 && value("falls that do not", 1) == 1 &&
               value("falls that do not", 2) == 0,
-          "%s", s.out);
+        "%s", s.out);
     said_as_document(&s, "docs/REPORT.md", "exhand drop --preset original");
     CHECK(said_size(said_path(dir, "original.csv")) > 300 &&
               said_size(said_path(dir, "original.gp")) > 100 &&
               said_size(said_path(dir, "original_0.csv")) > 500 &&
               said_size(said_path(dir, "original_2.csv")) > 10000,
-          "%s", dir);
+        "%s", dir);
     said_clean(dir);
 }
 
@@ -133,17 +133,17 @@ TEST(a_finger_is_told_of_the_wall_late)
     said(&s, dir, lab_bilateral, WORDS("bilateral", "--preset", "original", "--out", dir));
     CHECK(s.status == 0 && s.err[0] == '\0', "%d: %s", s.status, s.err);
     CHECK(value("loop", 2) == 90 && value("loop", 3) == 2000 && value("approaches", 2) == 5, "%s",
-          s.out);
+        s.out);
     CHECK(value("contact less", 2) > 0.5 * 1e3 * 0.86 / 90 &&
               value("contact less", 2) < 1.5 * 1e3 * 0.86 / 90,
-          "%s", s.out);
+        "%s", s.out);
     CHECK(value("contact less", 3) < 1 && value("contact less", 0) < 1, "%s", s.out);
     CHECK(value("deepest", 2) > 2 * value("deepest", 3), "%s", s.out);
     CHECK(value("stiffness", 2) < 2000 && value("stiffness", 3) > 10000, "%s", s.out);
     said_as_document(&s, "docs/REPORT.md", "exhand bilateral --preset original");
     CHECK(said_size(said_path(dir, "original_0.csv")) > 500 &&
               said_size(said_path(dir, "original.csv")) > 300,
-          "%s", dir);
+        "%s", dir);
     said_clean(dir);
 }
 
@@ -157,12 +157,10 @@ TEST(what_says_otherwise_is_refused)
         {lab_drop, {"drop", "--preset", "original", "--rate", "90"}, "--preset: goes with --falls"},
         {lab_drop, {"drop", "--preset", "original", "--sweep"}, "--preset: goes with --falls"},
         {lab_bilateral, {"bilateral", "--preset", "Original"}, "no such preset"},
-        {lab_bilateral,
-         {"bilateral", "--preset", "original", "--rate", "1000"},
-         "--preset: goes with up to three"},
-        {lab_bilateral,
-         {"bilateral", "--preset", "original", "--speed", "slow,natural,fast,1"},
-         "--preset: goes with up to three"},
+        {lab_bilateral, {"bilateral", "--preset", "original", "--rate", "1000"},
+            "--preset: goes with up to three"},
+        {lab_bilateral, {"bilateral", "--preset", "original", "--speed", "slow,natural,fast,1"},
+            "--preset: goes with up to three"},
     };
     char *dir = said_dir();
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
@@ -173,5 +171,5 @@ TEST(what_says_otherwise_is_refused)
 }
 
 TEST_MAIN("sim/original", its_samples_have_8_bits_and_come_a_frame_late,
-          a_fall_on_the_wall_of_before_is_soft_and_deep, a_finger_is_told_of_the_wall_late,
-          what_says_otherwise_is_refused);
+    a_fall_on_the_wall_of_before_is_soft_and_deep, a_finger_is_told_of_the_wall_late,
+    what_says_otherwise_is_refused);

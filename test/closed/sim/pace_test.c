@@ -7,8 +7,8 @@
 #include <time.h>
 
 static int own_gettime(clockid_t which, struct timespec *t);
-static int own_nanosleep(clockid_t which, int flags, const struct timespec *t,
-                         struct timespec *left);
+static int own_nanosleep(
+    clockid_t which, int flags, const struct timespec *t, struct timespec *left);
 #define clock_gettime   own_gettime
 #define clock_nanosleep own_nanosleep
 #define pace_start      own_pace_start
@@ -31,8 +31,8 @@ static int own_gettime(clockid_t which, struct timespec *t)
     return 0;
 }
 
-static int own_nanosleep(clockid_t which, int flags, const struct timespec *t,
-                         struct timespec *left)
+static int own_nanosleep(
+    clockid_t which, int flags, const struct timespec *t, struct timespec *left)
 {
     CHECK(which == CLOCK_MONOTONIC && flags == TIMER_ABSTIME && left == NULL, "another clock");
     CHECK(t->tv_nsec >= 0 && t->tv_nsec < 1000000000, "%ld ns", (long)t->tv_nsec);
@@ -57,15 +57,15 @@ static void begin(uint32_t num, uint32_t den, double slack_s)
 
 TEST(ticks_are_due_at_their_time)
 {
-    static const struct exh_period T[] = {{1, 1},         {1, 90},    {1, 2000},
-                                          {597, 1193182}, {1, 20000}, {1, 4294967295u}};
+    static const struct exh_period T[] = {
+        {1, 1}, {1, 90}, {1, 2000}, {597, 1193182}, {1, 20000}, {1, 4294967295u}};
     for (size_t i = 0; i < sizeof T / sizeof T[0]; i++) {
         begin(T[i].num, T[i].den, 0);
         for (uint64_t n = 1; n < 3000000000u; n = n * 7 + 1) {
             CHECK_EQ_I64(pace_wait(n, &own.end), 0);
             CHECK_EQ_I64(own.due_ns - INT64_C(77999999999),
-                         (int64_t)(n * T[i].num / T[i].den * 1000000000 +
-                                   n * T[i].num % T[i].den * 1000000000 / T[i].den));
+                (int64_t)(n * T[i].num / T[i].den * 1000000000 +
+                          n * T[i].num % T[i].den * 1000000000 / T[i].den));
         }
     }
 }
@@ -76,8 +76,8 @@ TEST(what_went_by_is_missed)
     static const struct {
         int64_t late_ns;
         uint32_t missed;
-    } row[] = {{0, 0},       {999999, 0},  {1000000, 1},
-               {1999999, 1}, {2000000, 2}, {INT64_C(3600000000000), 3600000}};
+    } row[] = {{0, 0}, {999999, 0}, {1000000, 1}, {1999999, 1}, {2000000, 2},
+        {INT64_C(3600000000000), 3600000}};
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
         begin(1, 1000, 0);
         CHECK_EQ_I64(pace_wait(1, &own.end), 0);
@@ -87,7 +87,7 @@ TEST(what_went_by_is_missed)
         CHECK_EQ_I64(pace_wait(3 + row[i].missed, &own.end), 0);
         own.now_ns += row[i].late_ns; /* the tick itself took so long */
         CHECK_EQ_I64(pace_wait(4 + row[i].missed, &own.end),
-                     row[i].late_ns ? (uint32_t)((row[i].late_ns - 1000000) / 1000000) : 0);
+            row[i].late_ns ? (uint32_t)((row[i].late_ns - 1000000) / 1000000) : 0);
     }
 }
 
@@ -118,5 +118,5 @@ TEST(signals)
     CHECK(own.end == 1 && own.now_ns == INT64_C(77999999999), "it did not come back");
 }
 
-TEST_MAIN("pace", ticks_are_due_at_their_time, what_went_by_is_missed, a_very_long_stop, slack,
-          signals);
+TEST_MAIN(
+    "pace", ticks_are_due_at_their_time, what_went_by_is_missed, a_very_long_stop, slack, signals);

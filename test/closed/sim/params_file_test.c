@@ -162,7 +162,7 @@ TEST(what_is_said_of_bad_ones)
         char theirs[32], ours[32];
         snprintf(theirs, sizeof theirs, "%u values of table", (unsigned)p->count);
         snprintf(ours, sizeof ours, "%08lx",
-                 (unsigned long)exh_signal_crc(exh_scene_drop.params->table));
+            (unsigned long)exh_signal_crc(exh_scene_drop.params->table));
         refused(2, theirs, ours);
     }
     remove_dir();
@@ -174,16 +174,16 @@ TEST(experiments_take_and_leave_them)
     static struct said a, b;
     make_dir();
     said(&a, dir, cli_drop,
-         WORDS("drop", "--rate", "500", "--falls", "1", "--k", "3000", "--b", "12", "--set",
-               "f_max=15", "--save-params", file));
+        WORDS("drop", "--rate", "500", "--falls", "1", "--k", "3000", "--b", "12", "--set",
+            "f_max=15", "--save-params", file));
     CHECK(a.status < 2 && a.err[0] == '\0', "%d: %s", a.status, a.err);
     said(&b, dir, cli_drop, WORDS("drop", "--rate", "500", "--falls", "1", "--load-params", file));
     CHECK(b.status == a.status && strcmp(a.out, b.out) == 0, "%s\nbut\n%s", a.out, b.out);
     said(&b, dir, cli_drop,
-         WORDS("drop", "--rate", "500", "--falls", "1", "--load-params", file, "--set", "f_max=3"));
+        WORDS("drop", "--rate", "500", "--falls", "1", "--load-params", file, "--set", "f_max=3"));
     CHECK(b.status < 2 && strcmp(a.out, b.out) != 0, "--set does not come behind it");
     said(&b, dir, cli_drop,
-         WORDS("drop", "--rate", "500", "--falls", "1", "--k", "500", "--load-params", file));
+        WORDS("drop", "--rate", "500", "--falls", "1", "--k", "500", "--load-params", file));
     CHECK(b.status < 2 && strcmp(a.out, b.out) != 0, "--k does not come behind it: %s", b.err);
     said(&b, dir, lab_drop, WORDS("drop", "--sweep", "--load-params", file));
     CHECK(b.status == 2 && strstr(b.err, "no plane"), "%d: %s", b.status, b.err);
@@ -194,19 +194,19 @@ TEST(experiments_take_and_leave_them)
     said(&b, dir, cli_drop, WORDS("drop", "--rate", "500", "--load-params", "/nowhere/at/all"));
     CHECK(b.status == 3 && strstr(b.err, "/nowhere/at/all"), "%d: %s", b.status, b.err);
     said(&a, dir, cli_bilateral,
-         WORDS("bilateral", "--rate", "500", "--speed", "fast", "--approaches", "1", "--k", "3000",
-               "--save-params", file));
+        WORDS("bilateral", "--rate", "500", "--speed", "fast", "--approaches", "1", "--k", "3000",
+            "--save-params", file));
     CHECK(a.status < 2 && a.err[0] == '\0', "%d: %s", a.status, a.err);
     said(&b, dir, cli_bilateral,
-         WORDS("bilateral", "--rate", "500", "--speed", "fast", "--approaches", "1",
-               "--load-params", file));
+        WORDS("bilateral", "--rate", "500", "--speed", "fast", "--approaches", "1", "--load-params",
+            file));
     /* But for what is said of d_lim: that takes the string per fingertip for as it was fitted. */
     CHECK(strstr(a.out, "d_lim") != NULL, "%s", a.out);
     CHECK(b.status == a.status &&
               strncmp(a.out, b.out, (size_t)(strstr(a.out, "d_lim") - a.out)) == 0,
-          "%s\nbut\n%s", a.out, b.out);
+        "%s\nbut\n%s", a.out, b.out);
     remove_dir();
 }
 
 TEST_MAIN("sim/params_file", there_and_back, what_cannot_be_written, what_is_said_of_bad_ones,
-          experiments_take_and_leave_them);
+    experiments_take_and_leave_them);

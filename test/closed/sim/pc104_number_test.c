@@ -25,36 +25,16 @@ static void same(const char *text, unsigned frac)
         CHECK(err == -EXH_E_RANGE, "%s q%u: %d", text, frac, err);
     } else {
         CHECK(err == 0 && (double)raw == want, "%s q%u: %d, %" PRId32 ", want %.0f", text, frac,
-              err, raw, want);
+            err, raw, want);
     }
 }
 
 TEST(takes_what_the_host_takes)
 {
-    static const char *const text[] = {"0",
-                                       "-0",
-                                       "1",
-                                       "+1",
-                                       "-1",
-                                       "2000",
-                                       "1234.5",
-                                       ".5",
-                                       "5.",
-                                       "0.07",
-                                       "6.632e-5",
-                                       "12.5e-3",
-                                       "1E3",
-                                       "3.339",
-                                       "-7.25",
-                                       "2147483647",
-                                       "-2147483648",
-                                       "2147483648",
-                                       "1e18",
-                                       "1e30",
-                                       "1e-30",
-                                       "0e99",
-                                       "0.000000000000000001",
-                                       "123456789.123456789"};
+    static const char *const text[] = {"0", "-0", "1", "+1", "-1", "2000", "1234.5", ".5", "5.",
+        "0.07", "6.632e-5", "12.5e-3", "1E3", "3.339", "-7.25", "2147483647", "-2147483648",
+        "2147483648", "1e18", "1e30", "1e-30", "0e99", "0.000000000000000001",
+        "123456789.123456789"};
     for (unsigned i = 0; i < sizeof text / sizeof text[0]; i++) {
         same(text[i], 0);
         same(text[i], 10);
@@ -75,16 +55,15 @@ TEST(takes_random_numbers_alike)
         x = x * UINT64_C(6364136223846793005) + 1442695040888963407u;
         frac = (unsigned)(x >> 33) % 43;
         snprintf(text, sizeof text, "%s%u.%ue%d", x >> 63 ? "-" : "", (unsigned)(x >> 40) % 1000u,
-                 (unsigned)(x >> 20) % 10000u, (int)((x >> 50) % 9) - 6);
+            (unsigned)(x >> 20) % 10000u, (int)((x >> 50) % 9) - 6);
         same(text, frac);
     }
 }
 
 TEST(refuses_what_is_no_number)
 {
-    static const char *const text[] = {"",    "-",     "+",   ".",    "e3",
-                                       "1e",  "1e+",   "1x",  "0x10", "1 2",
-                                       "--1", "1.2.3", "nan", "inf",  "1234567890123456789"};
+    static const char *const text[] = {"", "-", "+", ".", "e3", "1e", "1e+", "1x", "0x10", "1 2",
+        "--1", "1.2.3", "nan", "inf", "1234567890123456789"};
     int32_t raw = 7;
     for (unsigned i = 0; i < sizeof text / sizeof text[0]; i++) {
         CHECK(pc104_number(text[i], 10, &raw) == -EXH_E_UNKNOWN, "%s", text[i]);
@@ -93,4 +72,4 @@ TEST(refuses_what_is_no_number)
 }
 
 TEST_MAIN("pc104_number", takes_what_the_host_takes, takes_random_numbers_alike,
-          refuses_what_is_no_number);
+    refuses_what_is_no_number);

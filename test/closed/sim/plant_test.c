@@ -18,10 +18,7 @@ static double root_of(double v)
     return r;
 }
 
-static long double wide(double v)
-{
-    return (long double)v;
-}
+static long double wide(double v) { return (long double)v; }
 
 /* A device without friction, noise or delay; a test adds what it looks at. */
 static struct sim_device smooth(void)
@@ -31,10 +28,7 @@ static struct sim_device smooth(void)
     return d;
 }
 
-static uint64_t below(uint64_t n)
-{
-    return check_u64() % n;
-}
+static uint64_t below(uint64_t n) { return check_u64() % n; }
 
 /* Uniform between two ends. */
 static double between(double lo, double hi)
@@ -61,8 +55,13 @@ TEST(impact_speed_is_that_of_a_free_fall)
     static const struct {
         double mass_kg, h_m, cable_npm, cable_nspm;
     } row[] = {
-        {0.5, 0.07, 1e5, 1}, {0.5, 0.07, 1e6, 1},  {0.5, 0.07, 2302, 7}, {0.5, 0.5, 1e5, 1},
-        {5, 0.07, 1e5, 1},   {0.1, 0.001, 1e5, 1}, {0.02, 0.07, 1e5, 1},
+        {0.5, 0.07, 1e5, 1},
+        {0.5, 0.07, 1e6, 1},
+        {0.5, 0.07, 2302, 7},
+        {0.5, 0.5, 1e5, 1},
+        {5, 0.07, 1e5, 1},
+        {0.1, 0.001, 1e5, 1},
+        {0.02, 0.07, 1e5, 1},
     };
     for (size_t i = 0; i < LEN(row); i++) {
         struct sim_device d = smooth();
@@ -91,7 +90,7 @@ TEST(a_rotor_slows_the_fall_by_its_share)
         ideal = root_of(2 * SIM_GRAVITY * 0.07 * d.mass_kg / (d.mass_kg + d.rotor_kg));
         got = impact_mps(&d, 0.07, 1e-4);
         CHECK(fabs(got - ideal) <= 0.005 * ideal, "rotor %.4f kg: %.6f m/s, want %.6f", rotor_kg[i],
-              got, ideal);
+            got, ideal);
     }
 }
 
@@ -101,7 +100,7 @@ TEST(what_is_held_does_not_move)
     struct plant p = {-0.07, 0, -0.07, 0, 0, 0};
     plant_advance(&p, &d, 1, 3.3, 1);
     CHECK(p.x_m == -0.07 && p.q_m == -0.07 && p.v_mps == 0 && p.w_mps == 0, "x %.9g q %.9g", p.x_m,
-          p.q_m);
+        p.q_m);
     CHECK(fabs(p.cur_A - 3.3) < 1e-9, "its current flows all the same: %.12f A", p.cur_A);
 }
 
@@ -127,8 +126,14 @@ TEST(stiction_holds_without_creep)
         double mu;      /* times the tension must be above the load */
         double substep_s;
     } row[] = {
-        {0.90, 0.2, 25e-6},   {0.90, 0.1123, 25e-6}, {1.10, 0.0920, 25e-6}, {0.60, 0.7, 25e-6},
-        {0.90, 0.1123, 1e-3}, {0.90, 0.1123, 1e-6},  {1, 0.0001, 25e-6},    {0.999, 0.002, 100e-6},
+        {0.90, 0.2, 25e-6},
+        {0.90, 0.1123, 25e-6},
+        {1.10, 0.0920, 25e-6},
+        {0.60, 0.7, 25e-6},
+        {0.90, 0.1123, 1e-3},
+        {0.90, 0.1123, 1e-6},
+        {1, 0.0001, 25e-6},
+        {0.999, 0.002, 100e-6},
     };
     for (size_t i = 0; i < LEN(row); i++) {
         struct sim_device d;
@@ -138,7 +143,7 @@ TEST(stiction_holds_without_creep)
         for (int ms = 0; ms < 10000; ms++) {
             plant_advance(&p, &d, 1e-3, 0, 0);
             CHECK(p.v_mps == 0 && p.x_m == x && p.w_mps == 0 && p.q_m == 0,
-                  "row %zu, %d ms: v %.3g w %.3g, crept %.3g", i, ms, p.v_mps, p.w_mps, p.x_m - x);
+                "row %zu, %d ms: v %.3g w %.3g, crept %.3g", i, ms, p.v_mps, p.w_mps, p.x_m - x);
         }
     }
 }
@@ -156,7 +161,7 @@ TEST(stiction_lets_go_at_its_limit)
             const double x = p.x_m;
             plant_advance(&p, &d, 0.02, 0, 0);
             CHECK((p.x_m == x) == more, "tension %.1f, friction %s its load: moved %.3g m",
-                  tension[i], more ? "above" : "below", p.x_m - x);
+                tension[i], more ? "above" : "below", p.x_m - x);
         }
     }
 }
@@ -180,7 +185,7 @@ TEST(friction_stops_in_closed_form)
         q_m = p.q_m;
         CHECK(p.w_mps == 0, "still %.3g m/s", p.w_mps);
         CHECK(fabs(q_m - path_m) <= fabs(speed_mps[i]) * d.substep_s, "path %.9f, want %.9f", q_m,
-              path_m);
+            path_m);
         p.x_m = -1;
         p.v_mps = 0;
         plant_advance(&p, &d, 0.1, 0, 0);
@@ -213,12 +218,12 @@ TEST(the_string_only_pulls_and_pulls_both_ends_alike)
         mass_N = d.mass_kg * (SIM_GRAVITY - (p.v_mps - v) / h);
         rotor_N = d.rotor_kg * (p.w_mps - w) / h;
         first_N = law_N(&d, mid_m, v - w);
-        want_N = law_N(&d, mid_m,
-                       v - w + h / 2 * (SIM_GRAVITY - first_N / d.mass_kg - first_N / d.rotor_kg));
+        want_N = law_N(
+            &d, mid_m, v - w + h / 2 * (SIM_GRAVITY - first_N / d.mass_kg - first_N / d.rotor_kg));
         tiny_N = 1e-9 * (1 + want_N + first_N + d.mass_kg * fabs(v) / h * 1e-6);
         CHECK(mass_N >= -tiny_N && rotor_N >= -tiny_N, "pushes: %.9g N, %.9g N", mass_N, rotor_N);
         CHECK(fabs(mass_N - rotor_N) <= tiny_N, "%.9g N at the mass, %.9g at the rotor", mass_N,
-              rotor_N);
+            rotor_N);
         CHECK(fabs(rotor_N - want_N) <= tiny_N, "%.9g N, law %.9g", rotor_N, want_N);
         if (mid_m < 0) { CHECK(p.w_mps == w, "slack, yet the rotor feels %.3g N", rotor_N); }
     }
@@ -243,7 +248,7 @@ TEST(current_loop_is_exact_at_any_substep)
             const double want = (double)(1 - exp_neg(x));
             plant_advance(&p, &d, piece, 1, 1);
             CHECK(fabs(p.cur_A - want) <= 1e-9, "substep %.3g, %.1f Hz, %.3g s: %.12f, want %.12f",
-                  d.substep_s, d.current_hz, n * piece, p.cur_A, want);
+                d.substep_s, d.current_hz, n * piece, p.cur_A, want);
         }
     }
 }
@@ -263,7 +268,7 @@ TEST(monitor_lags_behind_the_current)
             const double want = (double)(1 - (b * exp_neg(t / b) - a * exp_neg(t / a)) / (b - a));
             plant_advance(&p, &d, 50e-6, 1, n % 2); /* held or not, in one piece or two */
             CHECK(fabs(p.mon_A - want) <= 1e-9, "lag %.3g s, %d: %.12f, want %.12f", lag_s[i], n,
-                  p.mon_A, want);
+                p.mon_A, want);
         }
         d.mon_lag_s = 0;
         plant_advance(&p, &d, 50e-6, 2, 1);
@@ -286,7 +291,7 @@ TEST(a_monitor_as_fast_as_the_current)
             const double shift = (double)(t * t * exp_neg(t)) * -off[i] / 2; /* first order */
             plant_advance(&p, &d, 50e-6, 1, 1);
             CHECK(fabs(p.mon_A - want - shift) <= 2e-8, "%g apart, %d: %.12f, want %.12f", off[i],
-                  n, p.mon_A, want + shift);
+                n, p.mon_A, want + shift);
         }
     }
 }
@@ -296,7 +301,7 @@ TEST(exp_neg_is_good_to_1e_12)
     double worst = 0, at = 0;
     CHECK(exp_neg(1) - 0.367879441171442321595524L < 1e-18L &&
               exp_neg(1) - 0.367879441171442321595524L > -1e-18L,
-          "the reference itself");
+        "the reference itself");
     for (int i = 0; i <= 700000; i++) {
         const double x = i < 350000 ? i * (1.0 / 350000) : (i - 350000) * (700.0 / 350000);
         const long double want = exp_neg(wide(x));
@@ -336,7 +341,7 @@ static struct energy energy_of(const struct plant *p, const struct sim_device *d
     const double all_N = elastic_N + d->cable_npm * h / 2 * fabs(opening) + weight_N + loss_N;
     struct energy e;
     e.e_J = 0.5 * (d->mass_kg * p->v_mps * p->v_mps + d->rotor_kg * p->w_mps * p->w_mps +
-                   elastic_N * s) -
+                      elastic_N * s) -
             weight_N * p->x_m;
     e.edge_J = 0.625 * d->cable_npm * h * h * opening * opening;
     e.d_J = e.e_J - (s > 0 ? e.edge_J / 5 : 0);
@@ -348,8 +353,8 @@ static struct energy energy_of(const struct plant *p, const struct sim_device *d
 }
 
 /* 2000 sub-steps; the worst growth of D beyond what it may, J, and E at both ends. */
-static void run_free(struct plant p, const struct sim_device *d, struct energy *first,
-                     struct energy *last)
+static void run_free(
+    struct plant p, const struct sim_device *d, struct energy *first, struct energy *last)
 {
     const double h = 0.999 * d->substep_s; /* one sub-step a call */
     *first = *last = energy_of(&p, d, h);
@@ -362,7 +367,7 @@ static void run_free(struct plant p, const struct sim_device *d, struct energy *
             may_J += now.edge_J > last->edge_J ? now.edge_J : last->edge_J;
         }
         CHECK(now.d_J - last->d_J <= may_J, "step %d: grew by %.3g J, may by %.3g", i,
-              now.d_J - last->d_J, may_J);
+            now.d_J - last->d_J, may_J);
         *last = now;
     }
 }
@@ -380,7 +385,7 @@ TEST(energy_never_grows_with_the_motor_off)
         d.substep_s = below(2) ? 100e-6 : 25e-6;
         run_free(p, &d, &first, &last);
         CHECK(last.e_J <= first.e_J + 0.02 * fabs(first.e_J) + 1e-3, "from %.6f J to %.6f J",
-              first.e_J, last.e_J);
+            first.e_J, last.e_J);
         slack += !last.taut;
     }
     CHECK(slack > 0, "no case ended slack: the bound at the edge was not tried");
@@ -417,10 +422,10 @@ TEST(a_quarter_of_the_error_with_half_the_substep)
         plant_advance(&p, &d, 0.1, 0, 0);
         err = fabs(p.x_m - swing_m(&d, 0.0015, 0.1));
         CHECK(err > 0 && err < 0.5 * d.substep_s * d.substep_s, "substep %.3g s: error %.3g m",
-              d.substep_s, err);
+            d.substep_s, err);
         if (i > 0) {
             CHECK(last / err > 3.6 && last / err < 4.4, "substep %.3g s: error falls by %.3f",
-                  d.substep_s, last / err);
+                d.substep_s, last / err);
         }
         last = err;
     }
@@ -434,8 +439,8 @@ TEST(a_quarter_of_the_error_with_half_the_substep)
 static double grown(const struct sim_device *d, double hand_npm, double hand_nspm, double step_s)
 {
     const double weight_N = d->mass_kg * SIM_GRAVITY, rest_m = weight_N / d->cable_npm;
-    const struct plant_hand hand = {hand_npm, hand_nspm, weight_N / (hand_npm > 0 ? hand_npm : 1),
-                                    0, -1};
+    const struct plant_hand hand = {
+        hand_npm, hand_nspm, weight_N / (hand_npm > 0 ? hand_npm : 1), 0, -1};
     struct sim_device fixed = *d;
     struct plant p = {1.1 * rest_m, 0, 0, 0, weight_N / d->kf_npa, 0};
     double most = 0, off_N;
@@ -482,8 +487,8 @@ TEST(steps_that_will_do_are_stable)
         step_s = longest_s(d, hand_npm, hand_nspm);
         good = grown(&d, hand_npm, hand_nspm, step_s);
         CHECK(good <= 1.3,
-              "string %g N/m %g Ns/m, rotor %g, mass %g kg, hand %g: grows by %g at %g s",
-              d.cable_npm, d.cable_nspm, d.rotor_kg, d.mass_kg, hand_npm, good, step_s);
+            "string %g N/m %g Ns/m, rotor %g, mass %g kg, hand %g: grows by %g at %g s",
+            d.cable_npm, d.cable_nspm, d.rotor_kg, d.mass_kg, hand_npm, good, step_s);
         /* Beyond the limit of the spring damping helps; beyond its own nothing does but friction.
          */
         damps = 2.05 * step_s * d.cable_nspm * (1 / d.mass_kg + 1 / d.rotor_kg);
@@ -491,10 +496,10 @@ TEST(steps_that_will_do_are_stable)
         tried[damps > 0]++;
         bad = grown(&d, 0, 0, 2.05 * step_s);
         CHECK(bad >= 1.5, "string %g N/m, rotor %g, mass %g kg: %g at %g s", d.cable_npm,
-              d.rotor_kg, d.mass_kg, bad, 2.05 * step_s);
+            d.rotor_kg, d.mass_kg, bad, 2.05 * step_s);
     }
-    CHECK(tried[0] > 20 && tried[1] > 20, "%d by the spring, %d by its damping", tried[0],
-          tried[1]);
+    CHECK(
+        tried[0] > 20 && tried[1] > 20, "%d by the spring, %d by its damping", tried[0], tried[1]);
 }
 
 /* Where what is damped goes at a steady speed, dry friction takes its share of the force. */
@@ -525,20 +530,20 @@ TEST(friction_beside_strong_damping_takes_what_it_takes)
     good = off_steady(finger, 100, longest_s(finger, 300, 100));
     bad = off_steady(finger, 100, 250e-6);
     CHECK(good < 0.004 && bad > 0.01, "finger: off by %g m/s, by %g in steps that are too long",
-          good, bad);
+        good, bad);
     rotor.rotor_kg = 0.001;
     rotor.viscous_nspm = 100;
     good = off_steady(rotor, 5, longest_s(rotor, 300, 5));
     bad = off_steady(rotor, 5, 250e-6);
     CHECK(good < 0.004 && bad > 0.01, "rotor: off by %g m/s, by %g in steps that are too long",
-          good, bad);
+        good, bad);
 }
 
 TEST(the_step_that_is_named_will_do)
 {
     struct sim_device d = sim_device_default();
     CHECK(plant_step_will_do(&d, 0, 0) && plant_step_that_will_do(&d, 0, 0) == 1e-3,
-          "of the device itself");
+        "of the device itself");
     d.cable_npm = 1e6;
     d.rotor_kg = 1e-3;
     for (int i = 0; i < 60; i++) {
@@ -548,7 +553,7 @@ TEST(the_step_that_is_named_will_do)
         } else {
             CHECK((named_s == 0 && limit_s < 1.01e-7) ||
                       (named_s <= 1.02 * limit_s && (named_s > limit_s / 2.6 || named_s == 1e-3)),
-                  "%g s, limit %g", named_s, limit_s);
+                "%g s, limit %g", named_s, limit_s);
         }
         d.rotor_kg *= 0.93;
         d.cable_nspm *= 1.05;
@@ -557,10 +562,10 @@ TEST(the_step_that_is_named_will_do)
 }
 
 TEST_MAIN("plant", impact_speed_is_that_of_a_free_fall, a_rotor_slows_the_fall_by_its_share,
-          what_is_held_does_not_move, stiction_holds_without_creep, stiction_lets_go_at_its_limit,
-          friction_stops_in_closed_form, the_string_only_pulls_and_pulls_both_ends_alike,
-          current_loop_is_exact_at_any_substep, monitor_lags_behind_the_current,
-          a_monitor_as_fast_as_the_current, exp_neg_is_good_to_1e_12,
-          energy_never_grows_with_the_motor_off, a_quarter_of_the_error_with_half_the_substep,
-          steps_that_will_do_are_stable, friction_beside_strong_damping_takes_what_it_takes,
-          the_step_that_is_named_will_do);
+    what_is_held_does_not_move, stiction_holds_without_creep, stiction_lets_go_at_its_limit,
+    friction_stops_in_closed_form, the_string_only_pulls_and_pulls_both_ends_alike,
+    current_loop_is_exact_at_any_substep, monitor_lags_behind_the_current,
+    a_monitor_as_fast_as_the_current, exp_neg_is_good_to_1e_12,
+    energy_never_grows_with_the_motor_off, a_quarter_of_the_error_with_half_the_substep,
+    steps_that_will_do_are_stable, friction_beside_strong_damping_takes_what_it_takes,
+    the_step_that_is_named_will_do);

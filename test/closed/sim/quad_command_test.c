@@ -30,13 +30,12 @@ static const char *make_file(const char *dir, const char *name, const void *what
 /* The samples of a sigrok session in DIR/raw; 0 when they can't be had. */
 static int session(const char *dir, const char *name)
 {
-    static const char *const how[][2] = {
-        {"unzip -p", "'logic-1*'"},
+    static const char *const how[][2] = {{"unzip -p", "'logic-1*'"},
         {"python3 -c 'import sys, zipfile\n"
          "z = zipfile.ZipFile(sys.argv[1])\n"
          "for n in z.namelist():\n"
          "    if n.startswith(\"logic-1\"): sys.stdout.buffer.write(z.read(n))'",
-         ""}};
+            ""}};
     const char *data = getenv("EXH_DATA") ? getenv("EXH_DATA") : "../shared/data";
     char path[512], command[1024];
     static int told;
@@ -49,7 +48,7 @@ static int session(const char *dir, const char *name)
     }
     for (size_t i = 0; i < LEN(how); i++) {
         snprintf(command, sizeof command, "%s '%s' %s >'%s/raw' 2>/dev/null", how[i][0], path,
-                 how[i][1], dir);
+            how[i][1], dir);
         if (system(command) == 0 && said_size(said_path(dir, "raw")) > 0) { return 1; }
     }
     if (told++ == 0) {
@@ -86,13 +85,13 @@ TEST(captures_decode_to_their_descriptions)
         }
         if (!there) { continue; }
         quad(dir, said_path(dir, "raw"),
-             WORDS("quad", "--raw", "--rate", "1e6", "--a", row[i].a, "--b", row[i].b));
+            WORDS("quad", "--raw", "--rate", "1e6", "--a", row[i].a, "--b", row[i].b));
         CHECK(s.status == 0 && strncmp(s.out, row[i].says, strlen(row[i].says)) == 0,
-              "%s: %d: %s%s", row[i].file, s.status, s.out, s.err);
+            "%s: %d: %s%s", row[i].file, s.status, s.out, s.err);
         CHECK(s.err[0] == '\0', "%s: %s", row[i].file, s.err);
         /* What counts up with A and B counts down with B and A. */
         quad(dir, said_path(dir, "raw"),
-             WORDS("quad", "--raw", "--rate", "1e6", "--a", row[i].b, "--b", row[i].a));
+            WORDS("quad", "--raw", "--rate", "1e6", "--a", row[i].b, "--b", row[i].a));
         CHECK(strtol(s.out + 4, NULL, 10) == -strtol(row[i].says + 4, NULL, 10), "%s", s.out);
     }
     said_clean(dir);
@@ -101,8 +100,8 @@ TEST(captures_decode_to_their_descriptions)
 static void split(int64_t v[4])
 {
     CHECK(sscanf(s.out, "net=%" SCNd64 " edges=%" SCNd64 " illegal=%" SCNd64 " min_gap_us=%" SCNd64,
-                 &v[0], &v[1], &v[2], &v[3]) == 4,
-          "%s%s", s.out, s.err);
+              &v[0], &v[1], &v[2], &v[3]) == 4,
+        "%s%s", s.out, s.err);
 }
 
 /* Polled too slowly: what is lost is said to be lost. */
@@ -122,12 +121,12 @@ TEST(captures_fed_too_slowly_show_their_illegal_steps)
         int64_t v[4];
         if (!session(dir, row[i].file)) { continue; }
         quad(dir, said_path(dir, "raw"),
-             WORDS("quad", "--raw", "--rate", "1e6", "--a", row[i].a, "--b", row[i].b, "--every",
-                   row[i].every));
+            WORDS("quad", "--raw", "--rate", "1e6", "--a", row[i].a, "--b", row[i].b, "--every",
+                row[i].every));
         CHECK(s.status == 0 && strstr(s.err, "sampled too slowly"), "%d: %s", s.status, s.err);
         split(v);
         CHECK(v[0] == row[i].net && v[2] == row[i].illegal, "%s in %s us: %s", row[i].file,
-              row[i].every, s.out);
+            row[i].every, s.out);
         CHECK(v[3] == strtol(row[i].every, NULL, 10), "%s", s.out); /* a change in every sample */
     }
     said_clean(dir);
@@ -148,9 +147,9 @@ TEST(a_capture_as_csv)
         fclose(to);
         quad(dir, "/dev/null", WORDS("quad", "--csv", said_path(dir, "csv")));
         CHECK(strcmp(s.out, "net=-12732 edges=12732 illegal=0 min_gap_us=23\n") == 0, "%s%s", s.out,
-              s.err);
+            s.err);
         quad(dir, "/dev/null",
-             WORDS("quad", "--csv", said_path(dir, "csv"), "--x1", "--every", "25"));
+            WORDS("quad", "--csv", said_path(dir, "csv"), "--x1", "--every", "25"));
         split(v);
         CHECK(v[2] == 42, "%s", s.out);
         quad(dir, "/dev/null", WORDS("quad", "--csv", said_path(dir, "csv"), "--x1"));
@@ -170,7 +169,7 @@ TEST(a_sine_goes_from_end_to_end)
             int64_t v[4];
             CHECK_EQ_I64(truncate(said_path(dir, "raw"), 2000000 / 8 * (8 - eighth)), 0);
             quad(dir, said_path(dir, "raw"),
-                 WORDS("quad", "--raw", "--rate", "1e6", "--a", "0", "--b", "1"));
+                WORDS("quad", "--raw", "--rate", "1e6", "--a", "0", "--b", "1"));
             split(v);
             lo = v[0] < lo ? v[0] : lo;
             hi = v[0] > hi ? v[0] : hi;
@@ -210,11 +209,11 @@ static const char *as_csv(const char *dir, const uint8_t byte[WALK], int with_ti
     FILE *f = fopen(path, "wb");
     CHECK(f != NULL, "%s", path);
     fprintf(f, "\xEF\xBB\xBF# a walk%s; by ourselves%s%s%s%s", end, end, with_time ? "time_s," : "",
-            "A,B", end);
+        "A,B", end);
     for (int i = 0; i < WALK; i++) {
         if (with_time) { fprintf(f, i % 2 ? "%.6f," : "%.9e ,", (i - 10000) * 4e-6); }
         fprintf(f, i % 3 ? "%d,%d%s" : " %d , %d %s", byte[i] >> 5 & 1, byte[i] >> 3 & 1,
-                i == WALK - 1 ? "" : end);
+            i == WALK - 1 ? "" : end);
     }
     fclose(f);
     return path;
@@ -233,7 +232,7 @@ TEST(csv_bytes_and_truth_agree)
         const char *const n = every[i / LEN(end)];
         int64_t v[4];
         quad(dir, said_path(dir, "walk"),
-             WORDS("quad", "--raw", "--rate", "250000", "--a", "5", "--b", "3", "--every", n));
+            WORDS("quad", "--raw", "--rate", "250000", "--a", "5", "--b", "3", "--every", n));
         CHECK(s.status == 0, "%s", s.err);
         strcpy(want, s.out);
         if (i == 0) {
@@ -241,13 +240,13 @@ TEST(csv_bytes_and_truth_agree)
             CHECK(v[0] == net && v[2] == 0 && v[3] == 4, "%s, not %" PRId64, s.out, net);
         }
         quad(dir, "/dev/null",
-             WORDS("quad", "--csv", as_csv(dir, byte, 1, end[i % LEN(end)]), "--every", n));
+            WORDS("quad", "--csv", as_csv(dir, byte, 1, end[i % LEN(end)]), "--every", n));
         CHECK(s.status == 0 && strcmp(s.out, want) == 0, "time, %s: %snot %s%s", n, s.out, want,
-              s.err);
+            s.err);
         quad(dir, as_csv(dir, byte, 0, end[i % LEN(end)]),
-             WORDS("quad", "--csv", "-", "--rate=250000", "--every", n));
+            WORDS("quad", "--csv", "-", "--rate=250000", "--every", n));
         CHECK(s.status == 0 && strcmp(s.out, want) == 0, "rate, %s: %snot %s%s", n, s.out, want,
-              s.err);
+            s.err);
     }
     CHECK(strcmp(want, "net=0 edges=0 illegal=0 min_gap_us=-\n") == 0, "one sample: %s", want);
     said_clean(dir);
@@ -261,15 +260,15 @@ TEST(index_is_printed_when_asked_for)
     int64_t net, index_cnt;
     walk(dir, byte, &net, &index_cnt);
     quad(dir, said_path(dir, "walk"),
-         WORDS("quad", "--raw", "--rate", "1", "--a", "5", "--b", "3", "--index", "0"));
-    snprintf(want, sizeof want, " min_gap_us=1000000 index_cnt=%" PRId64 " indices=20\n",
-             index_cnt);
+        WORDS("quad", "--raw", "--rate", "1", "--a", "5", "--b", "3", "--index", "0"));
+    snprintf(
+        want, sizeof want, " min_gap_us=1000000 index_cnt=%" PRId64 " indices=20\n", index_cnt);
     CHECK(s.status == 0 && strstr(s.out, want) && strtol(s.out + 4, NULL, 10) == net, "%s, not%s",
-          s.out, want);
+        s.out, want);
     quad(dir, make_file(dir, "none", "\1\1\3\2", 4),
-         WORDS("quad", "--raw", "--rate", "1", "--a", "1", "--b", "0", "--index", "7"));
+        WORDS("quad", "--raw", "--rate", "1", "--a", "1", "--b", "0", "--index", "7"));
     CHECK(strcmp(s.out, "net=2 edges=2 illegal=0 min_gap_us=1000000 index_cnt=- indices=0\n") == 0,
-          "%s", s.out);
+        "%s", s.out);
     said_clean(dir);
 }
 
@@ -297,11 +296,11 @@ TEST(modes_and_small_inputs)
     char *dir = said_dir();
     for (size_t i = 0; i < LEN(row); i++) {
         quad(dir, make_file(dir, "in", row[i].byte, row[i].n),
-             WORDS("quad", "--raw", "--rate", row[i].rate, "--a", "1", "--b", "0", row[i].mode));
+            WORDS("quad", "--raw", "--rate", row[i].rate, "--a", "1", "--b", "0", row[i].mode));
         CHECK(s.status == 0 && strcmp(s.out, row[i].says) == 0, "row %zu: %d: %s%s", i, s.status,
-              s.out, s.err);
+            s.out, s.err);
         CHECK(row[i].warns[0] ? strstr(s.err, row[i].warns) != NULL : s.err[0] == '\0',
-              "row %zu: %s", i, s.err);
+            "row %zu: %s", i, s.err);
     }
     said_clean(dir);
 }
@@ -333,7 +332,7 @@ TEST(options_that_make_no_sense)
         {{RAW, "--a", "0", "--b", "1", "--x2", "--x1"}, "--x1, --x2, --x4"},
         {{RAW, "--a", "0", "--b", "1", "file"}, "one word too many"},
         {{"quad", "--raw", "--rate", "0", "--a", "0", "--b", "1"},
-         "--rate: 0 (allowed 1..1000000000)"},
+            "--rate: 0 (allowed 1..1000000000)"},
         {{"quad", "--raw", "--rate", "1e10", "--a", "0", "--b", "1"}, "--rate: 1e10"},
         {{"quad", "--raw", "--rate", "nan", "--a", "0", "--b", "1"}, "--rate: nan"},
         {{"quad", "--csv", "x", "--a", "0"}, "for --raw alone"},
@@ -344,10 +343,10 @@ TEST(options_that_make_no_sense)
     for (size_t i = 0; i < LEN(row); i++) {
         quad(dir, said_path(dir, "in"), row[i].word);
         CHECK(s.status == 2 && strstr(s.err, row[i].says) && s.out[0] == '\0', "row %zu: %d: %s%s",
-              i, s.status, s.out, s.err);
-        CHECK(strncmp(s.err, "exhand quad: ", 13) == 0 &&
-                  strchr(s.err, '\n') == strrchr(s.err, '\n'),
-              "row %zu: %s", i, s.err);
+            i, s.status, s.out, s.err);
+        CHECK(
+            strncmp(s.err, "exhand quad: ", 13) == 0 && strchr(s.err, '\n') == strrchr(s.err, '\n'),
+            "row %zu: %s", i, s.err);
     }
     said_clean(dir);
 }
@@ -381,18 +380,18 @@ TEST(input_that_is_none)
     char wide[400];
     for (size_t i = 0; i < LEN(row); i++) {
         quad(dir, "/dev/null",
-             WORDS("quad", "--csv", make_file(dir, "in.csv", row[i].csv, strlen(row[i].csv))));
+            WORDS("quad", "--csv", make_file(dir, "in.csv", row[i].csv, strlen(row[i].csv))));
         CHECK(s.status == 2 && strstr(s.err, row[i].says) && s.out[0] == '\0', "row %zu: %d: %s%s",
-              i, s.status, s.out, s.err);
+            i, s.status, s.out, s.err);
     }
     quad(dir, "/dev/null", WORDS("quad", "--csv", make_file(dir, "in.csv", "0,1,1\0,9\n", 9)));
     CHECK(s.status == 2 && strstr(s.err, "line 1: b is not"), "what a NUL hides: %d: %s", s.status,
-          s.err);
+        s.err);
     memset(wide, ' ', sizeof wide);
     quad(dir, "/dev/null", WORDS("quad", "--csv", make_file(dir, "in.csv", wide, sizeof wide)));
     CHECK(s.status == 2 && strstr(s.err, "line 1: far too long"), "%d: %s", s.status, s.err);
     quad(dir, "/dev/null",
-         WORDS("quad", "--csv", make_file(dir, "in.csv", "0,1,1\n", 6), "--rate", "5"));
+        WORDS("quad", "--csv", make_file(dir, "in.csv", "0,1,1\n", 6), "--rate", "5"));
     CHECK(s.status == 2 && strstr(s.err, "line 1: b is not"), "%d: %s", s.status, s.err);
     quad(dir, "/dev/null", WORDS("quad", "--csv", said_path(dir, "gone.csv")));
     CHECK(s.status == 3 && strstr(s.err, "gone.csv: No such file"), "%d: %s", s.status, s.err);
@@ -402,13 +401,13 @@ TEST(input_that_is_none)
     CHECK(s.status == 3 && strstr(s.err, "standard input: "), "%d: %s", s.status, s.err);
     quad(dir, "/dev/null", WORDS(RAW, "--a", "0", "--b", "1"));
     CHECK(s.status == 2 && strstr(s.err, "standard input: holds no sample"), "%d: %s", s.status,
-          s.err);
+        s.err);
     quad(dir, make_file(dir, "in", "PK\3\4xx", 6), WORDS(RAW, "--a", "0", "--b", "1"));
     CHECK(s.status == 2 && strstr(s.err, "unzip -p FILE.sr"), "%d: %s", s.status, s.err);
     said_clean(dir);
 }
 
 TEST_MAIN("quad_command", captures_decode_to_their_descriptions,
-          captures_fed_too_slowly_show_their_illegal_steps, a_capture_as_csv,
-          a_sine_goes_from_end_to_end, csv_bytes_and_truth_agree, index_is_printed_when_asked_for,
-          modes_and_small_inputs, options_that_make_no_sense, input_that_is_none);
+    captures_fed_too_slowly_show_their_illegal_steps, a_capture_as_csv, a_sine_goes_from_end_to_end,
+    csv_bytes_and_truth_agree, index_is_printed_when_asked_for, modes_and_small_inputs,
+    options_that_make_no_sense, input_that_is_none);

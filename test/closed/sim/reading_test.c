@@ -49,7 +49,7 @@ TEST(scopes_take_what_they_say)
         size_t contacts;
         const size_t n = samples_of(&log, (enum fall_scope)scope, &contacts);
         CHECK(n == 3 * want[scope].samples && contacts == 3 * want[scope].contacts,
-              "scope %d: %zu samples in %zu contacts", scope, n, contacts);
+            "scope %d: %zu samples in %zu contacts", scope, n, contacts);
     }
     drop(&b);
 }
@@ -74,7 +74,7 @@ TEST(names_are_found)
     for (int i = 0; i < READINGS; i++) { CHECK_EQ_I64(reading_find(reading_table[i].name), i); }
     CHECK_EQ_I64(reading_find("a-same"), -1);
     CHECK(strcmp(reading_table[READING_DEFAULT].name, "b-aligned-all") == 0, "%s",
-          reading_table[READING_DEFAULT].name);
+        reading_table[READING_DEFAULT].name);
 }
 
 /* On a run of the simulation: every reading, by the analysis and all at once. */
@@ -110,4 +110,4 @@ TEST(all_at_once_is_one_by_one)
 }
 
 TEST_MAIN("reading", scopes_take_what_they_say, the_stop_is_where_counting_ends, names_are_found,
-          all_at_once_is_one_by_one);
+    all_at_once_is_one_by_one);

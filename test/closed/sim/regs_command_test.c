@@ -18,9 +18,8 @@
 #define VALUES 512
 
 static struct said s;
-static const struct exh_scene *const scenes[] = {&exh_scene_drop,      &exh_scene_guarded,
-                                                 &exh_scene_bilateral, &exh_scene_glove,
-                                                 &exh_scene_calibrate, &exh_scene_bringup};
+static const struct exh_scene *const scenes[] = {&exh_scene_drop, &exh_scene_guarded,
+    &exh_scene_bilateral, &exh_scene_glove, &exh_scene_calibrate, &exh_scene_bringup};
 
 TEST(the_documented_table_is_the_one_made_now)
 {
@@ -42,7 +41,7 @@ static struct exh_regs regs_of(const struct exh_scene *sc)
     if (sc->defaults) { sc->defaults(); }
     if (sc->params) {
         CHECK(exh_signal_count(sc->params->table) <= VALUES, "%s: more than this test holds",
-              sc->name);
+            sc->name);
         r.params = sc->params->table;
         r.active = sc->params->active;
         r.wanted = sc->params->staged;
@@ -91,13 +90,13 @@ static void line_holds(const struct exh_regs *r, const char *line, int *lines)
     ++*lines;
     if (strcmp(table, "coil") == 0 || strcmp(table, "discrete") == 0) {
         CHECK(exh_regs_read_bits(r, table[0] == 'c' ? EXH_REGS_COIL : EXH_REGS_DISCRETE,
-                                 (uint16_t)at, 1, got) == 0,
-              "%s", line);
+                  (uint16_t)at, 1, got) == 0,
+            "%s", line);
         return;
     }
-    CHECK(exh_regs_read(r, table[0] == 'h' ? EXH_REGS_HOLDING : EXH_REGS_INPUT, (uint16_t)at, 2,
-                        got) == 0,
-          "%s", line);
+    CHECK(exh_regs_read(
+              r, table[0] == 'h' ? EXH_REGS_HOLDING : EXH_REGS_INPUT, (uint16_t)at, 2, got) == 0,
+        "%s", line);
     v = (uint32_t)got[0] << 24 | (uint32_t)got[1] << 16 | (uint32_t)got[2] << 8 | got[3];
     if (dflt[0] != '\0') {
         const double want = strtod(dflt, NULL);
@@ -119,18 +118,18 @@ TEST(every_line_of_every_scene_holds)
         char line[512], path[512];
         said(&s, dir, cli_regs, WORDS("regs", "--scene", scenes[i]->name, "--csv"));
         CHECK(s.status == 0 && s.err[0] == '\0', "%s: status %d: %s", scenes[i]->name, s.status,
-              s.err);
+            s.err);
         snprintf(path, sizeof path, "%s/said.out",
-                 dir); /* as it is: it may be longer than what was said holds */
+            dir); /* as it is: it may be longer than what was said holds */
         f = fopen(path, "r");
         CHECK(f != NULL && fgets(line, sizeof line, f) && strncmp(line, "table,address,", 14) == 0,
-              "%s", line);
+            "%s", line);
         while (fgets(line, sizeof line, f)) { line_holds(&r, line, &lines); }
         fclose(f);
         CHECK(lines > 100 && (unsigned)lines > 2 * r.signals_n + 4 * r.params_n, "%s: %d lines",
-              scenes[i]->name, lines);
+            scenes[i]->name, lines);
         check_note("%s: %u outputs, %u parameters, %d rows", scenes[i]->name, (unsigned)r.signals_n,
-                   (unsigned)r.params_n, lines);
+            (unsigned)r.params_n, lines);
     }
     said_clean(dir);
 }
@@ -141,7 +140,7 @@ TEST(text_has_names_units_and_ranges)
     said(&s, dir, cli_regs, WORDS("regs"));
     CHECK(s.status == 0 && strstr(s.out, "0x5000 ") && strstr(s.out, "n_per_m") &&
               strstr(s.out, "420481"),
-          "%s", s.out);
+        "%s", s.out);
     said(&s, dir, cli_regs, WORDS("regs", "--scene", "nothing"));
     CHECK(s.status == 2 && strstr(s.err, "one of drop "), "%d: %s", s.status, s.err);
     said(&s, dir, cli_regs, WORDS("regs", "--csv", "--markdown"));
@@ -150,4 +149,4 @@ TEST(text_has_names_units_and_ranges)
 }
 
 TEST_MAIN("regs_command", the_documented_table_is_the_one_made_now, every_line_of_every_scene_holds,
-          text_has_names_units_and_ranges);
+    text_has_names_units_and_ranges);

@@ -46,8 +46,8 @@ static const struct trace traces[] = {
 };
 #define TRACES (sizeof traces / sizeof traces[0])
 
-static void play(struct log_builder *b, const struct trace *tr, double rate_Hz, double freq_Hz,
-                 uint64_t *rng)
+static void play(
+    struct log_builder *b, const struct trace *tr, double rate_Hz, double freq_Hz, uint64_t *rng)
 {
     const size_t ticks = (size_t)(tr->length_s * rate_Hz + 0.5);
     const double u = 3.14159265358979 * freq_Hz / rate_Hz; /* tan of half the angle, nearly */
@@ -85,8 +85,8 @@ static void check_traces(double rate_Hz, double freq_Hz, uint64_t *rng)
     CHECK(fall_rest(&log, &contacts, &opt, rest) == FALL_OK, "%g Hz", rate_Hz);
     for (size_t i = 0; i < TRACES; i++) {
         CHECK(rest[i].rest == traces[i].label, "%g Hz, %g Hz, %s: %s (%g m, %g N)", rate_Hz,
-              freq_Hz, traces[i].name, fall_rest_text(rest[i].rest), rest[i].travel_m,
-              rest[i].force_N);
+            freq_Hz, traces[i].name, fall_rest_text(rest[i].rest), rest[i].travel_m,
+            rest[i].force_N);
     }
     fall_contacts_free(&contacts);
     drop(&b);
@@ -121,8 +121,8 @@ TEST(rest_at_the_limits)
         opt.travel_m = 0x1p-12;
         CHECK(fall_dissect(&log, 1, &contacts) == FALL_OK, "%d", over);
         CHECK(fall_rest(&log, &contacts, &opt, &rest) == FALL_OK, "%d", over);
-        CHECK(rest.rest == (over ? FALL_OSCILLATES : FALL_AT_REST), "%s",
-              fall_rest_text(rest.rest));
+        CHECK(
+            rest.rest == (over ? FALL_OSCILLATES : FALL_AT_REST), "%s", fall_rest_text(rest.rest));
         CHECK(rest.t_contact_s == 0.0 && rest.travel_m == 0x1p-12, "%g", rest.travel_m);
         opt.window_s = 6.0;
         CHECK(fall_rest(&log, &contacts, &opt, &rest) == FALL_BAD_OPT, "%g", opt.window_s);
@@ -175,7 +175,7 @@ TEST(a_mass_in_flight_is_not_at_rest)
         CHECK(fall_dissect(&log, 1, &contacts) == FALL_OK, "%d", lands);
         CHECK(fall_rest(&log, &contacts, &fall_rest_opt_default, &rest) == FALL_OK, "%d", lands);
         CHECK(rest.rest == (lands ? FALL_AT_REST : FALL_INCOMPLETE), "%d: %s", lands,
-              fall_rest_text(rest.rest));
+            fall_rest_text(rest.rest));
         fall_contacts_free(&contacts);
         drop(&b);
     }
@@ -187,12 +187,9 @@ TEST(a_mass_that_ran_away_is_not_at_rest)
     static const struct {
         double q0_m, q1_m;
         enum fall_rest_class want;
-    } row[] = {{2 - 0x1p-30, 2 - 0x1p-30, FALL_INCOMPLETE},
-               {-2, -2, FALL_INCOMPLETE},
-               {2 - 0x1p-30, 1.2, FALL_OSCILLATES},
-               {1.98, 1.98, FALL_AT_REST},
-               {-1.98, -1.98, FALL_AT_REST},
-               {-2, -1.9999, FALL_INCOMPLETE}};
+    } row[] = {{2 - 0x1p-30, 2 - 0x1p-30, FALL_INCOMPLETE}, {-2, -2, FALL_INCOMPLETE},
+        {2 - 0x1p-30, 1.2, FALL_OSCILLATES}, {1.98, 1.98, FALL_AT_REST},
+        {-1.98, -1.98, FALL_AT_REST}, {-2, -1.9999, FALL_INCOMPLETE}};
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
         const enum fall_rest_class got = rest_between(0.002, row[i].q0_m, row[i].q1_m);
         CHECK(got == row[i].want, "%g and %g m: %s", row[i].q0_m, row[i].q1_m, fall_rest_text(got));
@@ -200,4 +197,4 @@ TEST(a_mass_that_ran_away_is_not_at_rest)
 }
 
 TEST_MAIN("rest", rest_is_never_mistaken, rest_at_the_limits, slow_rates_are_judged_too,
-          a_mass_that_ran_away_is_not_at_rest, a_mass_in_flight_is_not_at_rest);
+    a_mass_that_ran_away_is_not_at_rest, a_mass_in_flight_is_not_at_rest);

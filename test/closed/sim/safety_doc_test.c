@@ -44,9 +44,8 @@ static int is_there(const char *name, size_t len)
 
 TEST(tests_that_are_named_are_there)
 {
-    static const char *const folder[] = {"unit/",   "prop/",  "sim/",    "cards/",
-                                         "stress/", "pc104/", "golden/", "port/",
-                                         "proof/",  "emu/",   "size/"};
+    static const char *const folder[] = {"unit/", "prop/", "sim/", "cards/", "stress/", "pc104/",
+        "golden/", "port/", "proof/", "emu/", "size/"};
     int n = 0;
     for (const char *p = read_into(doc, sizeof doc, DOC); (p = strchr(p, '`')) != NULL; p++) {
         for (size_t k = 0; k < sizeof folder / sizeof folder[0]; k++) {
@@ -98,8 +97,8 @@ TEST(reactions_are_the_librarys)
         at = strchr(at + strlen(row), '|');
         CHECK(at != NULL, "%s: no reaction", exh_fault_name(k));
         CHECK(strncmp(at, EXH_FAULT_CUT >> k & 1u ? "| cut |" : "| release |",
-                      EXH_FAULT_CUT >> k & 1u ? 7 : 11) == 0,
-              "%s: %.20s", exh_fault_name(k), at);
+                  EXH_FAULT_CUT >> k & 1u ? 7 : 11) == 0,
+            "%s: %.20s", exh_fault_name(k), at);
     }
 }
 
@@ -174,12 +173,12 @@ static int in_folder(const char *path)
 TEST(one_file_makes_codes)
 {
     const int lib = in_folder("lib/src"), scenes = in_folder("examples");
-    CHECK(writes("x.dac_raw[k[1]] = 3;") && writes("dac_raw[0] += 1;") &&
-              !writes("dac_raw[0] == 1"),
-          "the finder itself");
+    CHECK(
+        writes("x.dac_raw[k[1]] = 3;") && writes("dac_raw[0] += 1;") && !writes("dac_raw[0] == 1"),
+        "the finder itself");
     CHECK(lib == 3, "%d writes in the library", lib);
     check_note("%d writes of a code in gate.c, %d codes moved in scenes", lib, scenes);
 }
 
 TEST_MAIN("sim/safety_doc", tests_that_are_named_are_there, every_name_has_its_row,
-          reactions_are_the_librarys, one_file_makes_codes);
+    reactions_are_the_librarys, one_file_makes_codes);

@@ -36,8 +36,8 @@ static inline void said_read(char to[SAID_B], const char *path)
 }
 
 /* Starts it, leader of a process group of its own, with its output in DIR. */
-static inline pid_t said_start(const char *dir, int (*command)(int, char **),
-                               const char *const *word)
+static inline pid_t said_start(
+    const char *dir, int (*command)(int, char **), const char *const *word)
 {
     const pid_t pid = fork();
     char path[2][512];
@@ -71,8 +71,8 @@ static inline void said_end(struct said *s, const char *dir, pid_t pid)
     said_read(s->err, path);
 }
 
-static inline void said(struct said *s, const char *dir, int (*command)(int, char **),
-                        const char *const *word)
+static inline void said(
+    struct said *s, const char *dir, int (*command)(int, char **), const char *const *word)
 {
     said_end(s, dir, said_start(dir, command, word));
 }

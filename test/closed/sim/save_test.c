@@ -26,10 +26,7 @@ static void begin(const char *path)
     CHECK_EQ_I64(mail_start(sc, board), 0);
 }
 
-static void end(void)
-{
-    sc->params->locked = sc->params->shift = 0;
-}
+static void end(void) { sc->params->locked = sc->params->shift = 0; }
 
 static void ask(unsigned coils)
 {
@@ -41,8 +38,8 @@ static void ask(unsigned coils)
 static void stage(int32_t raw)
 {
     const uint32_t v = (uint32_t)raw;
-    const uint8_t words[4] = {(uint8_t)(v >> 24), (uint8_t)(v >> 16 & 255), (uint8_t)(v >> 8 & 255),
-                              (uint8_t)(v & 255)};
+    const uint8_t words[4] = {
+        (uint8_t)(v >> 24), (uint8_t)(v >> 16 & 255), (uint8_t)(v >> 8 & 255), (uint8_t)(v & 255)};
     CHECK_EQ_I64(exh_regs_write(mail_take(), (uint16_t)(EXH_REGS_PARAM_AT + 2 * k), 2, words), 0);
     mail_give();
 }
@@ -174,5 +171,5 @@ TEST(what_cannot_be_written_leaves_what_was)
 }
 
 TEST_MAIN("save", behind_the_last_tick_too, in_a_last_tick_that_found_the_registers_in_use,
-          of_two_the_later_stays, what_was_applied_with_it_is_in_it, it_keeps_what_is_wanted,
-          what_cannot_be_written_leaves_what_was);
+    of_two_the_later_stays, what_was_applied_with_it_is_in_it, it_keeps_what_is_wanted,
+    what_cannot_be_written_leaves_what_was);

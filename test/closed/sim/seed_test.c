@@ -42,7 +42,7 @@ static struct bytes logged_run(const struct sim_device *d, uint64_t seed, int fa
     CHECK_EQ_I64(run_drop(&c, &r), 0);
     CHECK_EQ_I64(fclose(c.board.log), 0);
     CHECK(r.faults == 0 && r.lost == 0, "faults %#x, %lu lost", (unsigned)r.faults,
-          (unsigned long)r.lost);
+        (unsigned long)r.lost);
     run_free(&r);
     return b;
 }
@@ -65,7 +65,7 @@ TEST(the_seed_decides_every_byte)
 
 /* The next frame of a log in memory: its signals, outputs and inputs. */
 static int next_frame(const struct bytes *b, uint32_t *at, struct exh_scene_in *in,
-                      struct exh_drive_out *out, struct drop_signals *s)
+    struct exh_drive_out *out, struct drop_signals *s)
 {
     struct exh_record r;
     while (*at < b->len) {
@@ -100,11 +100,11 @@ static struct wrap compare_runs(const struct bytes *a, const struct bytes *b, ui
         const uint32_t want = (in[0].drive.enc_raw[0] + shift) % COUNTS;
         CHECK(next_frame(b, &at[1], &in[1], &out[1], &s[1]), "the second log is shorter");
         CHECK(in[1].drive.enc_raw[0] == want, "frame %d: raw %#x, want %#x", w.frames,
-              (unsigned)in[1].drive.enc_raw[0], (unsigned)want);
+            (unsigned)in[1].drive.enc_raw[0], (unsigned)want);
         CHECK(memcmp(&s[0], &s[1], sizeof s[0]) == 0, "frame %d: q %ld and %ld", w.frames,
-              (long)s[0].q_m_q30, (long)s[1].q_m_q30);
+            (long)s[0].q_m_q30, (long)s[1].q_m_q30);
         CHECK(out[0].dac_raw[0] == out[1].dac_raw[0], "frame %d: code %u and %u", w.frames,
-              (unsigned)out[0].dac_raw[0], (unsigned)out[1].dac_raw[0]);
+            (unsigned)out[0].dac_raw[0], (unsigned)out[1].dac_raw[0]);
         if (w.frames++ > 0) { w.wraps += (last > want ? last - want : want - last) > COUNTS / 2; }
         last = want;
     }
@@ -117,8 +117,8 @@ TEST(the_counters_wrap_is_nowhere_seen)
     static const struct {
         uint32_t start;
         int wraps; /* at least; -1 none at all */
-    } row[] = {{0, 2},    {5, 2},         {0xFFFFFF, 2}, {0xFFFFFF - 10, 2},
-               {1000, 2}, {0x800000, -1}, {0x400000, -1}};
+    } row[] = {{0, 2}, {5, 2}, {0xFFFFFF, 2}, {0xFFFFFF - 10, 2}, {1000, 2}, {0x800000, -1},
+        {0x400000, -1}};
     struct sim_device d = sim_device_default();
     const struct bytes at_0 = logged_run(&d, 3, 2);
     for (size_t i = 0; i < LEN(row); i++) {
@@ -129,7 +129,7 @@ TEST(the_counters_wrap_is_nowhere_seen)
         w = compare_runs(&at_0, &b, row[i].start);
         CHECK(w.frames > 4000, "%d frames", w.frames);
         CHECK(row[i].wraps < 0 ? w.wraps == 0 : w.wraps >= row[i].wraps, "start %#x: %d wraps",
-              (unsigned)row[i].start, w.wraps);
+            (unsigned)row[i].start, w.wraps);
         free(b.p);
     }
     free(at_0.p);

@@ -102,19 +102,13 @@ static void cut_everywhere(const struct exh_scene *sc)
         CHECK_EQ_I64(k_of(sc), 3000 << EXH_Q_K);
     }
     CHECK(olds + news == PAGE_B + EXH_SLOT_B((uint32_t)image_B) + 1 && news >= 1 && news <= 4,
-          "old %lu, new %lu", (unsigned long)olds, (unsigned long)news);
+        "old %lu, new %lu", (unsigned long)olds, (unsigned long)news);
     check_note("%s: an image of %ld B: after a cut the old one %lu times, the new one %lu",
-               sc->name, (long)image_B, (unsigned long)olds, (unsigned long)news);
+        sc->name, (long)image_B, (unsigned long)olds, (unsigned long)news);
 }
 
-TEST(parameters_of_drop)
-{
-    cut_everywhere(&exh_scene_drop);
-}
+TEST(parameters_of_drop) { cut_everywhere(&exh_scene_drop); }
 
-TEST(parameters_of_guarded)
-{
-    cut_everywhere(&exh_scene_guarded);
-}
+TEST(parameters_of_guarded) { cut_everywhere(&exh_scene_guarded); }
 
 TEST_MAIN("sim/slots", parameters_of_drop, parameters_of_guarded);

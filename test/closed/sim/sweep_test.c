@@ -24,7 +24,7 @@ static void copy(const char *from, const char *to, long bytes)
     said_read(text, from);
     f = fopen(to, "a");
     CHECK(f != NULL && fwrite(text, 1, (size_t)bytes, f) == (size_t)bytes && fclose(f) == 0, "%s",
-          to);
+        to);
 }
 
 /* The sweep at one go, into `whole`. */
@@ -57,21 +57,21 @@ TEST(a_sweep_finds_a_border_and_says_so)
     const char *dir = said_dir();
     static struct said s;
     one_go(dir, &s);
-    CHECK(strncmp(whole, "# exhand drop --sweep version=1 falls=1 seed=1 columns=3 rows=3 ", 64) ==
-              0,
-          "%s", whole);
+    CHECK(
+        strncmp(whole, "# exhand drop --sweep version=1 falls=1 seed=1 columns=3 rows=3 ", 64) == 0,
+        "%s", whole);
     CHECK(strstr(whole,
-                 "\nrate_hz,k_n_per_m,b_ns_per_m,stable_falls,falls,stiffness_n_per_m,rho\n90,"),
-          "%s", whole);
+              "\nrate_hz,k_n_per_m,b_ns_per_m,stable_falls,falls,stiffness_n_per_m,rho\n90,"),
+        "%s", whole);
     CHECK(strstr(s.out, "largest stable k") && strstr(s.out, "\n    90 |") &&
               strstr(s.out, "\n   500 |"),
-          "%s", s.out);
+        "%s", s.out);
     said_read(again, said_path(dir, "border.csv"));
     CHECK(strstr(again, "\n90,k,") && strstr(again, "\n90,b,") && strstr(again, "\n500,k,"), "%s",
-          again);
+        again);
     CHECK(said_size(said_path(dir, "rho.csv")) > 100000 &&
               said_size(said_path(dir, "sweep.gp")) > 100,
-          "pictures");
+        "pictures");
     said_clean(dir);
 }
 
@@ -93,8 +93,8 @@ TEST(the_linear_border_does_not_hang_on_the_grid)
         static struct said s;
         const char *dir = said_dir();
         said(&s, dir, lab_drop,
-             WORDS("drop", "--sweep", "--rate", "90,2000", "--falls", "1", "--grid", grid[i],
-                   "--device", "observe=0.6", "--device", "substep=0.0001", "--out", dir));
+            WORDS("drop", "--sweep", "--rate", "90,2000", "--falls", "1", "--grid", grid[i],
+                "--device", "observe=0.6", "--device", "substep=0.0001", "--out", dir));
         CHECK(s.status == 0, "%d: %s", s.status, s.err);
         linear_columns(s.out, "\n    90 |", text[i][0]);
         linear_columns(s.out, "\n  2000 |", text[i][1]);
@@ -104,9 +104,9 @@ TEST(the_linear_border_does_not_hang_on_the_grid)
     CHECK(strcmp(text[0][1], text[1][1]) == 0, "%s, %s", text[0][1], text[1][1]);
     /* By an exhaustive scan, k in 3 % and b in 0.5 steps: 1822 and 43.5, 29333 and 86.5. */
     CHECK(sscanf(text[0][0], "%lf %lf", &k, &b) == 2 && k > 1800 && k < 1860 && b > 43 && b < 45,
-          "%s", text[0][0]);
+        "%s", text[0][0]);
     CHECK(sscanf(text[0][1], "%lf %lf", &k, &b) == 2 && k > 29300 && k < 30300 && b > 86 && b < 89,
-          "%s", text[0][1]);
+        "%s", text[0][1]);
 }
 
 TEST(the_end_of_the_grid_is_no_border)
@@ -114,10 +114,10 @@ TEST(the_end_of_the_grid_is_no_border)
     static struct said s;
     const char *dir = said_dir();
     said(&s, dir, lab_drop,
-         WORDS("drop", "--sweep", "--rate", "5", "--falls", "1", "--device", "substep=0.001",
-               "--out", dir));
+        WORDS("drop", "--sweep", "--rate", "5", "--falls", "1", "--device", "substep=0.001",
+            "--out", dir));
     CHECK(s.status == 0 && strstr(s.out, ">= 8 ") && strstr(s.out, ">=: stable up to"), "%d: %s%s",
-          s.status, s.err, s.out);
+        s.status, s.err, s.out);
     said_read(again, said_path(dir, "border.csv"));
     CHECK(strstr(again, "\n5,b,") && strstr(again, "\n5,b,12.5,") == NULL, "%s", again);
     said_clean(dir);
@@ -129,8 +129,8 @@ TEST(a_slow_rate_has_a_border)
     const char *dir = said_dir();
     double k = 0;
     said(&s, dir, lab_drop,
-         WORDS("drop", "--sweep", "--rate", "5", "--falls", "1", "--grid", "3x3", "--device",
-               "observe=2", "--out", dir));
+        WORDS("drop", "--sweep", "--rate", "5", "--falls", "1", "--grid", "3x3", "--device",
+            "observe=2", "--out", dir));
     for (const char *at = strstr(s.out, "\n     5 |"); at != NULL; at = NULL) { k = atof(at + 9); }
     CHECK(s.status == 0 && k > 20 && k < 35, "%d: %s%s", s.status, s.err, s.out);
     said_read(again, said_path(dir, "border.csv"));
@@ -147,8 +147,7 @@ TEST(a_resumed_sweep_gives_the_same_file)
     after_one_go(dir, &s);
     for (size_t i = 0; i < 8; i++) {
         const long size = (long)strlen(whole);
-        const long cut[] = {
-            0,        30,   (long)(strchr(whole, '\n') - whole) + 5,    size / 3, size / 2,
+        const long cut[] = {0, 30, (long)(strchr(whole, '\n') - whole) + 5, size / 3, size / 2,
             size - 1, size, (long)(strstr(whole, "\n500,") - whole) + 1};
         strcpy(rest, said_dir());
         copy(said_path(dir, "stability.csv"), said_path(rest, "stability.csv"), cut[i]);
@@ -224,8 +223,8 @@ TEST(a_killed_sweep_goes_on)
 TEST(shards_make_the_whole)
 {
     static const char *const part[] = {"1/3", "2/3", "3/3"};
-    static const char *const file[] = {"stability.1-of-3.csv", "stability.2-of-3.csv",
-                                       "stability.3-of-3.csv"};
+    static const char *const file[] = {
+        "stability.1-of-3.csv", "stability.2-of-3.csv", "stability.3-of-3.csv"};
     char dir[64], shards[64], strung[64];
     static struct said s;
     strcpy(dir, said_dir());
@@ -237,14 +236,14 @@ TEST(shards_make_the_whole)
         CHECK(s.status == 0, "%d: %s", s.status, s.err);
         said_read(again, said_path(shards, file[i]));
         CHECK(lines(again) < lines(whole), "part %d has %d lines of %d", i, lines(again),
-              lines(whole));
+            lines(whole));
         /* The rows of 90 Hz are a third of the work: who has no row of a rate looks for no octave
          * of it. */
         CHECK((strstr(again, "\n90,") != NULL) == (i == 0) &&
                   (strstr(again, "\n500,") != NULL) == (i > 0),
-              "part %d has both rates", i);
+            "part %d has both rates", i);
         copy(said_path(shards, file[i]), said_path(strung, "stability.csv"),
-             said_size(said_path(shards, file[i])));
+            said_size(said_path(shards, file[i])));
     }
     for (int i = 0; i < 2; i++) { /* beside each other, and strung together */
         const char *to = i ? strung : shards, *goes_on;
@@ -257,7 +256,7 @@ TEST(shards_make_the_whole)
         CHECK(goes_on && sscanf(goes_on, "goes on from %d", &known) == 1, "%s", s.err);
         /* Left is to halve the borders of three columns of two rates. */
         CHECK(known <= lines(whole) - 2 && known >= lines(whole) - 2 - 2 * 3 * 4, "%d of %d cells",
-              known, lines(whole) - 2);
+            known, lines(whole) - 2);
     }
     said_clean(dir);
     said_clean(shards);
@@ -354,10 +353,10 @@ TEST(bad_usage_is_refused_by_name)
     CHECK(s.status == 2 && strstr(s.err, "--sweep: needs --out DIR"), "%d: %s", s.status, s.err);
     said(&s, dir, lab_drop, WORDS("drop", "--grid", "5x5"));
     CHECK(s.status == 2 && strstr(s.err, "--grid and --shard: only with --sweep"), "%d: %s",
-          s.status, s.err);
+        s.status, s.err);
     said(&s, dir, lab_drop, WORDS("drop", "--border-check", "--falls", "5"));
-    CHECK(s.status == 2 && strstr(s.err, "--falls and --border-check: "), "%d: %s", s.status,
-          s.err);
+    CHECK(
+        s.status == 2 && strstr(s.err, "--falls and --border-check: "), "%d: %s", s.status, s.err);
     said_clean(dir);
 }
 
@@ -383,15 +382,15 @@ TEST(the_simulated_border_is_the_linear_one)
     int cells = 0, agree = 0;
     strcpy(dir, said_dir());
     said(&s, dir, lab_drop,
-         WORDS("drop", "--border-check", "--rate", "500,2000", "--grid", "6x4", "--out", dir));
+        WORDS("drop", "--border-check", "--rate", "500,2000", "--grid", "6x4", "--out", dir));
     CHECK(s.status == 0 && s.err[0] == '\0', "%d: %s", s.status, s.err);
     for (const char *at = strstr(s.out, "   all |"); at != NULL; at = NULL) {
         CHECK(sscanf(at, "   all | | %d of %d", &agree, &cells) == 2, "%s", at);
     }
     CHECK(cells > 30 && agree == cells, "%d of %d agree", agree, cells);
     CHECK(strstr(s.out, "\ndry friction ") && strstr(s.out, "\nall: the device "), "%s", s.out);
-    check_note("500 and 2000 Hz: simulated and linear border agree in %d of %d cells", agree,
-               cells);
+    check_note(
+        "500 and 2000 Hz: simulated and linear border agree in %d of %d cells", agree, cells);
     said_read(again, said_path(dir, "check.csv"));
     for (int i = 0; i < 4; i++) { /* friction carries the border outwards, however it began */
         static const char *const rate[] = {"500", "2000"};
@@ -399,7 +398,7 @@ TEST(the_simulated_border_is_the_linear_one)
         const int none = at_rest(again, start, "none", rate[i % 2]);
         const int friction = at_rest(again, start, "friction", rate[i % 2]);
         CHECK(none >= 0 && friction > none, "%s, %s Hz: %d with, %d without", start, rate[i % 2],
-              friction, none);
+            friction, none);
     }
     said_clean(dir);
 }
@@ -411,15 +410,15 @@ TEST(a_border_that_cannot_be_checked_is_refused)
     } row[] = {
         {{"--rate", "1"}, "--border-check: 1 Hz: watches 2500 ticks"},
         {{"--rate", "20000", "--device", "delay=0.01"},
-         "--border-check: 20000 Hz: no linear border"},
+            "--border-check: 20000 Hz: no linear border"},
         {{"--rate", "25", "--grid", "200x4"}, "--border-check: 25 Hz: at k = 1."},
     };
     static struct said s;
     const char *dir = said_dir();
     for (size_t i = 0; i < LEN(row); i++) {
         said(&s, dir, lab_drop,
-             WORDS("drop", "--border-check", row[i].word[0], row[i].word[1], row[i].word[2],
-                   row[i].word[3]));
+            WORDS("drop", "--border-check", row[i].word[0], row[i].word[1], row[i].word[2],
+                row[i].word[3]));
         CHECK(s.status == 2 && strstr(s.err, row[i].says), "row %zu: %d: %s", i, s.status, s.err);
         CHECK(lines(s.err) == 1, "row %zu: %s", i, s.err);
     }
@@ -434,7 +433,7 @@ TEST(friction_moves_the_border_outwards)
     const char *at;
     strcpy(dir, said_dir());
     said(&s, dir, lab_drop,
-         WORDS("drop", "--friction", "3", "--falls", "1", "--rate", "200", "--out", dir));
+        WORDS("drop", "--friction", "3", "--falls", "1", "--rate", "200", "--out", dir));
     CHECK(s.status == 0 && s.err[0] == '\0', "%d: %s", s.status, s.err);
     said_read(again, said_path(dir, "friction.csv"));
     at = again;
@@ -444,7 +443,7 @@ TEST(friction_moves_the_border_outwards)
     }
     for (int i = 0; i < 3; i++) {
         CHECK(most[i][0] < most[i][1] && most[i][1] < most[i][2], "%d: %g %g %g", i, most[i][0],
-              most[i][1], most[i][2]);
+            most[i][1], most[i][2]);
     }
     said(&s, dir, lab_drop, WORDS("drop", "--friction", "3"));
     CHECK(s.status == 2 && strstr(s.err, "--friction: needs --out DIR"), "%d: %s", s.status, s.err);
@@ -459,25 +458,24 @@ TEST(a_ray_ends_where_the_scene_does)
     static struct said s;
     strcpy(dir, said_dir());
     said(&s, dir, lab_drop, /* sticks at any gain; the b of 2000 Hz meets the scene's limit first */
-         WORDS("drop", "--friction", "2", "--falls", "1", "--rate", "90,2000", "--device",
-               "coulomb=1", "--device", "mu_motor=0.2", "--device", "mu_mass=0.2", "--device",
-               "observe=0.6", "--out", dir));
+        WORDS("drop", "--friction", "2", "--falls", "1", "--rate", "90,2000", "--device",
+            "coulomb=1", "--device", "mu_motor=0.2", "--device", "mu_mass=0.2", "--device",
+            "observe=0.6", "--out", dir));
     CHECK(s.status == 0 && s.err[0] == '\0' && strstr(s.out, ">= 16.94"), "%d: %s%s", s.status,
-          s.err, s.out);
+        s.err, s.out);
     said_read(again, said_path(dir, "friction.csv"));
     CHECK(strstr(again, "\ndry,90,2,16.9407,,"), "%s", again);
     said(&s, dir, lab_drop,
-         WORDS("drop", "--friction", "2", "--falls", "1", "--rate", "2000", "--device",
-               "coulomb=10", "--device", "observe=0.6", "--out", dir));
+        WORDS("drop", "--friction", "2", "--falls", "1", "--rate", "2000", "--device", "coulomb=10",
+            "--device", "observe=0.6", "--out", dir));
     CHECK(s.status == 0 && s.err[0] == '\0', "%d: %s", s.status, s.err);
     said_clean(dir);
 }
 
 TEST_MAIN("sweep", a_sweep_finds_a_border_and_says_so, the_linear_border_does_not_hang_on_the_grid,
-          the_end_of_the_grid_is_no_border, a_slow_rate_has_a_border,
-          a_resumed_sweep_gives_the_same_file, an_interrupted_sweep_keeps_its_cells,
-          a_killed_sweep_goes_on, shards_make_the_whole,
-          a_file_of_other_settings_is_refused_by_name, a_damaged_file_is_refused_by_line,
-          bad_usage_is_refused_by_name, the_simulated_border_is_the_linear_one,
-          a_border_that_cannot_be_checked_is_refused, friction_moves_the_border_outwards,
-          a_ray_ends_where_the_scene_does);
+    the_end_of_the_grid_is_no_border, a_slow_rate_has_a_border, a_resumed_sweep_gives_the_same_file,
+    an_interrupted_sweep_keeps_its_cells, a_killed_sweep_goes_on, shards_make_the_whole,
+    a_file_of_other_settings_is_refused_by_name, a_damaged_file_is_refused_by_line,
+    bad_usage_is_refused_by_name, the_simulated_border_is_the_linear_one,
+    a_border_that_cannot_be_checked_is_refused, friction_moves_the_border_outwards,
+    a_ray_ends_where_the_scene_does);

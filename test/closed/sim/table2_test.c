@@ -58,17 +58,17 @@ TEST(every_run_is_complete)
     for (int i = 0; i < JOBS; i++) {
         const struct table2_result *r = &result[i];
         CHECK(r->done && r->error == 0 && r->faults == 0 && r->lost == 0 && r->falls == FALLS,
-              "run %d, %g Hz: error %d, faults %#x, lost %lu, falls %d", i, r->rate_Hz, r->error,
-              r->faults, r->lost, r->falls);
+            "run %d, %g Hz: error %d, faults %#x, lost %lu, falls %d", i, r->rate_Hz, r->error,
+            r->faults, r->lost, r->falls);
         CHECK(r->incomplete == 0, "run %d, %g Hz: %d falls not seen to their end", i, r->rate_Hz,
-              r->incomplete);
+            r->incomplete);
     }
     for (int i = 0; i < TABLE2_ROWS; i++) {
         const struct table2_spread s = spread_of(i);
         check_note("%5g Hz: at rest %5.1f %%, 1.5x oscillates %5.1f %%, B %6.0f N/m = %.2f k "
                    "(5 %%..95 %%: %.0f..%.0f)",
-                   table2_paper[i].rate_Hz, 100 * s.rest, 100 * s.oscillates, s.b_Npm,
-                   s.b_Npm / table2_paper[i].k_Npm, s.b_low_Npm, s.b_high_Npm);
+            table2_paper[i].rate_Hz, 100 * s.rest, 100 * s.oscillates, s.b_Npm,
+            s.b_Npm / table2_paper[i].k_Npm, s.b_low_Npm, s.b_high_Npm);
     }
 }
 
@@ -78,7 +78,7 @@ TEST(the_papers_points_come_to_rest)
     for (int i = 0; i < TABLE2_ROWS; i++) {
         const double rest = spread_of(i).rest;
         CHECK(rest >= 0.95 && rest <= 1, "%g Hz: %.1f %% at rest", table2_paper[i].rate_Hz,
-              100 * rest);
+            100 * rest);
     }
 }
 
@@ -88,7 +88,7 @@ TEST(one_and_a_half_times_both_gains_oscillates)
     for (int i = 0; i < TABLE2_ROWS; i++) {
         const double share = spread_of(i).oscillates;
         CHECK(share >= 0.75 && share <= 1, "%g Hz: %.1f %% oscillate", table2_paper[i].rate_Hz,
-              100 * share);
+            100 * share);
     }
 }
 
@@ -102,7 +102,7 @@ TEST(stiffness_is_k_or_above)
         const double ratio = spread_of(i).b_Npm / row->k_Npm;
         const double lo = row->b_Nspm > 0 ? 1 : 0.95, hi = row->b_Nspm > 0 ? 4 : 1.05;
         CHECK(ratio >= lo && ratio <= hi, "%g Hz: median B %.3f k, want %.2f..%.2f", row->rate_Hz,
-              ratio, lo, hi);
+            ratio, lo, hi);
     }
 }
 
@@ -115,7 +115,7 @@ TEST(runs_differ_by_seed_alone)
         struct table2_result again;
         work(NULL, i * 2 * RUNS, &again);
         CHECK(again.b_Npm == first->b_Npm && again.r2 == first->r2, "%g Hz: %.17g, again %.17g",
-              first->rate_Hz, first->b_Npm, again.b_Npm);
+            first->rate_Hz, first->b_Npm, again.b_Npm);
         for (int k = 1; k < RUNS; k++) {
             CHECK(first[k].b_Npm != first->b_Npm, "%g Hz: runs 0 and %d agree", first->rate_Hz, k);
         }
@@ -123,5 +123,4 @@ TEST(runs_differ_by_seed_alone)
 }
 
 TEST_MAIN("table2", every_run_is_complete, the_papers_points_come_to_rest,
-          one_and_a_half_times_both_gains_oscillates, stiffness_is_k_or_above,
-          runs_differ_by_seed_alone);
+    one_and_a_half_times_both_gains_oscillates, stiffness_is_k_or_above, runs_differ_by_seed_alone);

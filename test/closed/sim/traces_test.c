@@ -32,21 +32,12 @@ struct trace {
 
 static uint64_t rng = 77;
 
-static double between(double lo, double hi)
-{
-    return lo + (hi - lo) * uniform(&rng);
-}
+static double between(double lo, double hi) { return lo + (hi - lo) * uniform(&rng); }
 
-static int one_of(int n)
-{
-    return (int)(uniform(&rng) * n);
-}
+static int one_of(int n) { return (int)(uniform(&rng) * n); }
 
 /* e^x, either sign. */
-static double grown(double x)
-{
-    return x < 0 ? sim_exp_neg(-x) : 1 / sim_exp_neg(x);
-}
+static double grown(double x) { return x < 0 ? sim_exp_neg(-x) : 1 / sim_exp_neg(x); }
 
 static double counted(double q_m, double step_m)
 {
@@ -115,10 +106,10 @@ static void check_label(const char *kind, const struct trace *t, enum fall_rest_
 {
     const enum fall_rest_class got = judged(t);
     CHECK(got == label,
-          "%s: %s: %g Hz, step %g, %g Hz, %g m, %g N, growth %g, creep %g, noise %g, "
-          "toggle %d in %g s",
-          kind, fall_rest_text(got), t->rate_Hz, t->step_m, t->freq_Hz, t->swing_m, t->swing_N,
-          t->growth_per_s, t->creep_mps, t->noise_N, t->toggle, t->toggle_s);
+        "%s: %s: %g Hz, step %g, %g Hz, %g m, %g N, growth %g, creep %g, noise %g, "
+        "toggle %d in %g s",
+        kind, fall_rest_text(got), t->rate_Hz, t->step_m, t->freq_Hz, t->swing_m, t->swing_N,
+        t->growth_per_s, t->creep_mps, t->noise_N, t->toggle, t->toggle_s);
 }
 
 TEST(what_rests_is_never_mistaken)
@@ -201,4 +192,4 @@ TEST(what_oscillates_is_never_mistaken)
 }
 
 TEST_MAIN("traces", what_rests_is_never_mistaken, what_buzzes_is_never_mistaken,
-          what_oscillates_is_never_mistaken);
+    what_oscillates_is_never_mistaken);

@@ -47,7 +47,7 @@ static int next_code(int last)
 
 /* Codes of any kind to the device; ticks until they were all held to have followed, or when not. */
 static uint32_t told_at(const struct posix_config *c, uint32_t rate_Hz,
-                        const struct exh_tracking_cfg *cfg, uint32_t ticks)
+    const struct exh_tracking_cfg *cfg, uint32_t ticks)
 {
     struct exh_tracking s = {0, 0, 0};
     struct exh_period T;
@@ -58,8 +58,7 @@ static uint32_t told_at(const struct posix_config *c, uint32_t rate_Hz,
         struct exh_drive_in in;
         struct exh_drive_out out = {{0}, 1, 0};
         CHECK_EQ_I64(exh_board_read_drive(&in), 0);
-        if (exh_tracking_step(
-                &s, cfg,
+        if (exh_tracking_step(&s, cfg,
                 exh_sat32((int64_t)(in.mon_raw[0] * c->device.mon_apc * (1 << EXH_Q_CUR))))) {
             return n;
         }
@@ -88,7 +87,7 @@ TEST(what_follows_is_never_told)
         CHECK_EQ_I64(exh_tracking_setup(&cfg, &par, (struct exh_period){1, rate}), 0);
         at = told_at(&late, rate, &cfg, 4 * cfg.ticks + 100);
         CHECK(at == UINT32_MAX, "%lu Hz: told at tick %lu of a current that follows",
-              (unsigned long)rate, (unsigned long)at);
+            (unsigned long)rate, (unsigned long)at);
         rates++;
     }
     check_note("%lu rates, 3 ticks and 10 ms late: none told", (unsigned long)rates);
@@ -152,7 +151,7 @@ static uint32_t ticks_to_safe(uint32_t rate_Hz, uint32_t *limit, double *stood_A
         drop_tick(&b.s, &b.cfg, &in, &out, &b.sig);
         if (b.sig.state == EXH_STATE_FAULT) { break; }
         CHECK(n < 5 + rate_Hz || exh_safety_is_running(&b.s.safety), "tick %lu: state %ld",
-              (unsigned long)n, (long)b.sig.state);
+            (unsigned long)n, (long)b.sig.state);
         if (n == still) {
             stood = out;
             *stood_A = b.sig.i_des_A_q26 / 67108864.0;
@@ -169,8 +168,8 @@ static uint32_t ticks_to_safe(uint32_t rate_Hz, uint32_t *limit, double *stood_A
         CHECK_EQ_I64(exh_board_write_drive(n >= still ? &stood : &out), 0);
     }
     CHECK(b.sig.state == EXH_STATE_FAULT && b.sig.faults == EXH_FAULT_TRACKING,
-          "%lu Hz: faults %#lx at tick %lu", (unsigned long)rate_Hz, (unsigned long)b.sig.faults,
-          (unsigned long)n);
+        "%lu Hz: faults %#lx at tick %lu", (unsigned long)rate_Hz, (unsigned long)b.sig.faults,
+        (unsigned long)n);
     CHECK(out.enable == 0 && out.dac_raw[0] == 32768, "not safe");
     return n - off_at;
 }
@@ -183,10 +182,10 @@ TEST(what_stands_is_told_in_time)
         double stood_A = 0;
         const uint32_t ticks = ticks_to_safe(rate[i], &limit, &stood_A);
         CHECK(ticks <= limit, "%lu Hz: %lu ticks, stated %lu", (unsigned long)rate[i],
-              (unsigned long)ticks, (unsigned long)limit);
+            (unsigned long)ticks, (unsigned long)limit);
         check_note("%lu Hz: D/A standing at %.2f A told after %lu ticks, %.1f ms; stated %lu",
-                   (unsigned long)rate[i], stood_A, (unsigned long)ticks, 1e3 * ticks / rate[i],
-                   (unsigned long)limit);
+            (unsigned long)rate[i], stood_A, (unsigned long)ticks, 1e3 * ticks / rate[i],
+            (unsigned long)limit);
     }
 }
 
@@ -205,9 +204,9 @@ static int has(const char *path, const char *word)
 /* The order of a tick stands in exhand/axis.h alone; a scene that has no tracking names that. */
 TEST(every_scene_ticks_by_the_axis_and_tracks_or_says_that_it_does_not)
 {
-    static const char *const by_hand[] = {"exh_quad_step(",          "exh_motion_step(",
-                                          "exh_tracking_step(",      "exh_drive_force_step(",
-                                          "exh_drive_current_step(", "exh_tracking_update("};
+    static const char *const by_hand[] = {"exh_quad_step(", "exh_motion_step(",
+        "exh_tracking_step(", "exh_drive_force_step(", "exh_drive_current_step(",
+        "exh_tracking_update("};
     glob_t g;
     int axes = 0;
     CHECK_EQ_I64(glob("examples/*/*.[ch]", 0, NULL, &g), 0);
@@ -220,12 +219,12 @@ TEST(every_scene_ticks_by_the_axis_and_tracks_or_says_that_it_does_not)
         axes++;
         CHECK(has(path, "->track") || has(path, "&s.track") || has(path, "&track") ||
                   has(path, "EXH_UNTRACKED"),
-              "%s", path);
+            "%s", path);
     }
     globfree(&g);
     CHECK(axes >= 6, "%d axes found", axes);
 }
 
 TEST_MAIN("sim/track", every_scene_ticks_by_the_axis_and_tracks_or_says_that_it_does_not,
-          what_follows_is_never_told, with_too_short_a_time_it_would_be_told,
-          what_stands_is_told_in_time);
+    what_follows_is_never_told, with_too_short_a_time_it_would_be_told,
+    what_stands_is_told_in_time);

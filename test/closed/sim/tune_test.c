@@ -45,10 +45,7 @@ static uint64_t any(void)
     return z ^ z >> 31;
 }
 
-static double newton(int64_t q20)
-{
-    return (double)q20 / (1 << EXH_Q_FORCE);
-}
+static double newton(int64_t q20) { return (double)q20 / (1 << EXH_Q_FORCE); }
 
 static void stage_any(int all)
 {
@@ -75,7 +72,7 @@ static void before(uint32_t tick, struct exh_scene_in *in)
     if (see.how == SELDOM && tick % 10 == 0) { stage_any(0); }
     if (see.how == LOWER && tick == see.at) {
         CHECK(s->f_des_N_q20 > EXH_Q(1, 1, EXH_Q_FORCE), "%.3f N to be lowered",
-              newton(s->f_des_N_q20));
+            newton(s->f_des_N_q20));
         CHECK_EQ_I64(exh_params_stage(p, 0x0501, 0, EXH_Q(1, 2, EXH_Q_FORCE)), 0);
     }
     if (see.how == HALT && n == 40) {
@@ -104,11 +101,11 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     (void)in;
     (void)out;
     const int64_t tuned = s->c * exh_mul_shr(par->contact.k_Npm_q10 - see.k_Npm_q10,
-                                             exh_sat32((int64_t)s->q_m_q30 - par->own.q_lim_m_q30),
-                                             EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE);
+                                     exh_sat32((int64_t)s->q_m_q30 - par->own.q_lim_m_q30),
+                                     EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE);
     if (see.how == LOWER && tick >= see.at) {
         CHECK(s->f_des_N_q20 <= EXH_Q(1, 2, EXH_Q_FORCE), "tick %" PRIu32 ": %.3f N", tick,
-              newton(s->f_des_N_q20));
+            newton(s->f_des_N_q20));
     }
     if (exh_scene_drop.params->moving) { see.settled = tick; }
     if (open && see.was_open && tick >= see.at) {
@@ -116,7 +113,7 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
         see.open_ticks++;
         see.contact_ticks += s->c != 0;
         CHECK(size <= most, "tick %" PRIu32 ": a step of %.4f N, allowed %.4f", tick,
-              (double)step / (1 << EXH_Q_FORCE), (double)most / (1 << EXH_Q_FORCE));
+            (double)step / (1 << EXH_Q_FORCE), (double)most / (1 << EXH_Q_FORCE));
         if (tuned > see.tuned_N_q20) { see.tuned_N_q20 = tuned; }
         if (size > see.most_N_q20) { see.most_N_q20 = size; }
         if (size * 1024 / most > see.most_part) { see.most_part = size * 1024 / most; }
@@ -133,8 +130,8 @@ static void begin(const struct exh_scene *sc, struct exh_scene_board board)
 }
 
 /* A finger goes to the wall at 30 mm and presses 15 mm beyond for so long. */
-static struct run_cfg pressing(uint32_t rate_Hz, double seconds, const struct run_setting *set,
-                               int n)
+static struct run_cfg pressing(
+    uint32_t rate_Hz, double seconds, const struct run_setting *set, int n)
 {
     static const struct exh_loop_hooks hooks = {begin, before, after};
     struct run_cfg c;
@@ -183,10 +180,8 @@ TEST(what_a_finger_feels)
         const uint32_t at = row[i].rate_Hz * 2;
         int64_t tuned[3];
         for (int k = 0; k < 3; k++) {
-            const struct run_setting set[] = {{"q_lim", 0.03},
-                                              {"arm_time", 1},
-                                              {"ramp_time", 1},
-                                              {"tune_time", row[i].tune_ms[k]}};
+            const struct run_setting set[] = {{"q_lim", 0.03}, {"arm_time", 1}, {"ramp_time", 1},
+                {"tune_time", row[i].tune_ms[k]}};
             const struct run_cfg c = pressing(row[i].rate_Hz, 2.5, set, LEN(set));
             press(&c, ONE, at, row[i].parts[k]);
             tuned[k] = see.tuned_N_q20;
@@ -198,11 +193,11 @@ TEST(what_a_finger_feels)
                 k == 1 ? see.settled + 2 - at : row[i].parts[k]);
             if (k == 1) {
                 CHECK(see.settled > at && see.settled < at + row[i].rate_Hz,
-                      "there at tick %" PRIu32, see.settled);
+                    "there at tick %" PRIu32, see.settled);
             }
         }
         CHECK(tuned[1] * (row[i].rate_Hz == 90 ? 3 : 20) < tuned[0] * 2, "%.3f N of %.3f",
-              newton(tuned[1]), newton(tuned[0]));
+            newton(tuned[1]), newton(tuned[0]));
     }
 }
 
@@ -216,30 +211,36 @@ TEST(no_step_beyond_the_slew_limit)
         for (size_t h = 0; h < LEN(hows); h++) {
             for (int tune = 0; tune < 2; tune++) {
                 const struct run_setting set[] = {
-                    {"q_lim", 0.03},          {"arm_time", 1},      {"ramp_time", 1},
-                    {"tune_time", 20 * tune}, {"slew_up", 1000},    {"slew_down", 1000},
-                    {"speed_limit", 10},      {"speed_time", 1000}, {"arm_force", 10},
+                    {"q_lim", 0.03},
+                    {"arm_time", 1},
+                    {"ramp_time", 1},
+                    {"tune_time", 20 * tune},
+                    {"slew_up", 1000},
+                    {"slew_down", 1000},
+                    {"speed_limit", 10},
+                    {"speed_time", 1000},
+                    {"arm_force", 10},
                 };
                 const struct run_cfg c = pressing(rates[i], 3, set, LEN(set));
                 press(&c, hows[h], 0, 0);
                 CHECK(see.open_ticks > rates[i] / 2, "%" PRIu32 " Hz: open for %" PRIu32 " ticks",
-                      rates[i], see.open_ticks);
+                    rates[i], see.open_ticks);
                 CHECK(see.contact_ticks > rates[i] / 8,
-                      "%" PRIu32 " Hz: %" PRIu32 " ticks of contact", rates[i], see.contact_ticks);
+                    "%" PRIu32 " Hz: %" PRIu32 " ticks of contact", rates[i], see.contact_ticks);
                 if (hows[h] == FORCE) {
                     CHECK(see.most_part > 1000, "%" PRIu32 " Hz: never near the limit: %ld/1024",
-                          rates[i], (long)see.most_part);
+                        rates[i], (long)see.most_part);
                 }
                 if (tune) {
                     check_note("%" PRIu32 " Hz, %s: %" PRIu32 " ticks of %" PRIu32
                                " in contact, largest step %.3f N,"
                                " %.4f of what is allowed",
-                               rates[i],
-                               hows[h] == ALL     ? "all rows"
-                               : hows[h] == FORCE ? "force rows"
-                                                  : "every 10 ticks",
-                               see.contact_ticks, see.open_ticks, newton(see.most_N_q20),
-                               (double)see.most_part / 1024);
+                        rates[i],
+                        hows[h] == ALL     ? "all rows"
+                        : hows[h] == FORCE ? "force rows"
+                                           : "every 10 ticks",
+                        see.contact_ticks, see.open_ticks, newton(see.most_N_q20),
+                        (double)see.most_part / 1024);
                 }
             }
         }
@@ -278,4 +279,4 @@ TEST(replay_from_mid_way)
 }
 
 TEST_MAIN("sim/tune", what_a_finger_feels, no_step_beyond_the_slew_limit,
-          a_lowered_limit_is_never_late, replay_from_mid_way);
+    a_lowered_limit_is_never_late, replay_from_mid_way);

@@ -40,8 +40,8 @@ static void start(const char *option, const char *value)
     udp_close(&probe);
     CHECK_EQ_I64(udp_open(&from, "127.0.0.1:0", at), 0);
     watcher = said_start(dir, watch,
-                         WORDS("watch", "--listen", at, "--seconds", "8", "--csv",
-                               said_path(dir, "w.csv"), option, value));
+        WORDS("watch", "--listen", at, "--seconds", "8", "--csv", said_path(dir, "w.csv"), option,
+            value));
     for (int i = 0; i < 400 && said_size(said_path(dir, "w.csv")) < 0; i++) { pause_ms(10); }
     pause_ms(50);
 }
@@ -142,15 +142,15 @@ TEST(lost_pieces_are_told)
     end();
     CHECK(s.status == 0 && strstr(s.err, "ticks were lost on the way"), "%d %s", s.status, s.err);
     CHECK(strstr(s.out, "  f_des ") && strstr(s.out, "  state ") && !strstr(s.out, "  q "), "%s",
-          s.out);
+        s.out);
     said_clean(dir);
 }
 
 /* Width and height of a PNG; 0: it is none. */
 static unsigned png_size(const char *path, unsigned *height)
 {
-    static const uint8_t begins[16] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n',
-                                       0,    0,   0,   13,  'I',  'H',  'D',  'R'};
+    static const uint8_t begins[16] = {
+        0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n', 0, 0, 0, 13, 'I', 'H', 'D', 'R'};
     uint8_t byte[24] = {0};
     FILE *f = fopen(path, "rb");
     size_t n = 0;
@@ -180,7 +180,7 @@ TEST(a_picture_is_drawn)
         send_file(a_log("4"), 0);
         end();
         CHECK(s.status == 0 && strstr(s.err, "picture: ") && strstr(s.err, "it's.png"), "%d %s",
-              s.status, s.err);
+            s.status, s.err);
         CHECK_EQ_I64(png_size(said_path(dir, "it's.png"), &height[i]), 1400);
         said_clean(dir);
     }
@@ -234,11 +234,11 @@ TEST(a_terminal_is_drawn_over)
     terminal_read(&tty, text, sizeof text);
     CHECK(s.status == 130, "%d %s", s.status, s.err);
     CHECK(count(text, "\033[2J") == 1 && count(text, "\033[H") >= 4,
-          "cleared %d times, drawn %d times", count(text, "\033[2J"), count(text, "\033[H"));
+        "cleared %d times, drawn %d times", count(text, "\033[2J"), count(text, "\033[H"));
     CHECK(count(text, "\033[?25l") == 1 && count(text, "\033[?25h") == 1, "the cursor");
     CHECK(strstr(text, "drop, 2000 Hz   ") && strstr(text, "state   run: ") &&
               strstr(text, "faults  none"),
-          "%s", text);
+        "%s", text);
     CHECK(strstr(text, "SILENT for "), "it does not tell of silence");
     CHECK(strstr(text, "Ctrl-C ends it\033[J"), "what stood below stays");
     terminal_close(&tty);
@@ -252,7 +252,7 @@ TEST(silence_is_told_with_its_age)
     end();
     CHECK(s.status == 1 && strstr(s.err, "nothing was heard"), "%d %s", s.status, s.err);
     CHECK(strstr(s.out, "silent for 2.") || strstr(s.out, "silent for 3."), "%s",
-          s.out); /* a busy machine draws late */
+        s.out); /* a busy machine draws late */
     said_clean(dir);
 }
 
@@ -267,9 +267,9 @@ TEST(another_table_is_refused_by_name)
     exh_record_header_serialize(&c, &h);
     piece(byte, exh_record_end(&c), 0, 0);
     end();
-    CHECK(s.status == 1 &&
-              strstr(s.err, "scene drop: the box's table of signals (11, CRC 00000001)"),
-          "%d %s", s.status, s.err);
+    CHECK(
+        s.status == 1 && strstr(s.err, "scene drop: the box's table of signals (11, CRC 00000001)"),
+        "%d %s", s.status, s.err);
     said_clean(dir);
 }
 
@@ -277,25 +277,24 @@ TEST(bad_usage)
 {
     static const struct {
         const char *word[5], *said;
-    } row[] = {
-        {{"watch", NULL}, "--modbus or --listen"},
+    } row[] = {{{"watch", NULL}, "--modbus or --listen"},
         {{"watch", "--listen", "here", NULL}, "give ADDRESS:PORT"},
         {{"watch", "--listen", "127.0.0.1:0", "--finger=nose", NULL}, "--finger: nose"},
         {{"watch", "--listen", "127.0.0.1:0", "--csv=/nowhere/x", NULL}, "--csv: /nowhere/x"}};
     dir = said_dir();
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
         said(&s, dir, cli_watch, row[i].word);
-        CHECK(s.status == 2 && strstr(s.err, row[i].said), "%s: %d %s", row[i].said, s.status,
-              s.err);
+        CHECK(
+            s.status == 2 && strstr(s.err, row[i].said), "%s: %d %s", row[i].said, s.status, s.err);
     }
     start("--signals", "q,nose");
     send_file(a_log("0.5"), 0);
     end();
     CHECK(s.status == 2 && strstr(s.err, "nose: no such signal: one of q qd f_des"), "%d %s",
-          s.status, s.err);
+        s.status, s.err);
     said_clean(dir);
 }
 
 TEST_MAIN("watch", samples_are_the_logs_values, lost_pieces_are_told, a_picture_is_drawn,
-          a_terminal_is_drawn_over, silence_is_told_with_its_age, another_table_is_refused_by_name,
-          bad_usage);
+    a_terminal_is_drawn_over, silence_is_told_with_its_age, another_table_is_refused_by_name,
+    bad_usage);

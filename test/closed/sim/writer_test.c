@@ -104,8 +104,8 @@ TEST(a_full_pipe_refuses_and_waits_for_nobody)
         lost += is == 0;
     }
     CHECK(lost == 400 && n > 8, "%lu lost, %lu taken", (unsigned long)lost, (unsigned long)n);
-    CHECK(longest_s < 2, "a put took %d ms",
-          (int)(longest_s * 1000)); /* a machine with other work */
+    CHECK(
+        longest_s < 2, "a put took %d ms", (int)(longest_s * 1000)); /* a machine with other work */
     for (uint32_t i = 0; i < n; i++) { check_record(taken[i]); }
     CHECK_EQ_I64(writer_end(w, 5), 0);
     close(end[1]);
@@ -136,7 +136,7 @@ TEST(patience_loses_nothing)
     {
         int status = -1;
         CHECK(waitpid(reader, &status, 0) == reader && status == 0,
-              "what was read is not what was put");
+            "what was read is not what was put");
     }
 }
 
@@ -203,4 +203,4 @@ TEST(a_file_by_its_name)
 }
 
 TEST_MAIN("writer", a_full_pipe_refuses_and_waits_for_nobody, patience_loses_nothing,
-          a_reader_that_goes, a_file_that_takes_nothing, a_file_by_its_name);
+    a_reader_that_goes, a_file_that_takes_nothing, a_file_by_its_name);

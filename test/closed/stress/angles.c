@@ -152,7 +152,7 @@ int every_angle(uint32_t thin)
            all.cos_lsb <= BOUND_LSB;
     printf("%" PRIu64 " angles: sine within %.4f LSB of q30 (at %#" PRIx32 "), cosine within %.4f "
            "(at %#" PRIx32 "), %" PRIu64 " beyond 1 | at most %.2f | %s\n",
-           all.angles, all.sin_lsb, all.sin_at, all.cos_lsb, all.cos_at, all.beyond, BOUND_LSB,
-           good ? "ok" : "FAIL");
+        all.angles, all.sin_lsb, all.sin_at, all.cos_lsb, all.cos_at, all.beyond, BOUND_LSB,
+        good ? "ok" : "FAIL");
     return !good;
 }

@@ -9,13 +9,10 @@ static uint64_t ticks_in(int32_t ms, struct exh_period T)
     return (uint64_t)ms * T.den / (1000 * (uint64_t)T.num);
 }
 
-static uint64_t at_least(uint64_t n, uint64_t least)
-{
-    return n < least ? least : n;
-}
+static uint64_t at_least(uint64_t n, uint64_t least) { return n < least ? least : n; }
 
-struct box_times box_times(const struct exh_safety_par *par, const struct exh_motion_par *watch,
-                           struct exh_period T)
+struct box_times box_times(
+    const struct exh_safety_par *par, const struct exh_motion_par *watch, struct exh_period T)
 {
     struct box_times t;
     t.arm = at_least(ticks_in(par->arm_ms, T) + 1, 2);
@@ -49,11 +46,9 @@ static uint32_t causes(struct box *b, const struct box_times *t, const struct ex
 {
     static const struct {
         uint32_t healthy, cause;
-    } contact[] = {{EXH_DIN_ESTOP, EXH_FAULT_ESTOP},
-                   {EXH_DIN_DEADMAN, EXH_FAULT_DEADMAN},
-                   {EXH_DIN_WATCHDOG, EXH_FAULT_WATCHDOG},
-                   {EXH_DIN_CARDS, EXH_FAULT_CARD},
-                   {EXH_DIN_DRIVE0, EXH_FAULT_DRIVE}};
+    } contact[] = {{EXH_DIN_ESTOP, EXH_FAULT_ESTOP}, {EXH_DIN_DEADMAN, EXH_FAULT_DEADMAN},
+        {EXH_DIN_WATCHDOG, EXH_FAULT_WATCHDOG}, {EXH_DIN_CARDS, EXH_FAULT_CARD},
+        {EXH_DIN_DRIVE0, EXH_FAULT_DRIVE}};
     uint32_t c = in->raised;
     for (unsigned k = 0; k < sizeof contact / sizeof contact[0]; k++) {
         if ((in->din & contact[k].healthy) == 0) { c |= contact[k].cause; }
@@ -76,8 +71,8 @@ static int cuts(uint32_t c)
 }
 
 /* While force may act. */
-static int leaves_open(const struct box *b, const struct box_times *t,
-                       const struct exh_safety_in *in, int lost)
+static int leaves_open(
+    const struct box *b, const struct box_times *t, const struct exh_safety_in *in, int lost)
 {
     if (cuts(b->present)) { return EXH_STATE_FAULT; }
     if (b->state == EXH_STATE_RELEASE) {

@@ -30,8 +30,8 @@ struct box_times {
     int32_t small_N_q20;
 };
 
-struct box_times box_times(const struct exh_safety_par *par, const struct exh_motion_par *watch,
-                           struct exh_period T);
+struct box_times box_times(
+    const struct exh_safety_par *par, const struct exh_motion_par *watch, struct exh_period T);
 
 /* One tick; raised: causes that the box is told, `ready` as in struct exh_safety_in. */
 enum box_gate box_step(struct box *b, const struct box_times *t, const struct exh_safety_in *in);

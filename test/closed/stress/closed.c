@@ -89,17 +89,17 @@ static void run_closed(const struct closed *c)
         if (exh_safety_is_running(&rig.state.safety) || ran > 0) { ran++; }
         if (ran == 1) { posix_ready(); }
         must(c->hi_mm <= c->lo_mm || rig.sig.faults == 0, "fault", "%#lx",
-             (unsigned long)rig.sig.faults);
+            (unsigned long)rig.sig.faults);
         if (rig.state.quad.lost && c->tweak < HALF) {
             /* 5 kg outrun the drive, the fall and all: no position any more, and no force. */
             must(c->mass_kg == 5 && rig.sig.faults == (EXH_FAULT_SPEED | EXH_FAULT_ENCODER),
-                 "fault", "%#lx", (unsigned long)rig.sig.faults);
+                "fault", "%#lx", (unsigned long)rig.sig.faults);
         } else if (c->tweak < HALF) {
             check_position(&p.device, start_m);
         } else { /* never a newton from a count that lies */
             must(ran <= 97 || (rig.state.safety.first == EXH_FAULT_ENCODER &&
-                               (rig.sig.faults & ~EXH_FAULT_SPEED) == EXH_FAULT_ENCODER),
-                 "fault", "%#lx", (unsigned long)rig.sig.faults);
+                                  (rig.sig.faults & ~EXH_FAULT_SPEED) == EXH_FAULT_ENCODER),
+                "fault", "%#lx", (unsigned long)rig.sig.faults);
         }
         in.command = EXH_CMD_NONE;
     }
@@ -149,14 +149,13 @@ void closed_loops(void)
         char besides[64];
         run_closed(c);
         snprintf(besides, sizeof besides, "%s",
-                 c->tweak < HALF ? "q is the plant's to 2 counts"
-                                 : "an encoder fault at the first");
+            c->tweak < HALF ? "q is the plant's to 2 counts" : "an encoder fault at the first");
         if (c->hi_mm > c->lo_mm) {
             const double lo = rig.w.q_min / 1073741.824, hi = rig.w.q_max / 1073741.824;
             must(rig.w.in[EXH_STATE_RUN] + rig.w.in[EXH_STATE_LIMIT] > rig.w.ticks / 2, "power",
-                 "seldom in RUN");
+                "seldom in RUN");
             snprintf(besides + strlen(besides), sizeof besides - strlen(besides), ", %g..%g mm",
-                     c->lo_mm, c->hi_mm);
+                c->lo_mm, c->hi_mm);
             must(lo >= c->lo_mm && hi <= c->hi_mm, "motion", "%.1f..%.1f mm", lo, hi);
         }
         report(c->name, besides);

@@ -38,9 +38,9 @@ static void stage_ends(const struct exh_scene *sc, enum to to)
         const struct exh_signal *row = exh_signal_at(p->table, i, NULL);
         if (row->when == EXH_WHEN_SETUP) { continue; }
         (void)exh_params_stage_at(p, i,
-                                  to == LOWEST    ? row->min
-                                  : to == HIGHEST ? row->max
-                                                  : row->dflt);
+            to == LOWEST    ? row->min
+            : to == HIGHEST ? row->max
+                            : row->dflt);
     }
 }
 
@@ -99,18 +99,18 @@ static struct exh_scene_in ends(uint64_t n, int all)
     return in;
 }
 
-static void check_outputs(const struct exh_scene *sc, const struct exh_drive_out *out,
-                          uint8_t alive)
+static void check_outputs(
+    const struct exh_scene *sc, const struct exh_drive_out *out, uint8_t alive)
 {
     must((uint8_t)(out->alive - alive) == 1, "alive", "%u after %u", (unsigned)out->alive,
-         (unsigned)alive);
+        (unsigned)alive);
     for (unsigned f = 0; f < EXH_FINGERS; f++) {
         const int32_t zero = value_of(sc, ID_DAC_ZERO, f, 32768),
                       span = value_of(sc, ID_DAC_SPAN, f, 32767);
         const int32_t code = out->dac_raw[f] - zero, enabled = out->enable >> f & 1;
         must(code >= 0 && code <= span, "code", "finger %u: %ld of %ld", f, (long)code, (long)span);
         must(enabled ? f < sc->fingers : code == 0, "gate", "finger %u: code %ld, enable %#x", f,
-             (long)code, (unsigned)out->enable);
+            (long)code, (unsigned)out->enable);
         if (code > rig.w.code_max) { rig.w.code_max = code; }
     }
 }
@@ -152,26 +152,23 @@ static void scene_at_its_ends(const struct exh_scene *sc, uint64_t ticks, int op
         rig.w.ticks++;
     }
     must(!opens || (at_ends > ticks / 100 && open > ticks / 20), "power",
-         "open in %" PRIu64 ", at the ends in %" PRIu64, open, at_ends);
+        "open in %" PRIu64 ", at the ends in %" PRIu64, open, at_ends);
     rig.w.q_min = rig.w.q_max = 0;
     snprintf(name, sizeof name, "all at their ends: %s", sc->name);
     snprintf(besides, sizeof besides,
-             "never pushed; open in %" PRIu64 " ticks, %" PRIu64 " at ends", open, at_ends);
+        "never pushed; open in %" PRIu64 " ticks, %" PRIu64 " at ends", open, at_ends);
     report(name, besides);
 }
 
 /* --- signs --- */
 
-static int sign(double v)
-{
-    return (v > 0) - (v < 0);
-}
+static int sign(double v) { return (v > 0) - (v < 0); }
 
 /* Ends, near them, around 0, or anywhere. */
 static int32_t any_end(void)
 {
-    static const int32_t end[] = {INT32_MIN, INT32_MIN + 1,   INT32_MAX, INT32_MAX - 1, 0, 1,
-                                  -1,        INT32_C(1) << 30};
+    static const int32_t end[] = {
+        INT32_MIN, INT32_MIN + 1, INT32_MAX, INT32_MAX - 1, 0, 1, -1, INT32_C(1) << 30};
     const uint64_t u = any_u64();
     return u % 3 == 0 ? end[u / 3 % LEN(end)] : (int32_t)(uint32_t)(u >> 32) >> (u / 3 % 31);
 }
@@ -180,15 +177,14 @@ static int32_t any_end(void)
 static void same_sign(const char *what, int64_t got, double want)
 {
     must(got == 0 ? fabs(want) < 1 : sign((double)got) == sign(want), "sign",
-         "%s: %" PRId64 ", exact %.3g", what, got, want);
+        "%s: %" PRId64 ", exact %.3g", what, got, want);
 }
 
 static void signs_of_laws(void)
 {
     struct exh_contact s = {0, 0, 0, 0};
     const struct exh_contact_par par = {any_end() & INT32_MAX, any_end() & INT32_MAX,
-                                        any_end() & INT32_MAX, any_end() & INT32_MAX,
-                                        any_end() & INT32_MAX};
+        any_end() & INT32_MAX, any_end() & INT32_MAX, any_end() & INT32_MAX};
     const struct exh_contact_in in = {any_end(), any_end(), any_end()};
     const struct exh_quad_par quad = {any_end() & INT32_MAX, 0};
     const int32_t cnt = any_end();
@@ -196,10 +192,9 @@ static void signs_of_laws(void)
     const int touching = exh_contact_step(&s, &par, in, &f);
     const double past = (double)in.pos_m_q30 - in.lim_m_q30;
     same_sign("spring", f.spring_N_q20,
-              touching ? par.k_Npm_q10 * fmin(fmax(past, -2147483648.0), 2147483647.0) / 1048576
-                       : 0);
+        touching ? par.k_Npm_q10 * fmin(fmax(past, -2147483648.0), 2147483647.0) / 1048576 : 0);
     same_sign("damper", f.damper_N_q20,
-              touching ? (double)par.b_Nspm_q20 * in.vel_mps_q27 / 134217728 : 0);
+        touching ? (double)par.b_Nspm_q20 * in.vel_mps_q27 / 134217728 : 0);
     same_sign("position", exh_quad_pos_m_q30(&quad, cnt), (double)cnt * quad.step_m_q42 / 4096);
 }
 
@@ -257,11 +252,11 @@ static void signs_of_drive(void)
     exh_drive_force_step(&rig.state.drive, &rig.cfg.drive, &permit, &f);
     exh_drive_current_step(&rig.state.drive, &rig.cfg.drive, &f, &i);
     must(f.force_N_q20 >= 0 && f.force_N_q20 <= rig.cfg.drive.f_top_N_q20, "sign", "force %ld",
-         (long)f.force_N_q20);
+        (long)f.force_N_q20);
     must(i.table_A_q26 >= 0 && i.table_A_q26 + i.peak_A_q26 + i.i2t_A_q26 >= 0, "sign",
-         "current %" PRId64, i.table_A_q26);
+        "current %" PRId64, i.table_A_q26);
     same_sign("monitor", exh_drive_monitor_A_q26(&rig.cfg.drive, mon),
-              ((double)mon - p->mon_zero_raw) * p->mon_A_q40 / 16384);
+        ((double)mon - p->mon_zero_raw) * p->mon_A_q40 / 16384);
 }
 
 /* One low-pass rail to rail: where the ideal one is clear of 0 by 64 LSB, and within the word or
@@ -289,7 +284,7 @@ static void signs_of_filter(uint64_t samples)
         s2 = 2 * v2 - s2;
         exh_filter_step(&s, &cfg, &x, &y, 1);
         must(fabs(v2) < 64 || sign(y) == sign(v2), "sign", "low-pass at %g: %ld, ideal %.0f", ratio,
-             (long)y, v2);
+            (long)y, v2);
     }
 }
 
@@ -307,17 +302,16 @@ static void signs(void)
     }
     rig.w.q_min = rig.w.q_max = 0;
     report("saturated at random and at ends",
-           "position, speeds, law, force, current, low-pass keep their signs");
+        "position, speeds, law, force, current, low-pass keep their signs");
 }
 
 void all_at_their_ends(void)
 {
-    static const struct exh_scene *const scene[] = {&exh_scene_drop,      &exh_scene_guarded,
-                                                    &exh_scene_custom,    &exh_scene_glove,
-                                                    &exh_scene_bilateral, &exh_scene_bringup};
+    static const struct exh_scene *const scene[] = {&exh_scene_drop, &exh_scene_guarded,
+        &exh_scene_custom, &exh_scene_glove, &exh_scene_bilateral, &exh_scene_bringup};
     for (size_t i = 0; i < LEN(scene); i++) {
         scene_at_its_ends(scene[i], cases < 200000 ? 20000 : cases / 10,
-                          scene[i] != &exh_scene_glove && scene[i] != &exh_scene_bringup);
+            scene[i] != &exh_scene_glove && scene[i] != &exh_scene_bringup);
     }
     signs();
 }

@@ -46,7 +46,7 @@ static void full_force(const struct hot *c)
         if (last_A > 6.59) { peak_s += T_s; }
     }
     snprintf(besides, sizeof besides, "peak %.2f s of %g, then %.3f A (3.3 + 1 %%)", peak_s, may_s,
-             last_A);
+        last_A);
     must(peak_s >= 0.7 * may_s && peak_s <= may_s + T_s, "heat", "peak for %.3f s", peak_s);
     must(last_A >= 3.29 && last_A <= 3.3 * 1.01, "heat", "%.4f A after a minute", last_A);
     report(c->name, besides);

@@ -29,10 +29,10 @@ static void extreme_inputs(const struct extreme *c)
         const struct exh_scene_in in = handled_in(n);
         tick(&in, &out);
     }
-    must(rig.w.in[EXH_STATE_RUN] + rig.w.in[EXH_STATE_LIMIT] > cases / 10, "power",
-         "seldom in RUN");
+    must(
+        rig.w.in[EXH_STATE_RUN] + rig.w.in[EXH_STATE_LIMIT] > cases / 10, "power", "seldom in RUN");
     must(rig.w.slew_share > 0.99 && rig.w.force_max == rig.cfg.drive.f_top_N_q20, "power",
-         "slew %.3f, force %ld", rig.w.slew_share, (long)rig.w.force_max);
+        "slew %.3f, force %ld", rig.w.slew_share, (long)rig.w.force_max);
     report(c->name, "the table's end and the full slew are reached");
 }
 
@@ -75,7 +75,7 @@ static void tiny_slew(void)
         tick(&in, &out);
     }
     must(rig.w.force_max > 0 && rig.w.force_max <= EXH_Q(51, 1000, EXH_Q_FORCE), "slew",
-         "rose to %ld", (long)rig.w.force_max);
+        "rose to %ld", (long)rig.w.force_max);
     report("slew 1 N/s at 20000 Hz, square demand", "F below 0.051 N: it may rise for 50 ms");
 }
 
@@ -112,8 +112,8 @@ static void steepened(unsigned at)
     for (unsigned n = 0; n < 60; n++) {
         struct exh_scene_in in = idle_in(1, 1076); /* 0.5 mm into the wall */
         if (n == 10) { in.command = EXH_CMD_OFF; }
-        must(n != 10 || rig.box.held > EXH_Q(8, 1, EXH_Q_FORCE), "power", "%ld",
-             (long)rig.box.held);
+        must(
+            n != 10 || rig.box.held > EXH_Q(8, 1, EXH_Q_FORCE), "power", "%ld", (long)rig.box.held);
         if (n == 10 + at) {
             for (unsigned k = 0; k < rig.cfg.calib.to_cur_n; k++) { knot[k].y *= 2; }
             must(exh_table_setup(knot, rig.cfg.calib.to_cur_n) == 0, "set-up", "table refused");

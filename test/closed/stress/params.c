@@ -27,7 +27,7 @@ static void stage_all(int when)
             continue;
         } /* uncalibrated: it would not arm */
         must(exh_params_stage(&rig.params, row->id, instance, any_value(row)) == 0, "setting", "%s",
-             row->name);
+            row->name);
     }
 }
 
@@ -57,10 +57,10 @@ static void parameters_every_tick(int32_t tune_ms)
         apply();
         tick(&in, &out);
     }
-    must(rig.w.in[EXH_STATE_RUN] + rig.w.in[EXH_STATE_LIMIT] > cases / 10, "power",
-         "seldom in RUN");
-    report("parameters at random every tick",
-           tune_ms ? "little by little, as each may" : "at once");
+    must(
+        rig.w.in[EXH_STATE_RUN] + rig.w.in[EXH_STATE_LIMIT] > cases / 10, "power", "seldom in RUN");
+    report(
+        "parameters at random every tick", tune_ms ? "little by little, as each may" : "at once");
 }
 
 /* Random set-ups; of most, so that they arm: no supply judged, no pull-back force. */
@@ -86,15 +86,8 @@ static void stage_setup(void)
 /* Any set-up the tables allow is either refused or keeps the rules. */
 static void random_setups(void)
 {
-    static const struct exh_period T[] = {{1, 1},
-                                          {1, 7},
-                                          {1, 90},
-                                          {1, 2000},
-                                          {1, 20000},
-                                          {597, 1193182},
-                                          {999999937, 1000000007},
-                                          {4294967295u, 4294967295u},
-                                          {214748, 4294967295u}};
+    static const struct exh_period T[] = {{1, 1}, {1, 7}, {1, 90}, {1, 2000}, {1, 20000},
+        {597, 1193182}, {999999937, 1000000007}, {4294967295u, 4294967295u}, {214748, 4294967295u}};
     struct watch sum;
     char besides[64];
     unsigned refused = 0, ran = 0, runs = 0;
@@ -120,9 +113,9 @@ static void random_setups(void)
         sum = rig.w;
     }
     must(ran > setups / 4 && refused > setups / 40 && runs > ran / 8, "power",
-         "%u ran, %u of them armed, %u refused", ran, runs, refused);
+        "%u ran, %u of them armed, %u refused", ran, runs, refused);
     snprintf(besides, sizeof besides, "refused (%u) or within the rules (%u, %u in RUN)", refused,
-             ran, runs);
+        ran, runs);
     report("set-ups at random, last one shown", besides);
 }
 

@@ -51,8 +51,8 @@ void fresh(void)
     rig.enc_bits = 24;
     rig.w.q_min = INT32_MAX;
     rig.w.q_max = INT32_MIN;
-    exh_params_setup(&rig.params, exh_scene_drop.params->table, (int32_t *)&rig.active,
-                     (int32_t *)&rig.staged);
+    exh_params_setup(
+        &rig.params, exh_scene_drop.params->table, (int32_t *)&rig.active, (int32_t *)&rig.staged);
     rig.active.calib.uncalibrated = rig.staged.calib.uncalibrated = 1; /* there is no image here */
 }
 
@@ -131,21 +131,15 @@ void apply(void)
         const int64_t next =
             next_of(was[i], goal[i], when == EXH_WHEN_SLEWED || (when == EXH_WHEN_LIMIT && up));
         must(is[i] == next, "slewed", "%s: %ld, from %ld to %ld is %" PRId64, row->name,
-             (long)is[i], (long)was[i], (long)goal[i], next);
+            (long)is[i], (long)was[i], (long)goal[i], next);
     }
 }
 
 /* --- inputs --- */
 
-uint64_t any_u64(void)
-{
-    return sim_random_u64(&rng);
-}
+uint64_t any_u64(void) { return sim_random_u64(&rng); }
 
-uint32_t any(uint32_t n)
-{
-    return (uint32_t)(any_u64() % n);
-}
+uint32_t any(uint32_t n) { return (uint32_t)(any_u64() % n); }
 
 /* The monitor of the current coded last, as far as it has a code. */
 static int16_t met(void)
@@ -228,17 +222,14 @@ void report(const char *name, const char *besides)
     const struct watch *w = &rig.w;
     char held[160];
     snprintf(held, sizeof held,
-             "%8" PRIu64 " ticks F %6.2f N slew %3.0f %% code %5d i %5.3f A heat %3.0f %% "
-             "q %+7.1f..%+7.1f mm",
-             w->ticks, w->force_max / 1048576.0, 100 * w->slew_share, w->code_max, w->cur_max_A,
-             100 * w->heat_share, w->q_min / 1073741.824, w->q_max / 1073741.824);
+        "%8" PRIu64 " ticks F %6.2f N slew %3.0f %% code %5d i %5.3f A heat %3.0f %% "
+        "q %+7.1f..%+7.1f mm",
+        w->ticks, w->force_max / 1048576.0, 100 * w->slew_share, w->code_max, w->cur_max_A,
+        100 * w->heat_share, w->q_min / 1073741.824, w->q_max / 1073741.824);
     printf("%-38s | %-46s | %s | %s\n", name, besides, held, w->broken ? "FAIL" : "ok");
     if (w->broken) { printf("    %" PRIu64 " broken, first %s\n", w->broken, w->first); }
     fflush(stdout);
     failed += w->broken != 0;
 }
 
-int failures(void)
-{
-    return failed;
-}
+int failures(void) { return failed; }

@@ -31,7 +31,7 @@ static void box_tick(struct exh_safety_in in, struct hidden *h)
     const uint32_t moved = movement_faults(h);
     const uint32_t told = in.raised & (EXH_FAULT_SPEED | EXH_FAULT_STUCK);
     must(told == moved, "speed", "faults %#lx, want %#lx", (unsigned long)told,
-         (unsigned long)moved);
+        (unsigned long)moved);
     in.raised = (in.raised & ~told) | moved;
     h->gate = box_step(&rig.box, &rig.times, &in);
 }
@@ -42,8 +42,8 @@ static void shadow_tick(struct drop *s, const struct exh_scene_in *in, struct hi
     const struct drop_par *par = &rig.active;
     const int32_t cnt = exh_quad_step(&s->quad, &rig.cfg.quad, in->drive.enc_raw[0]);
     const int32_t pos = exh_quad_pos_m_q30(&par->quad, cnt);
-    struct exh_contact_in q = {pos, exh_velocity_window_step(&s->velocity, &rig.cfg.velocity, cnt),
-                               par->own.q_lim_m_q30};
+    struct exh_contact_in q = {
+        pos, exh_velocity_window_step(&s->velocity, &rig.cfg.velocity, cnt), par->own.q_lim_m_q30};
     const int32_t mon = exh_drive_monitor_A_q26(&rig.cfg.drive, in->drive.mon_raw[0]);
     struct exh_safety_in box = {in->drive.din, 0, in->missed, in->command, 1, 15};
     struct exh_permit permit;
@@ -91,7 +91,7 @@ static void check_open(const struct exh_force_ledger *f)
     const int on_the_way =
         (change > 0 ? f->force_N_q20 < want : f->force_N_q20 > want) && moved >= step - 2;
     must(there || on_the_way, "force", "%ld, not %" PRId64 " of %" PRId64 ", change %" PRId64,
-         (long)f->force_N_q20, want, may, change);
+        (long)f->force_N_q20, want, may, change);
     must(moved <= step + 1.0001, "slew", "%.0f LSB, may %.3f", moved, step);
     if (step >= 1 && moved / step > rig.w.slew_share) { rig.w.slew_share = moved / step; }
 }
@@ -103,12 +103,11 @@ static void check_falling(const struct exh_force_ledger *f)
     const int64_t gone = rig.box.gone < (uint64_t)R ? (int64_t)rig.box.gone : R;
     const int64_t most = from * (R - gone) / R;
     must(f->force_N_q20 <= most && f->force_N_q20 >= most - gone - 1, "release",
-         "%ld, %" PRId64 " of %" PRId64 " ticks from %" PRId64, (long)f->force_N_q20, gone, R,
-         from);
+        "%ld, %" PRId64 " of %" PRId64 " ticks from %" PRId64, (long)f->force_N_q20, gone, R, from);
     must(f->force_N_q20 <= rig.box.held, "release", "%ld, was %ld", (long)f->force_N_q20,
-         (long)rig.box.held);
+        (long)rig.box.held);
     must(f->clamp_N_q20 == 0 && f->slew_N_q20 == 0, "release", "clamp %" PRId64 ", slew %" PRId64,
-         f->clamp_N_q20, f->slew_N_q20);
+        f->clamp_N_q20, f->slew_N_q20);
 }
 
 static void check_force(const struct hidden *h)
@@ -169,10 +168,10 @@ static void check_current(const struct hidden *h)
                        (h->gate == BOX_FALLS && code == rig.box.off);
     must(sum == i->coded_A_q26, "current ledger", "%" PRId64 " != %ld", sum, (long)i->coded_A_q26);
     must(passed >= 0 && passed <= par->i_peak_A_q26, "current", "%" PRId64 " of %ld", passed,
-         (long)par->i_peak_A_q26);
-    must((double)i->dac_A_q26 <= half_code + 2 &&
-             (at_end || (double)i->dac_A_q26 >= -half_code - 2),
-         "coding", "off by %" PRId64 ", half a code is %.0f", i->dac_A_q26, half_code);
+        (long)par->i_peak_A_q26);
+    must(
+        (double)i->dac_A_q26 <= half_code + 2 && (at_end || (double)i->dac_A_q26 >= -half_code - 2),
+        "coding", "off by %" PRId64 ", half a code is %.0f", i->dac_A_q26, half_code);
     check_heat((double)passed / 67108864.0);
     if ((double)passed / 67108864.0 > rig.w.cur_max_A) {
         rig.w.cur_max_A = (double)passed / 67108864.0;
@@ -184,17 +183,17 @@ static void check_codes(const struct hidden *h, const struct exh_drive_out *out)
     const struct exh_drive_par *par = &rig.active.drive;
     const int open = h->gate != BOX_SHUT;
     const int code = out->dac_raw[0] - par->dac_zero_raw;
-    must(code >= 0 && code <= par->dac_span_raw, "code", "%d of %ld", code,
-         (long)par->dac_span_raw);
+    must(
+        code >= 0 && code <= par->dac_span_raw, "code", "%d of %ld", code, (long)par->dac_span_raw);
     must(out->enable == open && (open || code == 0), "gate", "code %d, enable %u", code,
-         (unsigned)out->enable);
+        (unsigned)out->enable);
     must(h->gate != BOX_OPEN || !rig.state.quad.lost, "gate", "open after a jump");
     must(h->gate != BOX_FALLS || code <= rig.box.off, "release", "code %d, was %d", code,
-         (int)rig.box.off);
+        (int)rig.box.off);
     must(out->alive == (uint8_t)(rig.w.ticks + 1), "alive", "%u", (unsigned)out->alive);
     for (unsigned k = 1; k < EXH_FINGERS; k++) {
         must(out->dac_raw[k] == par->dac_zero_raw, "code", "axis %u not in use: %u", k,
-             (unsigned)out->dac_raw[k]);
+            (unsigned)out->dac_raw[k]);
     }
     if (code > rig.w.code_max) { rig.w.code_max = code; }
 }
@@ -207,22 +206,22 @@ static void check_signals(const struct hidden *h)
     const int32_t end = rig.cfg.calib.cur_to_force[1].y;
     must(s->c == h->touching && s->f_des_N_q20 == h->f.force_N_q20 &&
              s->i_des_A_q26 == h->i.coded_A_q26 && s->limits == (int32_t)h->limits,
-         "output", "signals are not those of the modules");
+        "output", "signals are not those of the modules");
     must(s->c == 0 || s->c == 1, "signals", "c = %ld", (long)s->c);
     must(s->c ? past >= -(int64_t)par->contact.hyst_m_q30 : past < 0, "signals",
-         "c = %ld at %" PRId64 " past q_lim", (long)s->c, past);
+        "c = %ld at %" PRId64 " past q_lim", (long)s->c, past);
     must((s->limits & ~LIMITS_ALL) == 0, "signals", "limits %#lx", (unsigned long)s->limits);
-    must(((s->limits & EXH_LIMIT_SPEED) != 0) == (rig.box.fast > 0) &&
-             s->qd_mps_q27 ==
-                 exh_clamp(h->vel, -par->watch.speed_mps_q27, par->watch.speed_mps_q27),
-         "speed", "%ld into the law, %ld measured", (long)s->qd_mps_q27, (long)h->vel);
+    must(
+        ((s->limits & EXH_LIMIT_SPEED) != 0) == (rig.box.fast > 0) &&
+            s->qd_mps_q27 == exh_clamp(h->vel, -par->watch.speed_mps_q27, par->watch.speed_mps_q27),
+        "speed", "%ld into the law, %ld measured", (long)s->qd_mps_q27, (long)h->vel);
     must(s->state == rig.box.state && (uint32_t)s->faults == rig.box.faults &&
              (uint32_t)s->present == rig.box.present,
-         "state", "%ld, faults %#lx, present %#lx, want %d, %#lx, %#lx", (long)s->state,
-         (unsigned long)s->faults, (unsigned long)s->present, rig.box.state,
-         (unsigned long)rig.box.faults, (unsigned long)rig.box.present);
+        "state", "%ld, faults %#lx, present %#lx, want %d, %#lx, %#lx", (long)s->state,
+        (unsigned long)s->faults, (unsigned long)s->present, rig.box.state,
+        (unsigned long)rig.box.faults, (unsigned long)rig.box.present);
     must(s->f_mon_N_q20 >= -end && s->f_mon_N_q20 <= end, "signals", "f_mon %ld of %ld",
-         (long)s->f_mon_N_q20, (long)end);
+        (long)s->f_mon_N_q20, (long)end);
     if (s->q_m_q30 < rig.w.q_min) { rig.w.q_min = s->q_m_q30; }
     if (s->q_m_q30 > rig.w.q_max) { rig.w.q_max = s->q_m_q30; }
 }
@@ -236,8 +235,8 @@ void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
     shadow_tick(&rig.shadow, in, &h);
     must(memcmp(out->dac_raw, h.out.dac_raw, sizeof out->dac_raw) == 0 &&
              out->enable == h.out.enable && out->alive == h.out.alive,
-         "output", "code %u, the modules give %u", (unsigned)out->dac_raw[0],
-         (unsigned)h.out.dac_raw[0]);
+        "output", "code %u, the modules give %u", (unsigned)out->dac_raw[0],
+        (unsigned)h.out.dac_raw[0]);
     check_force(&h);
     check_current(&h);
     check_codes(&h, out);

@@ -21,9 +21,9 @@ static uint32_t run_from_tick(uint32_t first, uint32_t fault_at)
         tick(&in, &out);
     }
     must(rig.state.safety.tick == first + 4000u, "tick", "%lu",
-         (unsigned long)rig.state.safety.tick);
+        (unsigned long)rig.state.safety.tick);
     must(rig.state.safety.first_tick == first + fault_at, "first_tick", "%lu",
-         (unsigned long)rig.state.safety.first_tick);
+        (unsigned long)rig.state.safety.first_tick);
     return rig.w.crc;
 }
 
@@ -34,7 +34,7 @@ static void tick_counter_wraps(void)
         const uint32_t crc = run_from_tick(0, fault_at[i]);
         const uint32_t wrapped = run_from_tick(UINT32_MAX - 1999, fault_at[i]);
         must(crc == wrapped, "outputs", "CRC %08lx, from tick 0 %08lx", (unsigned long)wrapped,
-             (unsigned long)crc);
+            (unsigned long)crc);
         if (rig.w.broken) { break; }
     }
     report("tick counter wraps, fault at it", "same bits as from tick 0; its tick is kept");
@@ -53,7 +53,7 @@ static char *write_wrapping_log(uint32_t first, uint32_t ticks, size_t *len_B)
     sc->defaults();
     must(exh_params_stage(sc->params, exh_calib_set_rows[EXH_CALIB_SET_ROWS - 1].id, 0, 1) == 0 &&
              exh_params_apply(sc->params),
-         "set-up", "uncalibrated");
+        "set-up", "uncalibrated");
     must(p.log != NULL && sc->setup(board) == 0, "set-up", "refused");
     exh_log_start(sc, board);
     for (uint32_t n = 0; n < ticks; n++) {
@@ -90,7 +90,7 @@ static void read_back(const struct exh_record *r, uint32_t *next, int *running)
     exh_log_frame_serialize(&c, sc, &in, &rec, (int32_t *)&sig);
     sc->tick(&in, &out);
     must(out.dac_raw[0] == rec.dac_raw[0] && memcmp(&sig, sc->signal, sizeof sig) == 0, "replay",
-         "tick %lu differs", (unsigned long)r->tick);
+        "tick %lu differs", (unsigned long)r->tick);
     rig.w.ticks++;
 }
 
@@ -114,7 +114,7 @@ static void log_wraps(void)
     }
     free(log);
     must(next == first + 5000u && running && rig.w.ticks == 2500, "log", "%lu ticks replayed",
-         (unsigned long)rig.w.ticks);
+        (unsigned long)rig.w.ticks);
     rig.w.q_min = rig.w.q_max = 0;
     report("record ticks wrap", "in order, keyframe at tick 0, rest replays");
 }
@@ -133,14 +133,14 @@ static void count_wraps(int32_t step)
         const struct exh_scene_in in = idle_in(1, raw & 0xFFFFFF);
         tick(&in, &out);
         must(rig.state.quad.cnt == cnt, "count", "%ld, want %ld", (long)rig.state.quad.cnt,
-             (long)cnt);
+            (long)cnt);
         must(n < 2 || (rig.sig.qd_mps_q27 > 0) == (step > 0), "velocity", "%ld",
-             (long)rig.sig.qd_mps_q27);
+            (long)rig.sig.qd_mps_q27);
         raw += (uint32_t)step;
         cnt = exh_wrap_add(cnt, step);
     }
-    report(step > 0 ? "count wraps upward" : "count wraps downward",
-           "exact, velocity keeps its sign");
+    report(
+        step > 0 ? "count wraps upward" : "count wraps downward", "exact, velocity keeps its sign");
 }
 
 void wraps(void)

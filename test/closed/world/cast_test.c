@@ -13,8 +13,8 @@
 
 #define STEP 1e-3
 
-static struct hit one_ray(const struct body *b, int n, const struct ray *r, int cull,
-                          struct cast_stats *s)
+static struct hit one_ray(
+    const struct body *b, int n, const struct ray *r, int cull, struct cast_stats *s)
 {
     struct hit h;
     cast(b, n, r, 1, cull, &h, s);
@@ -120,7 +120,7 @@ static void against_walk(enum shape_kind kind)
             /* the walk steps over chords shorter than a step */
             CHECK(h.body < 0 || !inside(&b, v3_along(r.from, h.t + STEP, r.along)) ||
                       h.t > r.len - STEP || h.t < -r.back + STEP,
-                  "entry at %g that is none", h.t);
+                "entry at %g that is none", h.t);
             continue;
         }
         hits++;
@@ -130,25 +130,13 @@ static void against_walk(enum shape_kind kind)
     CHECK(cases < 20 || hits > cases / 20, "%d hits of %d: tells nothing", hits, cases);
 }
 
-TEST(a_ray_enters_a_plane_where_a_walk_does)
-{
-    against_walk(SHAPE_PLANE);
-}
+TEST(a_ray_enters_a_plane_where_a_walk_does) { against_walk(SHAPE_PLANE); }
 
-TEST(a_ray_enters_a_sphere_where_a_walk_does)
-{
-    against_walk(SHAPE_SPHERE);
-}
+TEST(a_ray_enters_a_sphere_where_a_walk_does) { against_walk(SHAPE_SPHERE); }
 
-TEST(a_ray_enters_a_box_where_a_walk_does)
-{
-    against_walk(SHAPE_BOX);
-}
+TEST(a_ray_enters_a_box_where_a_walk_does) { against_walk(SHAPE_BOX); }
 
-TEST(a_ray_enters_a_capsule_where_a_walk_does)
-{
-    against_walk(SHAPE_CAPSULE);
-}
+TEST(a_ray_enters_a_capsule_where_a_walk_does) { against_walk(SHAPE_CAPSULE); }
 
 /* The plane touches the body where the ray enters: unit normal, against the ray, and a little out
  * along it is outside, a little in is inside. */
@@ -196,7 +184,7 @@ TEST(of_many_the_first_whatever_their_order_and_culling)
         h = one_ray(b, MANY, &r, 1, &s);
         t = one_ray(turned, MANY, &r, 0, &s);
         CHECK(h.body == one.body && (h.body < 0 || h.t == one.t), "body %d, not %d", h.body,
-              one.body);
+            one.body);
         CHECK(t.body < 0 ? h.body < 0 : MANY - 1 - t.body == h.body, "another order, another body");
     }
 }
@@ -217,10 +205,10 @@ TEST(rays_together_find_what_each_finds_alone)
         for (int i = 0; i < rays; i++) {
             const struct hit a = one_ray(b, MANY, &r[i], cull, &alone);
             CHECK(a.body == h[i].body && a.t == h[i].t && a.face == h[i].face, "ray %d of %d", i,
-                  rays);
+                rays);
         }
         CHECK(alone.tested == together.tested && alone.culled == together.culled,
-              "counted otherwise");
+            "counted otherwise");
     }
 }
 
@@ -294,8 +282,7 @@ TEST(a_mesh_is_hit_where_its_triangles_are)
 }
 
 TEST_MAIN("world: rays", a_ray_enters_a_plane_where_a_walk_does,
-          a_ray_enters_a_sphere_where_a_walk_does, a_ray_enters_a_box_where_a_walk_does,
-          a_ray_enters_a_capsule_where_a_walk_does, the_plane_lies_on_the_surface,
-          of_many_the_first_whatever_their_order_and_culling,
-          rays_together_find_what_each_finds_alone, two_at_one_place_are_told_apart_by_number,
-          a_mesh_is_hit_where_its_triangles_are);
+    a_ray_enters_a_sphere_where_a_walk_does, a_ray_enters_a_box_where_a_walk_does,
+    a_ray_enters_a_capsule_where_a_walk_does, the_plane_lies_on_the_surface,
+    of_many_the_first_whatever_their_order_and_culling, rays_together_find_what_each_finds_alone,
+    two_at_one_place_are_told_apart_by_number, a_mesh_is_hit_where_its_triangles_are);

@@ -70,13 +70,13 @@ TEST(a_bar_is_6_mm_high_for_each_newton_and_stands_on_the_nail)
         const double force = f * 2.5;
         CHECK(bar != NULL, "no bar");
         CHECK(fabs(2 * bar->size.z - force * DRAW_BAR_M_PER_N) < 1e-12, "%g m for %g N",
-              2 * bar->size.z, force);
+            2 * bar->size.z, force);
         CHECK(bar->colour[0] > 0.9F && bar->colour[1] < 0.1F && bar->colour[2] < 0.1F, "not red");
         CHECK(bar->at.turn.z.z > 0.9, "the palm looks down: bars stand up");
         CHECK((rest != NULL) == (force < 10), "the rest up to f_max");
         if (rest) {
             CHECK(fabs(2 * rest->size.z - (10 - force) * DRAW_BAR_M_PER_N) < 1e-12, "%g",
-                  rest->size.z);
+                rest->size.z);
         }
     }
     end();
@@ -132,8 +132,8 @@ TEST(numbers_are_on_the_screen)
     m.lost = 17;
     world_draw(w, &m, &l);
     CHECK(said("-12.34") && said("56.78") && said("7.25"), "d, q_lim, F");
-    CHECK(said("400 frames/s") && said("age 3.3 ms") && said("lost 17") && !said("no link"),
-          "link");
+    CHECK(
+        said("400 frames/s") && said("age 3.3 ms") && said("lost 17") && !said("no link"), "link");
     m.linked = 0;
     m.paused = m.help = 1;
     world_draw(w, &m, &l);
@@ -144,5 +144,5 @@ TEST(numbers_are_on_the_screen)
 }
 
 TEST_MAIN("world: the draw list", a_bar_is_6_mm_high_for_each_newton_and_stands_on_the_nail,
-          a_disc_lies_where_the_ray_hits_and_tells_the_state,
-          all_objects_and_the_whole_hand_are_there, numbers_are_on_the_screen);
+    a_disc_lies_where_the_ray_hits_and_tells_the_state, all_objects_and_the_whole_hand_are_there,
+    numbers_are_on_the_screen);

@@ -18,10 +18,7 @@ static struct world *load(const char *text)
     return w;
 }
 
-static int32_t turn(double rad)
-{
-    return (int32_t)(rad / RAD_PER_TURN_Q32);
-}
+static int32_t turn(double rad) { return (int32_t)(rad / RAD_PER_TURN_Q32); }
 
 static double real_in(double lo, double hi)
 {
@@ -65,7 +62,7 @@ TEST(the_fingertips_are_where_the_published_chain_has_them)
         struct finger f;
         finger_at(&f, &h, known[i].finger, joint);
         CHECK(v3_len(v3_sub(f.tip, v3(p[0], p[1], p[2]))) < 1e-6, "%d: %.6f %.6f %.6f", (int)i,
-              f.tip.x, f.tip.y, f.tip.z);
+            f.tip.x, f.tip.y, f.tip.z);
     }
 }
 
@@ -145,8 +142,8 @@ TEST(a_static_plane_has_the_same_bits_whatever_the_fingers_do)
             }
         }
         CHECK(hits > 10 || hits == 0, "%d hits", hits);
-        CHECK(n <= (k == 0 ? 1 : 5), "%d different planes of %s", n,
-              k == 0 ? "one plane" : "a box");
+        CHECK(
+            n <= (k == 0 ? 1 : 5), "%d different planes of %s", n, k == 0 ? "one plane" : "a box");
         world_free(w);
     }
 }
@@ -161,8 +158,8 @@ TEST(the_canonical_point_is_the_planes_nearest_to_the_origin)
         const struct exh_wire_plane *p = &out.plane[f];
         const struct v3 n =
             v3(p->normal_q30[0] * 0x1p-30, p->normal_q30[1] * 0x1p-30, p->normal_q30[2] * 0x1p-30);
-        const struct v3 q = v3(p->point_m_q30[0] * 0x1p-30, p->point_m_q30[1] * 0x1p-30,
-                               p->point_m_q30[2] * 0x1p-30);
+        const struct v3 q = v3(
+            p->point_m_q30[0] * 0x1p-30, p->point_m_q30[1] * 0x1p-30, p->point_m_q30[2] * 0x1p-30);
         const struct v3 c =
             v3(p->hit_m_q30[0] * 0x1p-30, p->hit_m_q30[1] * 0x1p-30, p->hit_m_q30[2] * 0x1p-30);
         const double off = (0.07 - 0) / sqrt(1 + 0.01 + 0.0025);
@@ -188,7 +185,7 @@ TEST(fingers_that_are_off_are_untold_and_cost_no_ray)
     CHECK_EQ_I64((int64_t)s.tests, 1);
     for (int f = 0; f < FINGERS; f++) {
         CHECK(out.plane[f].kind == (f == 1 ? EXH_PLANE_HIT : EXH_PLANE_UNTOLD), "%d: %d", f,
-              out.plane[f].kind);
+            out.plane[f].kind);
     }
     world_free(w);
 }
@@ -212,8 +209,7 @@ TEST(beyond_the_ray_there_is_no_plane)
 
 static int object(char *to, size_t to_B, int k, double far)
 {
-    static const char *const how[] = {
-        "sphere o%d at %.3f %.3f %.3f radius 0.03 material m\n",
+    static const char *const how[] = {"sphere o%d at %.3f %.3f %.3f radius 0.03 material m\n",
         "box o%d at %.3f %.3f %.3f rpy 10 20 30 size 0.03 0.05 0.04 material m\n",
         "capsule o%d at %.3f %.3f %.3f rpy 30 20 10 radius 0.02 length 0.05 material m\n"};
     const double x = real_in(-far, far), y = real_in(-far, far), z = real_in(-far, far);
@@ -227,33 +223,32 @@ static int object(char *to, size_t to_B, int k, double far)
     case 0: break;
     case 1:
         n += snprintf(to + n, to_B - (size_t)n,
-                      "motion o%d linear move %.3f %.3f %.3f turn 9 0 40\n", k, a, b, c);
+            "motion o%d linear move %.3f %.3f %.3f turn 9 0 40\n", k, a, b, c);
         break;
     case 2:
-        n += snprintf(to + n, to_B - (size_t)n, "motion o%d sine move %.3f %.3f %.3f hz 0.7\n", k,
-                      a, b, c);
+        n += snprintf(
+            to + n, to_B - (size_t)n, "motion o%d sine move %.3f %.3f %.3f hz 0.7\n", k, a, b, c);
         break;
     default:
         n += snprintf(to + n, to_B - (size_t)n,
-                      "motion o%d keys loop\nkey o%d t 0\nkey o%d t 1 move %.3f %.3f "
-                      "%.3f\nkey o%d t 1.5 move %.3f 0 0\nkey o%d t 4\n",
-                      k, k, k, a, b, c, k, c, k);
+            "motion o%d keys loop\nkey o%d t 0\nkey o%d t 1 move %.3f %.3f "
+            "%.3f\nkey o%d t 1.5 move %.3f 0 0\nkey o%d t 4\n",
+            k, k, k, a, b, c, k, c, k);
     }
     return n;
 }
 
 static void random_world(char *to, size_t to_B)
 {
-    int at =
-        snprintf(to, to_B,
-                 "hand at 0 -0.1 0\nmaterial m\nplane low at 0 0 -0.2 normal 0.2 0 1 material m\n");
+    int at = snprintf(to, to_B,
+        "hand at 0 -0.1 0\nmaterial m\nplane low at 0 0 -0.2 normal 0.2 0 1 material m\n");
     if (check_u64() & 1) {
-        at += snprintf(to + at, to_B - (size_t)at,
-                       "motion hand sine move 0.2 0.1 0 hz 0.3 turn 0 30 60\n");
+        at += snprintf(
+            to + at, to_B - (size_t)at, "motion hand sine move 0.2 0.1 0 hz 0.3 turn 0 30 60\n");
     }
     if (check_u64() & 1) {
-        at += snprintf(to + at, to_B - (size_t)at,
-                       "motion low sine turn 20 30 0 hz 0.4 move 0 0 0.1\n");
+        at += snprintf(
+            to + at, to_B - (size_t)at, "motion low sine turn 20 30 0 hz 0.4 move 0 0 0.1\n");
     }
     for (int k = 0; k < OBJECTS; k++) {
         at += object(to + at, to_B - (size_t)at, k, k < 20 ? 0.15 : 1);
@@ -287,11 +282,11 @@ TEST(culling_changes_no_plane_and_spares_work)
     }
     CHECK(a.rays == b.rays && a.hits == b.hits && a.hits > 0, "%lu rays, %lu hits", a.rays, a.hits);
     CHECK(b.slept == 0 && a.slept > 0 && a.moved < b.moved, "asleep %lu, placed %lu of %lu",
-          a.slept, a.moved, b.moved);
+        a.slept, a.moved, b.moved);
     CHECK(3 * (a.tests - a.culled) < b.tests, "%lu of %lu", a.tests - a.culled, b.tests);
     check_note("culling: %.1f bodies a ray instead of %.1f; %lu places computed instead of %lu",
-               (double)(a.tests - a.culled) / (double)a.rays, (double)b.tests / (double)b.rays,
-               a.moved, b.moved);
+        (double)(a.tests - a.culled) / (double)a.rays, (double)b.tests / (double)b.rays, a.moved,
+        b.moved);
 }
 
 TEST(an_object_out_of_reach_costs_nothing)
@@ -374,17 +369,17 @@ TEST(five_fingers_hold_the_ball)
     for (int f = 0; f < FINGERS; f++) {
         CHECK_EQ_I64(out.plane[f].object, 0);
         CHECK(in.d_m_q30[f] < 0.002 * 0x1p30 && in.d_m_q30[f] > -0.002 * 0x1p30, "%s: %g mm in",
-              finger_name[f], in.d_m_q30[f] * 0x1p-30 * 1000);
+            finger_name[f], in.d_m_q30[f] * 0x1p-30 * 1000);
     }
     world_free(w);
 }
 
 TEST_MAIN("world: frames", the_fingertips_are_where_the_published_chain_has_them,
-          the_controllers_hand_is_the_same_one,
-          the_ray_is_square_to_the_last_link_and_points_to_where_the_finger_closes,
-          a_static_plane_has_the_same_bits_whatever_the_fingers_do,
-          the_canonical_point_is_the_planes_nearest_to_the_origin,
-          fingers_that_are_off_are_untold_and_cost_no_ray, beyond_the_ray_there_is_no_plane,
-          culling_changes_no_plane_and_spares_work, an_object_out_of_reach_costs_nothing,
-          a_hand_that_only_turns_finds_what_it_turns_to, the_same_inputs_give_the_same_bits,
-          five_fingers_hold_the_ball);
+    the_controllers_hand_is_the_same_one,
+    the_ray_is_square_to_the_last_link_and_points_to_where_the_finger_closes,
+    a_static_plane_has_the_same_bits_whatever_the_fingers_do,
+    the_canonical_point_is_the_planes_nearest_to_the_origin,
+    fingers_that_are_off_are_untold_and_cost_no_ray, beyond_the_ray_there_is_no_plane,
+    culling_changes_no_plane_and_spares_work, an_object_out_of_reach_costs_nothing,
+    a_hand_that_only_turns_finds_what_it_turns_to, the_same_inputs_give_the_same_bits,
+    five_fingers_hold_the_ball);

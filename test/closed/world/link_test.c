@@ -54,7 +54,7 @@ static void say(struct controller *c, int type, int32_t joint)
     if (type == EXH_WIRE_STATE) { p.u.state.joint_turn_q32[0][0] = joint; }
     n = exh_wire_encode(&c->tx, &p, 1234, buf, sizeof buf);
     CHECK(n > 0 && sendto(c->fd, buf, (size_t)n, 0, (struct sockaddr *)&c->to, sizeof c->to) == n,
-          "%d", (int)n);
+        "%d", (int)n);
 }
 
 static void hear(struct controller *c)
@@ -95,7 +95,7 @@ TEST(a_state_is_taken_and_answered_with_its_own_number)
     hear(&c);
     CHECK(c.hellos == 1 && c.answers == 1, "%d hellos, %d answers", c.hellos, c.answers);
     CHECK(c.planes.echo_seq == 2 && c.planes.echo_stamp_us == 1234, "echo %u",
-          (unsigned)c.planes.echo_seq);
+        (unsigned)c.planes.echo_seq);
     CHECK(!frame(&s, 2000), "an old state is new");
     hear(&c);
     CHECK_EQ_I64(c.answers, 2);
@@ -119,7 +119,7 @@ TEST(either_end_may_start_anew)
     say(&c, EXH_WIRE_HELLO, 0);
     say(&c, EXH_WIRE_STATE, 8);
     CHECK(frame(&s, 2000) && s.joint_turn_q32[0][0] == 8,
-          "the controller's second life is not heard");
+        "the controller's second life is not heard");
     hear(&c);
     CHECK(c.answers > 0, "nor answered");
 
@@ -204,9 +204,9 @@ TEST(materials_are_asked_for_until_answered)
     open_wanting(1);
     CHECK(world.wants == 8 &&
               strcmp(heard,
-                     "material tar: mat_b 2000 ns_per_m: not between 0 and 1000: not sent, the "
-                     "controller's own holds\n") == 0,
-          "%s", heard);
+                  "material tar: mat_b 2000 ns_per_m: not between 0 and 1000: not sent, the "
+                  "controller's own holds\n") == 0,
+        "%s", heard);
     for (uint32_t life = 2; life < 5; life++) {
         unsigned seen = 0, most = 0;
         int t = 0;
@@ -228,11 +228,11 @@ TEST(materials_are_asked_for_until_answered)
             }
         }
         CHECK(seen == 0x1EF && world.waiting == 0 && t < 800, "life %d: %#x, %d wait", (int)life,
-              seen, world.waiting);
+            seen, world.waiting);
         CHECK(most <= 2, "%u at once", most);
         CHECK(strstr(heard, "material air: mat_k 0 n_per_m: refused by the controller: ") &&
                   !strstr(heard, "wood") && !strstr(heard, "tar"),
-              "%s", heard);
+            "%s", heard);
         (void)frame(&s, (int64_t)life * 100000000 + t * 2500);
         CHECK(params(&c, asked, 0) == 0 && c.answers > 0, "it asks on, or tells no planes");
         for (int k = 0; k < 100; k++) {
@@ -279,7 +279,7 @@ TEST(a_peer_that_differs_is_named)
     (void)frame(&s, 0);
     CHECK(strstr(heard, "is a world, too") && strstr(heard, "of the library") &&
               strstr(heard, "00004321"),
-          "%s", heard);
+        "%s", heard);
     CHECK_EQ_I64((int64_t)world.odd, 1);
     said_hello = (struct exh_wire_hello){EXH_WIRE_CONTROLLER, EXH_VERSION_NUMBER, 0};
     close(c.fd), link_close(&world);
@@ -353,8 +353,8 @@ static void hear_asks(struct controller *c)
     }
 }
 
-static void send_trace(struct controller *c, uint32_t request_seq, uint32_t first, uint8_t frames,
-                       int16_t result)
+static void send_trace(
+    struct controller *c, uint32_t request_seq, uint32_t first, uint8_t frames, int16_t result)
 {
     unsigned char buf[EXH_WIRE_MAX_B];
     struct exh_wire_packet p;
@@ -372,7 +372,7 @@ static void send_trace(struct controller *c, uint32_t request_seq, uint32_t firs
     }
     n = exh_wire_encode(&c->tx, &p, 1234, buf, sizeof buf);
     CHECK(n > 0 && sendto(c->fd, buf, (size_t)n, 0, (struct sockaddr *)&c->to, sizeof c->to) == n,
-          "%d", (int)n);
+        "%d", (int)n);
 }
 
 static const struct exh_signal traced_rows[] = {
@@ -421,14 +421,14 @@ TEST(a_trace_is_asked_for_and_written)
     for (int64_t t_us = 0; t_us < 250000; t_us += 10000) { (void)frame(&s, t_us); }
     hear_asks(&c);
     CHECK(asks == 3 && asked.every == 3 && asked.index[0] == 2 && asked.index[1] == 6, "%d, %d, %d",
-          asks, asked.index[0], asked.index[1]);
+        asks, asked.index[0], asked.index[1]);
     send_trace(&c, ask_seq + 1, 1, 1, 0); /* of nothing that was asked */
     send_trace(&c, ask_seq - 1, 7, 2, 0);
     send_trace(&c, ask_seq, 10, 1, 0);
     for (int64_t t_us = 250000; t_us < 900000; t_us += 10000) { (void)frame(&s, t_us); }
     hear_asks(&c);
     CHECK(asks == 3 && world.trace.frames == 3 && world.trace.missed == 1,
-          "%d asks, %lu frames, %lu missed", asks, world.trace.frames, world.trace.missed);
+        "%d asks, %lu frames, %lu missed", asks, world.trace.frames, world.trace.missed);
     before = ask_seq;
     close(c.fd);
     open_controller(&c, 3);
@@ -449,8 +449,8 @@ TEST(a_trace_is_asked_for_and_written)
 
 TEST(a_trace_that_cannot_be_is_refused_in_words)
 {
-    static const char *const bad[] = {"",    "w",     "q[3]",     "q[1",
-                                      "q[]", "q[1]x", "state[1]", "c,c,c,c,c"};
+    static const char *const bad[] = {
+        "", "w", "q[3]", "q[1", "q[]", "q[1]x", "state[1]", "c,c,c,c,c"};
     char path[] = "/tmp/exhand-trace-XXXXXX", why[300];
     struct exh_wire_state s;
     struct controller c;
@@ -458,10 +458,10 @@ TEST(a_trace_that_cannot_be_is_refused_in_words)
     open_world(1);
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         CHECK(open_trace(path, bad[i], why) == 2 && strstr(why, "--trace-signals: "), "%s: %s",
-              bad[i], why);
+            bad[i], why);
     }
     CHECK(open_trace("/nowhere/at/all", "c", why) == 1 && strstr(why, "/nowhere/at/all: "), "%s",
-          why);
+        why);
     heard[0] = '\0';
     world.say = listen_to;
     CHECK(open_trace(path, "c", why) == 0, "%s", why);
@@ -499,14 +499,14 @@ TEST(bad_addresses_are_refused_in_words)
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         char why[300] = "";
         CHECK(link_open(&world, bad[i], NULL, 1, why, sizeof why) == 1 && strstr(why, ": "),
-              "%s: %s", bad[i], why);
+            "%s: %s", bad[i], why);
         link_close(&world);
     }
 }
 
 TEST_MAIN("world: the link", a_state_is_taken_and_answered_with_its_own_number,
-          either_end_may_start_anew, without_planes_it_says_hello_alone,
-          materials_are_asked_for_until_answered, who_answers_nothing_gets_planes_all_the_same,
-          a_peer_that_differs_is_named, it_is_not_deaf_for_good, noise_changes_nothing,
-          a_trace_is_asked_for_and_written, a_trace_that_cannot_be_is_refused_in_words,
-          a_given_peer_is_the_only_one_listened_to, bad_addresses_are_refused_in_words);
+    either_end_may_start_anew, without_planes_it_says_hello_alone,
+    materials_are_asked_for_until_answered, who_answers_nothing_gets_planes_all_the_same,
+    a_peer_that_differs_is_named, it_is_not_deaf_for_good, noise_changes_nothing,
+    a_trace_is_asked_for_and_written, a_trace_that_cannot_be_is_refused_in_words,
+    a_given_peer_is_the_only_one_listened_to, bad_addresses_are_refused_in_words);

@@ -104,6 +104,6 @@ int main(int argc, char **argv)
         }
     }
     printf("%d rays: %d%% hit the plane, %d%% the sphere, %d%% the box", 5 * OPS,
-           hits[1] / (OPS / 20), hits[2] / (OPS / 20), hits[3] / (OPS / 20));
+        hits[1] / (OPS / 20), hits[2] / (OPS / 20), hits[3] / (OPS / 20));
     return sum > 1e300; /* never; but so it is needed */
 }

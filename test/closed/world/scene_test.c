@@ -13,59 +13,60 @@ static const struct {
     const char *text, *error;
 } wrong[] = {
     {"sfere a",
-     "t:1: sfere: no such statement: use world, fingers, ray, hand, camera, material, plane, "
-     "sphere, box, capsule, mesh, motion or key"},
+        "t:1: sfere: no such statement: use world, fingers, ray, hand, camera, material, plane, "
+        "sphere, box, capsule, mesh, motion or key"},
     {"\n\n# x\nmaterial", "t:4: material: its name is missing: add one word"},
     {M "material m", "t:2: material m: defined twice: use another name"},
     {"material m k -1", "t:1: material m: k -1 (allowed 0..1e+06): give a number in that range"},
     {"material m k 1 b 1001",
-     "t:1: material m: b 1001 (allowed 0..1000): give a number in that range"},
+        "t:1: material m: b 1001 (allowed 0..1000): give a number in that range"},
     {"material m fmax 101",
-     "t:1: material m: fmax 101 (allowed 0..100): give a number in that range"},
+        "t:1: material m: fmax 101 (allowed 0..100): give a number in that range"},
     {"material m k nan", "t:1: material m: k nan (allowed 0..1e+06): give a number in that range"},
     {"material m k 1e",
-     "t:1: material m: k: 1 number must follow, not \"1e\": add what is missing"},
+        "t:1: material m: k: 1 number must follow, not \"1e\": add what is missing"},
     {"material m colour 1 0",
-     "t:1: material m: colour: 3 numbers must follow, not \"\": add what is missing"},
+        "t:1: material m: colour: 3 numbers must follow, not \"\": add what is missing"},
     {"material m mass 3", "t:1: material m: mass: no such word here: use one of k b fmax colour"},
     {"material m k 1 k 2", "t:1: material m: k: given twice: leave one out"},
     {M "sphere a at 0 0 0 radius 1 material wood",
-     "t:2: sphere a: material wood: not defined so far: add `material wood` above"},
+        "t:2: sphere a: material wood: not defined so far: add `material wood` above"},
     {M "sphere a at 0 0 0 material m",
-     "t:2: sphere a: radius is missing: add `radius` and its number"},
+        "t:2: sphere a: radius is missing: add `radius` and its number"},
     {M "sphere a radius 1 material m", "t:2: sphere a: at is missing: add `at` and its numbers"},
     {M "sphere a at 0 0 0 radius 1 material",
-     "t:2: sphere a: material: a word must follow: add it"},
+        "t:2: sphere a: material: a word must follow: add it"},
     {M "sphere a at 0 0 0 radius 1 material m\nsphere a at 0 0 0 radius 1 material m",
-     "t:3: sphere a: the name is taken: use another one"},
+        "t:3: sphere a: the name is taken: use another one"},
     {M "box hand at 0 0 0 size 1 1 1 material m",
-     "t:2: box hand: the name is taken: use another one"},
+        "t:2: box hand: the name is taken: use another one"},
     {M "plane p at 0 0 0 normal 0 0 0 material m",
-     "t:2: plane p: normal has no length: let it point out of the solid"},
+        "t:2: plane p: normal has no length: let it point out of the solid"},
     {M "mesh a at 0 0 0 file none.obj material m",
-     "t:2: mesh a: none.obj: No such file or directory: name a file beside the scene"},
+        "t:2: mesh a: none.obj: No such file or directory: name a file beside the scene"},
     {"hand at 0 0 0 palm 0 0 1 point 0 0 2", "t:1: hand: palm and point are parallel or zero: the "
                                              "palm looks to the side of where the fingers point"},
     {"fingers index toe",
-     "t:1: fingers: toe: no such finger: use thumb index middle ring little, or all"},
+        "t:1: fingers: toe: no such finger: use thumb index middle ring little, or all"},
     {"fingers", "t:1: fingers: none: name those in use, or all"},
     {"camera eye 1 1 1 look 1 1 1", "t:1: camera: eye and look are the same point: part them"},
     {"motion a linear", "t:1: motion a: no such object so far: define it above"},
     {"motion hand jump",
-     "t:1: motion hand: jump: no such motion: use linear, sine, keys or keys loop"},
+        "t:1: motion hand: jump: no such motion: use linear, sine, keys or keys loop"},
     {"motion hand keys once",
-     "t:1: motion hand: once: no such motion: use linear, sine, keys or keys loop"},
+        "t:1: motion hand: once: no such motion: use linear, sine, keys or keys loop"},
     {"motion hand linear\nmotion hand linear", "t:2: motion hand: given twice: leave one out"},
     {"motion hand linear hz 1", "t:1: motion hand: hz: no such word here: use one of move turn"},
     {"key hand t 0", "t:1: key hand: it has no motion by keys: add `motion hand keys` above"},
     {"motion hand keys\nkey hand t 1\nkey hand t 1",
-     "t:3: key hand: t 1 is not after the one before: let times rise"},
+        "t:3: key hand: t 1 is not after the one before: let times rise"},
     {"motion hand keys\nkey hand t 1\n",
-     "t:2: motion hand keys: fewer than two keys: add `key hand t ...` lines"},
+        "t:2: motion hand keys: fewer than two keys: add `key hand t ...` lines"},
     {"motion hand keys loop\nkey hand t 1\nkey hand t 2 move 1 0 0",
-     "t:3: motion hand keys loop: the last key is not where the first is: it would jump; add one "
-     "that "
-     "closes the loop"},
+        "t:3: motion hand keys loop: the last key is not where the first is: it would jump; add "
+        "one "
+        "that "
+        "closes the loop"},
 };
 
 TEST(each_fault_is_named_with_its_line_and_remedy)
@@ -139,9 +140,9 @@ TEST(numbers_arrive)
     CHECK(s->ray_m == 0.07 && s->back_m == 0.01, "%g %g", s->ray_m, s->back_m);
     CHECK(v3_len(v3_sub(s->hand.turn.x, v3(0, 0, -1))) < 1e-15, "palm");
     CHECK(v3_len(v3_sub(s->hand.turn.y, v3(-1, 0, 0))) < 1e-15,
-          "the thumb is on the left of a right hand");
+        "the thumb is on the left of a right hand");
     CHECK(s->material[0].k == 20000 && s->material[1].k == 5 && s->material[1].f_max == 7,
-          "material");
+        "material");
     CHECK(s->object[0].material == 1 && s->object[0].shape.half_m.z == 1.5, "capsule");
     CHECK(v3_len(v3_sub(s->object[0].stand.turn.z, v3(1, 0, 0))) < 1e-15, "its axis");
     p = motion_at(&s->object[0].motion, &s->object[0].stand, 0);
@@ -156,15 +157,15 @@ TEST(keys_are_joined_by_lines)
     static const char text[] =
         "motion hand keys loop\nkey hand t 1 move 1 0 0\nkey hand t 2 move 3 0 0\n"
         "key hand t 4 move 1 0 0 turn 0 0 0\n";
-    static const double want[][2] = {{0, 1}, {1, 1}, {1.5, 2}, {2, 3},
-                                     {3, 2}, {4, 1}, {4.5, 2}, {301.5, 2}};
+    static const double want[][2] = {
+        {0, 1}, {1, 1}, {1.5, 2}, {2, 3}, {3, 2}, {4, 1}, {4.5, 2}, {301.5, 2}};
     char why[700];
     struct world *w = world_load("t", text, why, sizeof why);
     CHECK(w != NULL, "%s", why);
     for (size_t i = 0; w && i < sizeof want / sizeof want[0]; i++) {
         const struct pose p = world_hand_at(w, want[i][0]);
-        CHECK(fabs(p.at.x - want[i][1]) < 1e-12, "at %g: %g, not %g", want[i][0], p.at.x,
-              want[i][1]);
+        CHECK(
+            fabs(p.at.x - want[i][1]) < 1e-12, "at %g: %g, not %g", want[i][0], p.at.x, want[i][1]);
     }
     world_free(w);
 }
@@ -187,5 +188,5 @@ TEST(the_scenes_that_come_along_load)
 }
 
 TEST_MAIN("world: scenes", each_fault_is_named_with_its_line_and_remedy,
-          a_short_buffer_is_not_overrun, damaged_scenes_do_no_harm, numbers_arrive,
-          keys_are_joined_by_lines, the_scenes_that_come_along_load);
+    a_short_buffer_is_not_overrun, damaged_scenes_do_no_harm, numbers_arrive,
+    keys_are_joined_by_lines, the_scenes_that_come_along_load);

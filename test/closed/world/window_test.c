@@ -60,23 +60,23 @@ TEST(keys_bend_carry_pause_help_and_leave)
     CHECK(dir != NULL, "no directory in /tmp");
     status = run("");
     if (status == 77 || status == 3) {
-        check_note("not tried: %s",
-                   status == 3 ? "built without pictures" : "install xvfb and xdotool");
+        check_note(
+            "not tried: %s", status == 3 ? "built without pictures" : "install xvfb and xdotool");
     } else {
         CHECK_EQ_I64(status, 0);
         CHECK(showed("Collision with simple bodies") && showed(" frames/s, ") && showed("no link"),
-              "what is always there");
+            "what is always there");
         CHECK(!showed("paused") && !showed("turn the view"), "what no key asked for");
         palm_before = palm;
         memcpy(tip_before, tip, sizeof tip);
         CHECK_EQ_I64(run("3 3 3 w w w h space"), 0);
         CHECK(showed("paused") && showed("turn the view"), "space, h");
         CHECK(fabs(palm.y - palm_before.y - 0.012) < 2e-6 && fabs(palm.x - palm_before.x) < 2e-6,
-              "w: %g m to y", palm.y - palm_before.y);
+            "w: %g m to y", palm.y - palm_before.y);
         for (int f = 0; f < FINGERS; f++) {
             const struct v3 way = v3_sub(v3_sub(tip[f], tip_before[f]), v3_sub(palm, palm_before));
             CHECK((v3_len(way) > 0.01) == (f == 2),
-                  "3 bends the middle alone, not finger %d by %g m", f, v3_len(way));
+                "3 bends the middle alone, not finger %d by %g m", f, v3_len(way));
         }
     }
     snprintf(line, sizeof line, "rm -r %s", dir);

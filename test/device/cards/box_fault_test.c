@@ -160,7 +160,7 @@ TEST(safe_takes_20_accesses_a_board_and_may_be_repeated)
     CHECK_EQ_I64(bus.n, 2 * EXH_S526_SAFE_ACCESSES);
     CHECK(bus.log[0].port == 0x2CA && bus.log[0].value == 0x800 && bus.log[1].port == 0x28A &&
               bus.log[1].value == 0x800,
-          "enables not first");
+        "enables not first");
     CHECK(bus_safe(), "outputs on");
     exh_box_safe();
     CHECK(bus_safe(), "outputs on");
@@ -246,18 +246,18 @@ TEST(faults_by_example)
     bus.s526[0].signature = 0x1234;
     CHECK_EQ_I64(exh_box_open(&c, &report), -EXH_E_ABSENT);
     says(exh_box_error(),
-         "S526 A at 0x02C0: detect: another card's signature: 0x1234 (0x526A or 0x526B)");
+        "S526 A at 0x02C0: detect: another card's signature: 0x1234 (0x526A or 0x526B)");
     bus_reset();
     bus_double(&bus.s526[0].ee[16], 1, 3, 0);
     CHECK_EQ_I64(exh_box_open(&c, &report), -EXH_E_IO);
     says(exh_box_error(),
-         "S526 A at 0x02C0: EEPROM: D/A gain implausible, 0.001 codes per volt, number 2: "
-         "-3000 (3087000 .. 3411000)");
+        "S526 A at 0x02C0: EEPROM: D/A gain implausible, 0.001 codes per volt, number 2: "
+        "-3000 (3087000 .. 3411000)");
     bus_reset();
     bus.s526[0].mode_stuck = 0x80;
     CHECK_EQ_I64(exh_box_open(&c, &report), -EXH_E_IO);
     says(exh_box_error(),
-         "S526 A at 0x02C0: self-test: register does not read back, offset 22: 0x0400 (0x0480)");
+        "S526 A at 0x02C0: self-test: register does not read back, offset 22: 0x0400 (0x0480)");
 }
 
 static void refused(struct exh_box_config c, unsigned row)
@@ -315,7 +315,7 @@ TEST(configurations_are_refused_by_name)
     CHECK_EQ_I64(bus.n, 0);
     CHECK_EQ_I64(put(1), -EXH_E_IO);
     says(exh_box_error(),
-         "box: configuration: channels, interval or lost_limit of the scan: value not allowed: 22");
+        "box: configuration: channels, interval or lost_limit of the scan: value not allowed: 22");
 }
 
 /* The lines of a box wired for five fingers mean something else: one finger is refused there,
@@ -364,8 +364,8 @@ TEST(a_current_for_a_drive_that_is_off_is_a_fault)
         CHECK_EQ_I64(exh_box_error()->fault.at, i);
     }
     says(exh_box_error(),
-         "box: configuration: D/A code of a drive that is off is no 0 A, number 4: "
-         "31767 (31768 .. 33768)");
+        "box: configuration: D/A code of a drive that is off is no 0 A, number 4: "
+        "31767 (31768 .. 33768)");
 }
 
 TEST(every_place_of_the_glove_s_jumpers_is_found)
@@ -416,17 +416,17 @@ TEST(every_fault_has_its_words)
         const char *want;
     } row[] = {
         {{EXH_CARD_SELFTEST, EXH_CARD_COUNTER, 3, 5, 7, 7},
-         "?: self-test: counter does not hold what was loaded, number 3: 5 (7)"},
+            "?: self-test: counter does not hold what was loaded, number 3: 5 (7)"},
         {{EXH_CARD_EEPROM, EXH_CARD_EE_TIMEOUT, 9, 0, 0, 0},
-         "?: EEPROM: word does not come, number 9"},
+            "?: EEPROM: word does not come, number 9"},
         {{EXH_CARD_EEPROM, EXH_CARD_DA_OFFSET, 1, 1, -5, 0},
-         "?: EEPROM: D/A offset implausible, 0.001 codes, number 1: 1 (-5 .. 0)"},
+            "?: EEPROM: D/A offset implausible, 0.001 codes, number 1: 1 (-5 .. 0)"},
         {{EXH_CARD_INPUT, EXH_CARD_QUADRATURE, 2, 9, 0, 8},
-         "?: inputs: illegal transitions of the encoder lines, number 2: 9 (0 .. 8)"},
+            "?: inputs: illegal transitions of the encoder lines, number 2: 9 (0 .. 8)"},
         {{EXH_CARD_INPUT, EXH_CARD_LINES, 2, 0x10, 0, 0},
-         "?: inputs: digital outputs are not as written: 0x0010 (0x0000)"},
+            "?: inputs: digital outputs are not as written: 0x0010 (0x0000)"},
         {{EXH_CARD_CONFIG, EXH_CARD_BAD_VALUE, EXH_BOX_ROWS, 7, 0, 0},
-         "?: configuration: value not allowed: 7"},
+            "?: configuration: value not allowed: 7"},
         {{EXH_CARD_PHASES, EXH_CARD_WHATS, 0, 0, 0, 0}, "?: ?: ?"},
     };
     /* of a card that is none */
@@ -440,15 +440,14 @@ TEST(every_fault_has_its_words)
 }
 
 TEST_MAIN("box fault", a_board_that_dies_is_found_within_a_tick,
-          a_conversion_that_is_lost_ends_in_time_and_in_safe_outputs,
-          updates_that_do_not_end_are_a_fault, an_enable_that_does_not_go_off_is_a_fault,
-          illegal_transitions_are_counted_and_too_many_are_a_fault,
-          every_counter_s_illegal_transitions_are_seen, opening_anew_ends_a_fault,
-          opening_makes_safe_what_was_used_before, what_is_not_certain_can_be_left_out,
-          safe_takes_20_accesses_a_board_and_may_be_repeated,
-          safe_touches_no_port_where_no_board_was_found, safe_may_come_before_any_access,
-          all_cards_that_are_absent_are_named, faults_by_example,
-          configurations_are_refused_by_name, every_place_of_the_glove_s_jumpers_is_found,
-          what_is_not_used_may_be_anything, one_finger_on_a_full_box_has_to_be_said,
-          a_current_for_a_drive_that_is_off_is_a_fault, a_card_that_changes_its_name_is_not_dead,
-          every_fault_has_its_words);
+    a_conversion_that_is_lost_ends_in_time_and_in_safe_outputs, updates_that_do_not_end_are_a_fault,
+    an_enable_that_does_not_go_off_is_a_fault,
+    illegal_transitions_are_counted_and_too_many_are_a_fault,
+    every_counter_s_illegal_transitions_are_seen, opening_anew_ends_a_fault,
+    opening_makes_safe_what_was_used_before, what_is_not_certain_can_be_left_out,
+    safe_takes_20_accesses_a_board_and_may_be_repeated,
+    safe_touches_no_port_where_no_board_was_found, safe_may_come_before_any_access,
+    all_cards_that_are_absent_are_named, faults_by_example, configurations_are_refused_by_name,
+    every_place_of_the_glove_s_jumpers_is_found, what_is_not_used_may_be_anything,
+    one_finger_on_a_full_box_has_to_be_said, a_current_for_a_drive_that_is_off_is_a_fault,
+    a_card_that_changes_its_name_is_not_dead, every_fault_has_its_words);

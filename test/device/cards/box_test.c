@@ -14,13 +14,13 @@ TEST(five_fingers_take_30_and_14_accesses)
     bus.s526[0].count[1] = 0x123456;
     bus.s526[1].ad[4] = 9000;
     CHECK_EQ_I64(exh_box_read_drive(&in), 0);
-    CHECK(bus_said(
-              0, "w 2C6 81E1, w 286 8221, r 2D2 0, r 2D4 AA00, r 2DA 3456, r 2DC AA12, "
-                 "r 2E2 0, r 2E4 AA00, r 2EA 0, r 2EC AA00, r 292 0, r 294 AA00, "
-                 "r 2CA F, r 2D8 0, r 28A F, r 298 0, "
-                 "r 2CE 6, w 2CE 6, r 2C8 0, w 2C6 2, r 2C8 0, w 2C6 4, r 2C8 0, w 2C6 6, r 2C8 0, "
-                 "r 28E 6, w 28E 6, r 288 0, w 286 8, r 288 2328"),
-          "otherwise");
+    CHECK(bus_said(0,
+              "w 2C6 81E1, w 286 8221, r 2D2 0, r 2D4 AA00, r 2DA 3456, r 2DC AA12, "
+              "r 2E2 0, r 2E4 AA00, r 2EA 0, r 2EC AA00, r 292 0, r 294 AA00, "
+              "r 2CA F, r 2D8 0, r 28A F, r 298 0, "
+              "r 2CE 6, w 2CE 6, r 2C8 0, w 2C6 2, r 2C8 0, w 2C6 4, r 2C8 0, w 2C6 6, r 2C8 0, "
+              "r 28E 6, w 28E 6, r 288 0, w 286 8, r 288 2328"),
+        "otherwise");
     CHECK_EQ_I64(bus.n, 30);
     CHECK_EQ_I64(in.enc_raw[1], 0x123456);
     CHECK_EQ_I64(in.supply_raw, 9000);
@@ -28,7 +28,7 @@ TEST(five_fingers_take_30_and_14_accesses)
     CHECK_EQ_I64(put(1), 0);
     CHECK(bus_said(0, "w 2C4 0, w 2C8 8064, w 2C4 2, w 2C8 80C8, w 2C4 4, w 2C8 812C, w 2C4 6, "
                       "w 2C8 8190, w 284 0, w 288 81F4, w 2C4 1, w 284 1, w 2CA 8F0, w 28A 830"),
-          "otherwise");
+        "otherwise");
     CHECK_EQ_I64(bus.n, 14);
 }
 
@@ -41,7 +41,7 @@ TEST(one_finger_takes_10_and_4_of_one_board)
     CHECK_EQ_I64(exh_box_read_drive(&in), 0);
     CHECK(bus_said(0, "w 2C6 8221, r 2D2 0, r 2D4 AA00, r 2CA F, r 2D8 0, r 2CE 6, w 2CE 6, "
                       "r 2C8 FFFB, w 2C6 8, r 2C8 2328"),
-          "otherwise");
+        "otherwise");
     CHECK_EQ_I64(in.mon_raw[0], -5);
     CHECK_EQ_I64(in.supply_raw, 9000);
     bus_clear();
@@ -126,8 +126,8 @@ static void figure(const struct figure *want)
         while (bus.time_us - from_us < want->period_us) { bus.time_us++; }
     }
     CHECK(accesses == want->accesses && time_us == want->time_us,
-          "%u fingers, monitors %u, glove %u: %u accesses, %u us", c.fingers, c.monitor, c.glove,
-          accesses, time_us);
+        "%u fingers, monitors %u, glove %u: %u accesses, %u us", c.fingers, c.monitor, c.glove,
+        accesses, time_us);
 }
 
 TEST(figures_of_a_tick)
@@ -421,13 +421,12 @@ TEST(scans_lost_in_a_row_make_the_drives_safe)
 }
 
 TEST_MAIN("box", before_the_opening_there_is_nothing, five_fingers_take_30_and_14_accesses,
-          one_finger_takes_10_and_4_of_one_board, monitors_of_the_last_tick_take_no_wait,
-          monitors_in_the_tick_are_that_tick_s, without_monitors_a_board_is_asked_for_its_name,
-          figures_of_a_tick, every_finger_has_its_counter_monitor_and_output,
-          a_board_without_a_finger_has_the_rest, every_input_pin_has_its_meaning,
-          every_output_pin_has_its_meaning, codes_are_applied_together,
-          codes_beyond_the_drive_s_range_are_clamped_and_counted, a_scan_in_the_tick_is_that_tick_s,
-          a_scan_of_the_tick_before_takes_no_wait,
-          a_scan_of_the_opening_that_still_runs_is_no_frame,
-          a_scan_that_still_runs_is_not_waited_for, a_scan_that_is_lost_leaves_the_last_frame_older,
-          a_glove_that_fails_makes_the_drives_safe, scans_lost_in_a_row_make_the_drives_safe);
+    one_finger_takes_10_and_4_of_one_board, monitors_of_the_last_tick_take_no_wait,
+    monitors_in_the_tick_are_that_tick_s, without_monitors_a_board_is_asked_for_its_name,
+    figures_of_a_tick, every_finger_has_its_counter_monitor_and_output,
+    a_board_without_a_finger_has_the_rest, every_input_pin_has_its_meaning,
+    every_output_pin_has_its_meaning, codes_are_applied_together,
+    codes_beyond_the_drive_s_range_are_clamped_and_counted, a_scan_in_the_tick_is_that_tick_s,
+    a_scan_of_the_tick_before_takes_no_wait, a_scan_of_the_opening_that_still_runs_is_no_frame,
+    a_scan_that_still_runs_is_not_waited_for, a_scan_that_is_lost_leaves_the_last_frame_older,
+    a_glove_that_fails_makes_the_drives_safe, scans_lost_in_a_row_make_the_drives_safe);

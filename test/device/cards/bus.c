@@ -232,10 +232,7 @@ void exh_io_out8(uint16_t port, uint8_t value)
     if (at(2, port)) { mm_out(&bus.mm, port - (unsigned)bus.mm.base, value); }
 }
 
-uint32_t exh_io_time_us(void)
-{
-    return bus.time_us;
-}
+uint32_t exh_io_time_us(void) { return bus.time_us; }
 
 /* --- scripts --- */
 
@@ -278,10 +275,7 @@ void bus_reset(void)
     bus.mm.settle_for = 3;
 }
 
-void bus_clear(void)
-{
-    bus.n = 0;
-}
+void bus_clear(void) { bus.n = 0; }
 
 int bus_safe(void)
 {
@@ -316,7 +310,7 @@ int bus_said(unsigned i, const char *want)
         if (*want == ' ') { want = hex(want + 1, &value); }
         if (i >= bus.n || a->op != op || a->port != port || a->value != value) {
             CHECK(0, "access %u of %u is %c %X %X, want %c %X %X", i, bus.n, a->op,
-                  (unsigned)a->port, (unsigned)a->value, op, port, value);
+                (unsigned)a->port, (unsigned)a->value, op, port, value);
             return 0;
         }
         while (*want == ',' || *want == ' ' || *want == '\n') { want++; }

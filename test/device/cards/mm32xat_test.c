@@ -48,20 +48,19 @@ static int scan(void)
 TEST(detection_by_example)
 {
     unsigned i, said = 0;
-    static const struct access want[] = {{'o', 0x308, 0x20}, {'o', 0x307, 0},
-                                         {'o', 0x309, 0},    {'o', 0x302, 0x80},
-                                         {'o', 0x303, 0xFF}, {'o', 0x30B, 0x0C}};
+    static const struct access want[] = {{'o', 0x308, 0x20}, {'o', 0x307, 0}, {'o', 0x309, 0},
+        {'o', 0x302, 0x80}, {'o', 0x303, 0xFF}, {'o', 0x30B, 0x0C}};
     opened();
     bus_reset();
     CHECK_EQ_I64(open_it(), 0);
     for (i = 0; i < bus.n && said < 6; i++) {
         if (bus.log[i].op != 'o') { continue; }
         CHECK(bus.log[i].port == want[said].port && bus.log[i].value == want[said].value,
-              "write %u: %X to %X", said, (unsigned)bus.log[i].value, (unsigned)bus.log[i].port);
+            "write %u: %X to %X", said, (unsigned)bus.log[i].value, (unsigned)bus.log[i].port);
         said++;
     }
     CHECK(bus.time_us > 1100, "%" PRIu32 " us: 1 ms after the reset, 0.1 ms after the settings",
-          bus.time_us);
+        bus.time_us);
 }
 
 TEST(an_empty_port_is_not_written)
@@ -79,7 +78,7 @@ TEST(each_register_that_is_unlike_it_is_named)
     bus.mm.misc = 0x40; /* some inputs are differential: a jumper */
     CHECK_EQ_I64(open_it(), -EXH_E_ABSENT);
     CHECK(fault.what == EXH_CARD_REGISTER && fault.at == 8 && fault.got == 0x40 && fault.hi == 0x60,
-          "%u at %u", fault.what, fault.at);
+        "%u at %u", fault.what, fault.at);
     bus_reset();
     bus.mm.settle_stuck = 1;
     CHECK_EQ_I64(open_it(), -EXH_E_ABSENT);
@@ -93,14 +92,14 @@ TEST(the_set_up_of_a_scan_by_example)
     unsigned i = 0;
     bus_reset();
     CHECK_EQ_I64(open_it(), 0);
-    while (i < bus.n &&
-           !(bus.log[i].op == 'o' && bus.log[i].port == 0x307 && bus.log[i].value == 2)) {
+    while (
+        i < bus.n && !(bus.log[i].op == 'o' && bus.log[i].port == 0x307 && bus.log[i].value == 2)) {
         i++;
     }
     bus.n = i + 13;
     CHECK(bus_said(i, "o 307 2, o 302 0, o 303 15, o 30B 28, o 307 4, o 309 0, i 30B 88, i 30B 88, "
                       "i 30B 8, i 302 0, i 303 15, i 307 84, o 300 0"),
-          "otherwise");
+        "otherwise");
 }
 
 /* 22 samples: 1 start, 1 poll, 44 bytes, 3 looks at the FIFO. */
@@ -197,7 +196,7 @@ TEST(a_card_that_always_loses_samples_does_not_open)
     bus.mm.drop = 1;
     CHECK_EQ_I64(open_it(), -EXH_E_IO);
     CHECK(fault.phase == EXH_CARD_SELFTEST && fault.what == EXH_CARD_SCAN_LOST, "%u: %u",
-          fault.phase, fault.what);
+        fault.phase, fault.what);
 }
 
 /* ---- waits ---------------------------------------------------------------------------------- */
@@ -212,7 +211,7 @@ TEST(a_scan_that_never_ends_is_a_fault_by_time_or_by_polls)
         CHECK_EQ_I64(scan(), -EXH_E_IO);
         CHECK_EQ_I64(fault.what, EXH_CARD_SCAN_TIMEOUT);
         CHECK(stopped ? bus.n > 32000 && bus.n < 32010 : bus.time_us > 2000 && bus.time_us < 2010,
-              "%u accesses, %" PRIu32 " us", bus.n, bus.time_us);
+            "%u accesses, %" PRIu32 " us", bus.n, bus.time_us);
     }
 }
 
@@ -278,10 +277,9 @@ TEST(a_card_that_dies_in_a_scan_is_found_dead_when_asked)
 }
 
 TEST_MAIN("mm32xat", detection_by_example, an_empty_port_is_not_written,
-          each_register_that_is_unlike_it_is_named, the_set_up_of_a_scan_by_example,
-          a_scan_by_example, words_take_half, every_number_of_channels,
-          samples_missing_or_too_many_are_dropped_and_counted, three_lost_in_a_row_are_a_fault,
-          a_card_that_always_loses_samples_does_not_open,
-          a_scan_that_never_ends_is_a_fault_by_time_or_by_polls, also_where_it_is_only_asked_for,
-          an_input_that_never_settles_is_a_fault, a_card_that_dies_is_found_dead,
-          a_card_that_dies_in_a_scan_is_found_dead_when_asked);
+    each_register_that_is_unlike_it_is_named, the_set_up_of_a_scan_by_example, a_scan_by_example,
+    words_take_half, every_number_of_channels, samples_missing_or_too_many_are_dropped_and_counted,
+    three_lost_in_a_row_are_a_fault, a_card_that_always_loses_samples_does_not_open,
+    a_scan_that_never_ends_is_a_fault_by_time_or_by_polls, also_where_it_is_only_asked_for,
+    an_input_that_never_settles_is_a_fault, a_card_that_dies_is_found_dead,
+    a_card_that_dies_in_a_scan_is_found_dead_when_asked);

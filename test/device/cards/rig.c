@@ -10,10 +10,7 @@ struct exh_drive_in in;
 struct exh_glove_in glove;
 static uint8_t alive;
 
-struct exh_box_config five(void)
-{
-    return exh_box_default;
-}
+struct exh_box_config five(void) { return exh_box_default; }
 
 struct exh_box_config one(void)
 {
@@ -45,7 +42,7 @@ void fails(int err, unsigned card_no, unsigned what)
     const struct exh_box_error *e = exh_box_error();
     CHECK_EQ_I64(err, -EXH_E_IO);
     CHECK(e->code == -EXH_E_IO && e->card == card_no && e->fault.what == what, "%d: %s: %s",
-          e->code, exh_box_card_text(e->card), exh_card_what_text(e->fault.what));
+        e->code, exh_box_card_text(e->card), exh_card_what_text(e->fault.what));
     CHECK(bus_safe(), "outputs left on");
     CHECK_EQ_I64(put(1), -EXH_E_IO);
     CHECK_EQ_I64(exh_box_read_drive(&in), -EXH_E_IO);
@@ -70,7 +67,7 @@ void says(const struct exh_box_error *e, const char *want)
         memset(part, 'x', sizeof part);
         CHECK(exh_box_error_text(part, cap, e) == cap - 1, "of %u", (unsigned)cap);
         CHECK(part[cap - 1] == '\0' && part[cap] == 'x' && memcmp(part, text, cap - 1) == 0, "%u",
-              (unsigned)cap);
+            (unsigned)cap);
     }
     CHECK(exh_box_error_text(text, 0, e) == 0, "nowhere to write");
 }

@@ -31,7 +31,7 @@ static void refused(int err, int want, unsigned phase, unsigned what)
 {
     CHECK_EQ_I64(err, want);
     CHECK(fault.phase == phase && fault.what == what, "%s: %s, at %u, got %" PRId32,
-          exh_card_phase_text(fault.phase), exh_card_what_text(fault.what), fault.at, fault.got);
+        exh_card_phase_text(fault.phase), exh_card_what_text(fault.what), fault.at, fault.got);
     CHECK(bus_safe(), "outputs left on");
 }
 
@@ -325,7 +325,7 @@ TEST(outputs_are_safe_before_anything_is_tested)
                       "w 2C4 2, w 2C8 8000, w 2C4 4, w 2C8 8000, w 2C4 6, w 2C8 8000, w 2C4 1, "
                       "r 2CA F, w 2D6 0, w 2D4 5A, w 2D2 33C5, w 2D6 4000, w 2D4 5A, w 2D2 33C5, "
                       "w 2D8 4000"),
-          "not in this order");
+        "not in this order");
 }
 
 TEST(counters_end_at_zero_counting_x4)
@@ -368,8 +368,8 @@ static const struct {
     uint8_t phase, what;
     uint16_t limit_us;
 } silent[] = {{2, EXH_CARD_SELFTEST, EXH_CARD_DA_TIMEOUT, 200},
-              {4, EXH_CARD_CALIBRATE, EXH_CARD_AD_TIMEOUT, 500},
-              {0x80, EXH_CARD_EEPROM, EXH_CARD_EE_TIMEOUT, 10000}};
+    {4, EXH_CARD_CALIBRATE, EXH_CARD_AD_TIMEOUT, 500},
+    {0x80, EXH_CARD_EEPROM, EXH_CARD_EE_TIMEOUT, 10000}};
 
 TEST(a_flag_that_never_comes_ends_in_time)
 {
@@ -379,7 +379,7 @@ TEST(a_flag_that_never_comes_ends_in_time)
         refused(open_it(), -EXH_E_IO, silent[i].phase, silent[i].what);
         /* What went before and after are 700 accesses at most. */
         CHECK(bus.time_us >= silent[i].limit_us && bus.time_us <= silent[i].limit_us + 700u,
-              "%" PRIu32 " us", bus.time_us);
+            "%" PRIu32 " us", bus.time_us);
     }
 }
 
@@ -405,7 +405,7 @@ TEST(a_scan_that_ends_while_it_is_opened_is_not_taken_for_a_reference)
     CHECK_EQ_I64(open_it(), 0);
     while (i < bus.n && !(bus.log[i].port == 0x2C6 && bus.log[i].value == 0xE001)) { i++; }
     CHECK(bus.log[i + 1].port == 0x2CE && !(bus.log[i + 1].value & 4), "%X",
-          (unsigned)bus.log[i + 1].value);
+        (unsigned)bus.log[i + 1].value);
 }
 
 TEST(and_by_polls_where_time_stands_still)
@@ -441,7 +441,7 @@ TEST(a_card_that_dies_while_it_is_opened_is_found_dead)
         bus.dead_from = from;
         CHECK_EQ_I64(open_it(), -EXH_E_IO);
         CHECK(fault.what == EXH_CARD_EMPTY, "from access %u: %s: %s", from,
-              exh_card_phase_text(fault.phase), exh_card_what_text(fault.what));
+            exh_card_phase_text(fault.phase), exh_card_what_text(fault.what));
     }
 }
 
@@ -460,18 +460,17 @@ TEST(settling_may_be_left_out)
 }
 
 TEST_MAIN("s526", doubles_by_example, doubles_that_are_no_number_or_too_large_are_refused,
-          doubles_of_every_size_round_once, a_nominal_card_changes_no_code,
-          a_reference_off_10_V_on_a_nominal_card_changes_no_code,
-          a_reference_beyond_the_range_raises_no_gain, da_codes_are_the_voltage_s,
-          ad_codes_are_the_voltage_s, references_are_averaged_and_their_noise_is_bounded,
-          half_a_code_of_offset_is_none, implausible_references_are_refused_by_name,
-          a_word_of_the_eeprom_by_example, garbage_in_the_eeprom_is_refused_by_name,
-          nominal_values_only_where_the_configuration_says_so,
-          an_empty_port_is_read_once_and_not_written, another_card_is_not_written,
-          outputs_are_safe_before_anything_is_tested, counters_end_at_zero_counting_x4,
-          a_counter_with_a_dead_bit_is_named, an_output_pin_that_stays_active_is_a_fault,
-          a_flag_that_never_comes_ends_in_time,
-          flags_of_whatever_was_before_are_not_taken_for_an_answer,
-          a_scan_that_ends_while_it_is_opened_is_not_taken_for_a_reference,
-          and_by_polls_where_time_stands_still, a_wait_that_was_held_up_polls_once_more,
-          a_card_that_dies_while_it_is_opened_is_found_dead, settling_may_be_left_out);
+    doubles_of_every_size_round_once, a_nominal_card_changes_no_code,
+    a_reference_off_10_V_on_a_nominal_card_changes_no_code,
+    a_reference_beyond_the_range_raises_no_gain, da_codes_are_the_voltage_s,
+    ad_codes_are_the_voltage_s, references_are_averaged_and_their_noise_is_bounded,
+    half_a_code_of_offset_is_none, implausible_references_are_refused_by_name,
+    a_word_of_the_eeprom_by_example, garbage_in_the_eeprom_is_refused_by_name,
+    nominal_values_only_where_the_configuration_says_so, an_empty_port_is_read_once_and_not_written,
+    another_card_is_not_written, outputs_are_safe_before_anything_is_tested,
+    counters_end_at_zero_counting_x4, a_counter_with_a_dead_bit_is_named,
+    an_output_pin_that_stays_active_is_a_fault, a_flag_that_never_comes_ends_in_time,
+    flags_of_whatever_was_before_are_not_taken_for_an_answer,
+    a_scan_that_ends_while_it_is_opened_is_not_taken_for_a_reference,
+    and_by_polls_where_time_stands_still, a_wait_that_was_held_up_polls_once_more,
+    a_card_that_dies_while_it_is_opened_is_found_dead, settling_may_be_left_out);

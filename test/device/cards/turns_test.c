@@ -36,7 +36,7 @@ TEST(five_fingers_take_17_and_13_accesses)
     CHECK(bus_said(0, "r 2D2 0, r 2DA 1234, r 2E2 0, r 2EA 0, r 292 0, r 2CA FF, r 2DC AA00, "
                       "r 28A 3F, r 298 0, r 2CE 6, w 2CE 6, r 2C8 4D, r 28E 6, w 28E 6, r 288 0, "
                       "w 2C6 8043, w 286 8209, "),
-          "otherwise");
+        "otherwise");
     CHECK_EQ_I64(in.enc_raw[1], 0x1234);
     CHECK_EQ_I64(in.mon_raw[0], 77);
     bus_clear();
@@ -60,8 +60,8 @@ TEST(one_finger_takes_7_and_4)
 /* Up and down over the ends of 16 and of 24 bits, by all steps that are told apart. */
 TEST(counts_are_those_of_24_bits)
 {
-    static const int32_t step[] = {1,     -1,    30,     -4000,  32767, -32767,
-                                   32767, 32767, -32767, -32767, -32767};
+    static const int32_t step[] = {
+        1, -1, 30, -4000, 32767, -32767, 32767, 32767, -32767, -32767, -32767};
     uint32_t count[5] = {0, 0x7FFFFF, 0x800000, 0xFFFFFF, 0x00FFFF};
     opened(turning(5));
     for (unsigned n = 0; n < 20000; n++) {
@@ -70,9 +70,10 @@ TEST(counts_are_those_of_24_bits)
         CHECK_EQ_I64(exh_box_read_drive(&in), 0);
         for (unsigned i = 0; i < 5; i++) {
             CHECK_EQ_I64(in.enc_raw[i], count[i]);
-            count[i] = (count[i] +
-                        (uint32_t)step[(n * (i + 1) + n / 97) % (sizeof step / sizeof step[0])]) &
-                       0xFFFFFF;
+            count[i] =
+                (count[i] +
+                    (uint32_t)step[(n * (i + 1) + n / 97) % (sizeof step / sizeof step[0])]) &
+                0xFFFFFF;
         }
         bus_clear();
     }
@@ -124,7 +125,7 @@ TEST(monitors_are_handed_over_in_turn)
         for (unsigned i = 0; i < 5 && t > 4; i++) {
             const int old = t - (in.mon_raw[i] - (int)i) / 100;
             CHECK(old >= 0 && old <= (i < 4 ? 4 : 2) && in.mon_raw[i] % 100 == (int)i, "%u: %d", i,
-                  in.mon_raw[i]);
+                in.mon_raw[i]);
         }
         if (t > 4) { CHECK(in.supply_raw >= 100 * (t - 2) + 9, "supply %d", in.supply_raw); }
     }
@@ -239,7 +240,7 @@ TEST(a_scan_in_parts_that_still_runs_is_counted)
     }
     exh_box_counts(&n);
     CHECK(n.glove_waits > 0 && n.glove_frames > 0 && n.glove_waits + n.glove_frames == 19,
-          "%" PRIu32 " waits, %" PRIu32 " frames", n.glove_waits, n.glove_frames);
+        "%" PRIu32 " waits, %" PRIu32 " frames", n.glove_waits, n.glove_frames);
     bus.mm.base = 0;
     for (unsigned k = 0; k < 20 && exh_box_error()->code == 0; k++) {
         pass();
@@ -247,7 +248,7 @@ TEST(a_scan_in_parts_that_still_runs_is_counted)
         (void)exh_box_read_glove(&glove);
     }
     CHECK(exh_box_error()->card == EXH_BOX_GLOVE && exh_box_error()->fault.what == EXH_CARD_EMPTY,
-          "%s", exh_card_what_text(exh_box_error()->fault.what));
+        "%s", exh_card_what_text(exh_box_error()->fault.what));
 }
 
 /* Without the check of quadrature errors every turn is of the counters. */
@@ -274,9 +275,9 @@ TEST(turns_of_counters_alone)
 }
 
 TEST_MAIN("turns", five_fingers_take_17_and_13_accesses, one_finger_takes_7_and_4,
-          counts_are_those_of_24_bits, a_count_that_jumps_is_found_within_two_turns,
-          every_quadrature_error_is_counted, monitors_are_handed_over_in_turn,
-          output_pins_are_written_when_they_change_and_every_16_times,
-          pins_that_do_not_follow_are_a_fault_as_ever, the_glove_converts_while_ticks_compute,
-          a_scan_in_parts_is_as_sound_as_one_in_a_piece, a_scan_in_parts_that_still_runs_is_counted,
-          turns_of_counters_alone);
+    counts_are_those_of_24_bits, a_count_that_jumps_is_found_within_two_turns,
+    every_quadrature_error_is_counted, monitors_are_handed_over_in_turn,
+    output_pins_are_written_when_they_change_and_every_16_times,
+    pins_that_do_not_follow_are_a_fault_as_ever, the_glove_converts_while_ticks_compute,
+    a_scan_in_parts_is_as_sound_as_one_in_a_piece, a_scan_in_parts_that_still_runs_is_counted,
+    turns_of_counters_alone);

@@ -266,6 +266,6 @@ TEST(words_for_people)
 }
 
 TEST_MAIN("emu/box", where_no_card_is_all_ones, each_card_has_its_ports, accesses_take_time, absent,
-          a_fault_begins_where_it_is_asked_to, stuck_busy, lost_conversion, fifo_overflow,
-          somebody_else_reads, stuck_line, noisy_line, da_never_updates, eeprom_garbage,
-          words_for_people);
+    a_fault_begins_where_it_is_asked_to, stuck_busy, lost_conversion, fifo_overflow,
+    somebody_else_reads, stuck_line, noisy_line, da_never_updates, eeprom_garbage,
+    words_for_people);

@@ -101,11 +101,11 @@ static void check_fact(const struct access *fact, unsigned n)
  * then reg 2, 3, 7, 8, 9, 11: "An emulated board must return exactly these". */
 TEST(its_detection_is_the_facts)
 {
-    static const struct access fact[] = {
-        {2, 'w', 1, MM + 8, 0x20}, {2, 'w', 1, MM + 7, 0x00}, {2, 'w', 1, MM + 9, 0x00},
-        {2, 'w', 1, MM + 2, 0x80}, {2, 'w', 1, MM + 3, 0xFF}, {2, 'w', 1, MM + 11, 0x0C},
-        {2, 'r', 1, MM + 2, 0x00}, {2, 'r', 1, MM + 3, 0x1F}, {2, 'r', 1, MM + 7, 0x80},
-        {2, 'r', 1, MM + 8, 0x60}, {2, 'r', 1, MM + 9, 0x00}, {2, 'r', 1, MM + 11, 0x0C}};
+    static const struct access fact[] = {{2, 'w', 1, MM + 8, 0x20}, {2, 'w', 1, MM + 7, 0x00},
+        {2, 'w', 1, MM + 9, 0x00}, {2, 'w', 1, MM + 2, 0x80}, {2, 'w', 1, MM + 3, 0xFF},
+        {2, 'w', 1, MM + 11, 0x0C}, {2, 'r', 1, MM + 2, 0x00}, {2, 'r', 1, MM + 3, 0x1F},
+        {2, 'r', 1, MM + 7, 0x80}, {2, 'r', 1, MM + 8, 0x60}, {2, 'r', 1, MM + 9, 0x00},
+        {2, 'r', 1, MM + 11, 0x0C}};
     check_fact(fact, DIM(fact));
 }
 
@@ -116,16 +116,10 @@ TEST(its_s526_sequences_are_the_facts)
 {
     static const struct access a[] = {{3, 'w', 2, A + 0x1E, 0x0480}, {3, 'w', 2, A + 0x20, 0x8000}};
     static const struct access c[] = {{4, 'r', 0, A + 0x1A, 0}, {4, 'r', 0, A + 0x1C, 0}};
-    static const struct access e[] = {{5, 'w', 2, A + 6, 0x8021},
-                                      {5, 'r', 2, A + 14, 4},
-                                      {5, 'w', 2, A + 14, 4},
-                                      {5, 'r', 0, A + 8, 0},
-                                      {5, 'w', 2, A + 6, 0x0021}};
-    static const struct access f[] = {{6, 'w', 2, A + 4, 4},
-                                      {6, 'w', 2, A + 8, 0x9ABC},
-                                      {6, 'w', 2, A + 4, 5},
-                                      {6, 'r', 2, A + 14, 2},
-                                      {6, 'w', 2, A + 14, 2}};
+    static const struct access e[] = {{5, 'w', 2, A + 6, 0x8021}, {5, 'r', 2, A + 14, 4},
+        {5, 'w', 2, A + 14, 4}, {5, 'r', 0, A + 8, 0}, {5, 'w', 2, A + 6, 0x0021}};
+    static const struct access f[] = {{6, 'w', 2, A + 4, 4}, {6, 'w', 2, A + 8, 0x9ABC},
+        {6, 'w', 2, A + 4, 5}, {6, 'r', 2, A + 14, 2}, {6, 'w', 2, A + 14, 2}};
     check_fact(a, DIM(a));
     check_fact(c, DIM(c));
     check_fact(e, DIM(e));
@@ -137,13 +131,13 @@ TEST(its_s526_sequences_are_the_facts)
  * 8". */
 TEST(its_scans_are_the_facts)
 {
-    static const struct access fact[] = {
-        {12, 'w', 1, MM + 7, 0x02},  {12, 'w', 1, MM + 7, 0x04},  {12, 'w', 1, MM + 2, 0},
-        {12, 'w', 1, MM + 3, 21},    {12, 'w', 1, MM + 11, 0x08}, {12, 'w', 1, MM + 8, 0x08},
-        {12, 'r', 1, MM + 11, 0x08}, {12, 'w', 1, MM + 10, 0},    {12, 'w', 1, MM + 8, 0},
-        {12, 'w', 1, MM + 15, 0x56}, {12, 'w', 1, MM + 13, 200},  {12, 'w', 1, MM + 15, 0xB6},
-        {12, 'w', 1, MM + 14, 0xD0}, {12, 'w', 1, MM + 14, 0x07}, {12, 'w', 1, MM + 9, 0x83},
-        {12, 'r', 1, MM + 9, 0x83},  {12, 'r', 0, MM, 0},         {12, 'r', 0, MM + 1, 0}};
+    static const struct access fact[] = {{12, 'w', 1, MM + 7, 0x02}, {12, 'w', 1, MM + 7, 0x04},
+        {12, 'w', 1, MM + 2, 0}, {12, 'w', 1, MM + 3, 21}, {12, 'w', 1, MM + 11, 0x08},
+        {12, 'w', 1, MM + 8, 0x08}, {12, 'r', 1, MM + 11, 0x08}, {12, 'w', 1, MM + 10, 0},
+        {12, 'w', 1, MM + 8, 0}, {12, 'w', 1, MM + 15, 0x56}, {12, 'w', 1, MM + 13, 200},
+        {12, 'w', 1, MM + 15, 0xB6}, {12, 'w', 1, MM + 14, 0xD0}, {12, 'w', 1, MM + 14, 0x07},
+        {12, 'w', 1, MM + 9, 0x83}, {12, 'r', 1, MM + 9, 0x83}, {12, 'r', 0, MM, 0},
+        {12, 'r', 0, MM + 1, 0}};
     check_fact(fact, DIM(fact));
 }
 
@@ -163,5 +157,4 @@ TEST(its_mask_converts_another_channel)
 }
 
 TEST_MAIN("Linux", all_that_linux_was_seen_to_do, its_detection_is_the_facts,
-          its_s526_sequences_are_the_facts, its_scans_are_the_facts,
-          its_mask_converts_another_channel);
+    its_s526_sequences_are_the_facts, its_scans_are_the_facts, its_mask_converts_another_channel);

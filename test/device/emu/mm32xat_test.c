@@ -239,9 +239,9 @@ TEST(ranges)
         uint8_t code;
         int32_t fs_uV;
         uint8_t unipolar;
-    } row[] = {{0, 5000000, 0},   {1, 2500000, 0},  {2, 1250000, 0},  {3, 625000, 0},
-               {8, 10000000, 0},  {9, 5000000, 0},  {10, 2500000, 0}, {11, 1250000, 0},
-               {12, 10000000, 1}, {13, 5000000, 1}, {14, 2500000, 1}, {15, 1250000, 1}};
+    } row[] = {{0, 5000000, 0}, {1, 2500000, 0}, {2, 1250000, 0}, {3, 625000, 0}, {8, 10000000, 0},
+        {9, 5000000, 0}, {10, 2500000, 0}, {11, 1250000, 0}, {12, 10000000, 1}, {13, 5000000, 1},
+        {14, 2500000, 1}, {15, 1250000, 1}};
     for (size_t i = 0; i < DIM(row); i++) {
         set_up_scan(0x30u | row[i].code);
         box.pins.glove_uV[0] = row[i].fs_uV / 4;
@@ -330,7 +330,6 @@ TEST(scint_reads_back_only_in_enhanced_mode)
 }
 
 TEST_MAIN("emu/mm32xat", init_and_detect, a_reset_takes_time, a_scan_of_22_channels, scan_times,
-          a_start_is_ignored_while_busy_and_with_the_clock_on, two_latches,
-          the_low_byte_moves_the_fifo, an_empty_fifo, the_fifo_overflows, the_threshold,
-          an_unsettled_input, ranges, a_scan_paced_by_the_timer, the_da, pages,
-          scint_reads_back_only_in_enhanced_mode);
+    a_start_is_ignored_while_busy_and_with_the_clock_on, two_latches, the_low_byte_moves_the_fifo,
+    an_empty_fifo, the_fifo_overflows, the_threshold, an_unsettled_input, ranges,
+    a_scan_paced_by_the_timer, the_da, pages, scint_reads_back_only_in_enhanced_mode);

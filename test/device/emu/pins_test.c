@@ -63,4 +63,4 @@ TEST(gains_and_unipolar_ranges)
 }
 
 TEST_MAIN("emu/pins", every_ad_code_comes_back_from_its_voltage, an_ad_code_is_the_nearest,
-          every_da_code_comes_back_from_its_voltage, gains_and_unipolar_ranges);
+    every_da_code_comes_back_from_its_voltage, gains_and_unipolar_ranges);

@@ -30,22 +30,10 @@ static inline void power_on_with(enum emu_kind kind, enum emu_card card, unsigne
     emu_box_open(&box, &c);
 }
 
-static inline uint32_t inw(unsigned port)
-{
-    return emu_in(&box, (uint16_t)port, 2);
-}
-static inline void outw(uint32_t value, unsigned port)
-{
-    emu_out(&box, (uint16_t)port, 2, value);
-}
-static inline uint32_t inb(unsigned port)
-{
-    return emu_in(&box, (uint16_t)port, 1);
-}
-static inline void outb(uint32_t value, unsigned port)
-{
-    emu_out(&box, (uint16_t)port, 1, value);
-}
+static inline uint32_t inw(unsigned port) { return emu_in(&box, (uint16_t)port, 2); }
+static inline void outw(uint32_t value, unsigned port) { emu_out(&box, (uint16_t)port, 2, value); }
+static inline uint32_t inb(unsigned port) { return emu_in(&box, (uint16_t)port, 1); }
+static inline void outb(uint32_t value, unsigned port) { emu_out(&box, (uint16_t)port, 1, value); }
 
 /* Reads a port until the bits of mask are `want`: reads it took, 0 if never. */
 static inline uint32_t poll(unsigned port, unsigned width_B, uint32_t mask, uint32_t want)
@@ -56,9 +44,6 @@ static inline uint32_t poll(unsigned port, unsigned width_B, uint32_t mask, uint
     return 0;
 }
 
-static inline void pass_us(uint32_t us)
-{
-    emu_advance_ns(&box, (uint64_t)us * 1000);
-}
+static inline void pass_us(uint32_t us) { emu_advance_ns(&box, (uint64_t)us * 1000); }
 
 #endif

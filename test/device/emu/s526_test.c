@@ -153,12 +153,8 @@ TEST(x1_x2_x4_and_off)
     static const struct {
         uint32_t mode;
         int32_t up, back;
-    } row[] = {{0x0080, 25, 0xFFFFFF - 24},
-               {0x0280, 50, 0xFFFFFF - 49},
-               {0x0480, 100, 0xFFFFFF - 99},
-               {0x0680, 100, 0xFFFFFF - 99},
-               {0x0400, 0, 0},
-               {0x1480, 0, 0}};
+    } row[] = {{0x0080, 25, 0xFFFFFF - 24}, {0x0280, 50, 0xFFFFFF - 49},
+        {0x0480, 100, 0xFFFFFF - 99}, {0x0680, 100, 0xFFFFFF - 99}, {0x0400, 0, 0}, {0x1480, 0, 0}};
     for (size_t i = 0; i < DIM(row); i++) {
         power_on();
         outw(row[i].mode, A + 0x16);
@@ -392,11 +388,10 @@ TEST(isr_is_cleared_by_ones)
 }
 
 TEST_MAIN("emu/s526", signature, what_is_no_register_reads_all_ones, sequence_a_counts_from_zero,
-          sequence_b_counts_from_a_start_value, a_load_comes_from_either_preload,
-          a_preload_is_high_word_then_low, sequence_c_latches_at_the_low_word,
-          a_counter_that_latches_on_an_event_stands_still, x1_x2_x4_and_off, a_rollover_is_captured,
-          sequence_d_scans_and_keeps_a_result_per_channel, a_conversion_takes_its_time,
-          sequence_e_single_channel, the_eeprom_describes_the_card, calibration_by_the_references,
-          sequence_f_one_output, sequence_g_many_outputs_together,
-          an_output_is_what_its_eeprom_says, add_is_two_registers, digital_lines,
-          isr_is_cleared_by_ones);
+    sequence_b_counts_from_a_start_value, a_load_comes_from_either_preload,
+    a_preload_is_high_word_then_low, sequence_c_latches_at_the_low_word,
+    a_counter_that_latches_on_an_event_stands_still, x1_x2_x4_and_off, a_rollover_is_captured,
+    sequence_d_scans_and_keeps_a_result_per_channel, a_conversion_takes_its_time,
+    sequence_e_single_channel, the_eeprom_describes_the_card, calibration_by_the_references,
+    sequence_f_one_output, sequence_g_many_outputs_together, an_output_is_what_its_eeprom_says,
+    add_is_two_registers, digital_lines, isr_is_cleared_by_ones);

@@ -27,13 +27,10 @@ int chip_open(const char *path)
     return 0;
 }
 
-void chip_close(void)
-{
-    chip.opened--;
-}
+void chip_close(void) { chip.opened--; }
 
-int chip_request(const unsigned *line, unsigned n, int output, int bias, int low,
-                 const char *consumer)
+int chip_request(
+    const unsigned *line, unsigned n, int output, int bias, int low, const char *consumer)
 {
     if (chip.request_error) { return fails(chip.request_error); }
     if (bias && chip.no_bias) { return fails(EINVAL); }

@@ -35,8 +35,8 @@ void chip_reset(void);
 
 /* What the fakes do: 0, or -1 with errno. */
 int chip_open(const char *path);
-int chip_request(const unsigned *line, unsigned n, int output, int bias, int low,
-                 const char *consumer);
+int chip_request(
+    const unsigned *line, unsigned n, int output, int bias, int low, const char *consumer);
 void chip_release(const unsigned *line, unsigned n);
 void chip_close(void);
 int chip_get(const unsigned *line, unsigned n, int *level);

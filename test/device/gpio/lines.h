@@ -161,7 +161,7 @@ TEST(what_can_be_wrong)
         {"gpiochip0:estop=4+12", 0, 0, -1, "estop=12: /dev/gpiochip0 has lines 0..11: choose one"},
         {"gpiochip0:estop=4,alive=99", 0, 0, -1, "alive=99: /dev/gpiochip0 has lines 0..11"},
         {ALL, 0, 0, ESTOP,
-         "estop=4: line 4 of /dev/gpiochip0 is held by \"thief\": end that program"},
+            "estop=4: line 4 of /dev/gpiochip0 is held by \"thief\": end that program"},
         {PAIR, 0, 0, SECOND, "estop=8: line 8 of /dev/gpiochip0 is held by \"thief\""},
         {ALL, 0, 0, ALIVE, "alive=7: line 7 of /dev/gpiochip0 is held by \"thief\""},
         {ALL, 0, EIO, -1, "does not give these lines (Input/output error)"},
@@ -253,10 +253,10 @@ TEST(two_contacts_that_disagree)
     for (int i = 0; i < 2000; i++) { CHECK_EQ_I64(din(), EXH_DIN_DEADMAN); }
     text = listen_end();
     CHECK(times(text, "disagree") == 1, "%s", text);
-    CHECK(strstr(text,
-                 "estop: its contacts disagree for more than 500 ticks (line 4 closed, line 8 "
-                 "open)") != NULL,
-          "%s", text);
+    CHECK(
+        strstr(text, "estop: its contacts disagree for more than 500 ticks (line 4 closed, line 8 "
+                     "open)") != NULL,
+        "%s", text);
     chip.line[SECOND].level = 1;
     for (int i = 0; i < 2000; i++) { CHECK_EQ_I64(din(), EXH_DIN_DEADMAN); }
     chip.line[ESTOP].level = chip.line[SECOND].level = 0;
@@ -303,7 +303,7 @@ TEST(a_halted_terminal_stalls_no_tick)
     close(was);
     CHECK(times(text, "disagree for more than 500 ticks") + (int)words_lost() == 100 &&
               times(text, "disagree") > 50,
-          "%d came, %lu lost", times(text, "disagree"), (unsigned long)words_lost());
+        "%d came, %lu lost", times(text, "disagree"), (unsigned long)words_lost());
     gpio_close();
     terminal_close(&tty);
 }
@@ -346,7 +346,7 @@ TEST(lines_that_cannot_be_read)
     CHECK_EQ_I64(d, 0);
     text = listen_end();
     CHECK(times(text, "/dev/gpiochip0: the contacts can't be read (No such device)") == 1, "%s",
-          text);
+        text);
     gpio_close();
 }
 
@@ -396,10 +396,10 @@ TEST(lines_that_cannot_be_set)
     CHECK_EQ_I64(gpio_write(&out), -EXH_E_IO);
     CHECK_EQ_I64(gpio_write(&out), -EXH_E_IO);
     text = listen_end();
-    CHECK(times(text,
-                "/dev/gpiochip0: the outputs can't be set (Input/output error): outputs CAN'T "
-                "BE SET LOW") == 1,
-          "%s", text);
+    CHECK(
+        times(text, "/dev/gpiochip0: the outputs can't be set (Input/output error): outputs CAN'T "
+                    "BE SET LOW") == 1,
+        "%s", text);
     gpio_close();
 }
 
@@ -458,7 +458,7 @@ static int ends_low(enum ending how, int sig)
     }
     CHECK(waitpid(pid, &status, 0) == pid, "lost it");
     CHECK(read(to[0], told + (how == BY_STOP ? 4 : 0), sizeof told - 5) >= (how == BY_STOP ? 2 : 4),
-          "outputs %s", told);
+        "outputs %s", told);
     CHECK(strncmp(told, "1100", 4) == 0 && strchr(told + 2, '1') == NULL, "outputs %s", told);
     close(to[0]);
     return status;
@@ -466,22 +466,18 @@ static int ends_low(enum ending how, int sig)
 
 TEST(low_when_the_program_ends)
 {
-    const int sig[] = {SIGHUP,  SIGINT,    SIGTERM,  SIGQUIT,      SIGPIPE, SIGALRM,
-                       SIGUSR1, SIGUSR2,   SIGABRT,  SIGSEGV,      SIGBUS,  SIGFPE,
-                       SIGILL,  SIGTRAP,   SIGSYS,   SIGXCPU,      SIGXFSZ, SIGPROF,
-                       SIGPOLL, SIGVTALRM, SIGRTMIN, SIGRTMIN + 5, SIGRTMAX};
+    const int sig[] = {SIGHUP, SIGINT, SIGTERM, SIGQUIT, SIGPIPE, SIGALRM, SIGUSR1, SIGUSR2,
+        SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS, SIGXCPU, SIGXFSZ, SIGPROF,
+        SIGPOLL, SIGVTALRM, SIGRTMIN, SIGRTMIN + 5, SIGRTMAX};
     for (size_t i = 0; i < LEN(sig); i++) {
         const int status = ends_low(BY_SIGNAL, sig[i]);
         CHECK(WIFSIGNALED(status) && WTERMSIG(status) == sig[i], "signal %d: status %x", sig[i],
-              status);
+            status);
     }
     CHECK_EQ_I64(WEXITSTATUS(ends_low(BY_EXIT, 0)), 7);
 }
 
-TEST(low_when_it_is_stopped)
-{
-    CHECK_EQ_I64(WEXITSTATUS(ends_low(BY_STOP, SIGTSTP)), 7);
-}
+TEST(low_when_it_is_stopped) { CHECK_EQ_I64(WEXITSTATUS(ends_low(BY_STOP, SIGTSTP)), 7); }
 
 /* ---- In closed loop: a fall onto the wall, in virtual time ---------------------------------- */
 
@@ -513,8 +509,8 @@ static void open_it(void)
     }
 }
 
-static void fall_after(uint32_t tick, const struct exh_scene_in *in,
-                       const struct exh_drive_out *out)
+static void fall_after(
+    uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
     const uint32_t at = fall.opened ? tick - fall.opened : 0;
     (void)in;
@@ -572,7 +568,7 @@ TEST(estop_cuts_in_its_tick)
         CHECK(fall.out[0].dac_raw[0] > ZERO + 2000 && fall.out[0].enable == 1, "the tick before");
         for (int i = 1; i <= PAST; i++) {
             CHECK(fall.out[i].dac_raw[0] == ZERO && fall.out[i].enable == 0, "tick %d: code %u", i,
-                  fall.out[i].dac_raw[0]);
+                fall.out[i].dac_raw[0]);
             CHECK(fall.enable[i] == 0, "tick %d: enable is high", i);
             CHECK(fall.alive[i] != fall.alive[i - 1], "tick %d: no beat", i);
             CHECK_EQ_I64(fall.sig[i].faults, EXH_FAULT_ESTOP);
@@ -591,7 +587,7 @@ TEST(deadman_lets_go)
     for (int i = 1; i <= PAST; i++) {
         CHECK(fall.out[i].dac_raw[0] <= fall.out[i - 1].dac_raw[0], "tick %d: more", i);
         CHECK(i < 16 || fall.out[i].dac_raw[0] == ZERO, "tick %d: code %u", i,
-              fall.out[i].dac_raw[0]);
+            fall.out[i].dac_raw[0]);
     }
 }
 
@@ -630,8 +626,8 @@ static void hand_before(uint32_t tick, struct exh_scene_in *in)
     live_person_before(tick, in);
 }
 
-static void hand_after(uint32_t tick, const struct exh_scene_in *in,
-                       const struct exh_drive_out *out)
+static void hand_after(
+    uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
     (void)in;
     (void)out;
@@ -667,14 +663,14 @@ TEST(a_real_hand)
     static const struct {
         uint32_t tick;
         uint8_t state;
-    } row[] = {{299, EXH_STATE_OFF},    {345, EXH_STATE_OFF},      {360, EXH_STATE_ARM},
-               {999, EXH_STATE_RUN},    {1001, EXH_STATE_RELEASE}, {1030, EXH_STATE_FAULT},
-               {1245, EXH_STATE_FAULT}, {1260, EXH_STATE_OFF},     {1599, EXH_STATE_OFF},
-               {1660, EXH_STATE_ARM}};
+    } row[] = {{299, EXH_STATE_OFF}, {345, EXH_STATE_OFF}, {360, EXH_STATE_ARM},
+        {999, EXH_STATE_RUN}, {1001, EXH_STATE_RELEASE}, {1030, EXH_STATE_FAULT},
+        {1245, EXH_STATE_FAULT}, {1260, EXH_STATE_OFF}, {1599, EXH_STATE_OFF},
+        {1660, EXH_STATE_ARM}};
     hand_runs(0);
     for (size_t i = 0; i < LEN(row); i++) {
         CHECK(hand.state[row[i].tick] == row[i].state, "tick %u: state %u, want %u", row[i].tick,
-              hand.state[row[i].tick], row[i].state);
+            hand.state[row[i].tick], row[i].state);
     }
 }
 

@@ -63,7 +63,7 @@ TEST(what_is_refused)
         {"gpiochip0:estop=4+4", "line 4 is estop's already"},
         {"gpiochip0:estop=4+5+6", "one contact or two"},
         {"gpiochip0:estop=4,estop=5",
-         "estop=5: given twice: two contacts are written as estop=4+8"},
+            "estop=5: given twice: two contacts are written as estop=4+8"},
         {"gpiochip0:alive=4,alive=5", "given twice"},
         {"gpiochip0:estop=4,deadman=4", "deadman=4: line 4 is estop's already: every line once"},
         {"gpiochip0:enable=6,alive=6", "alive=6: line 6 is enable's already"},
@@ -77,7 +77,7 @@ TEST(what_is_refused)
         CHECK(gpio_take(&s, row[i].text, said) < 0, "%s: taken", row[i].text);
         CHECK(strstr(said, row[i].says) != NULL, "%s: %s", row[i].text, said);
         CHECK(strstr(said, "e.g. gpiochip0:estop=4,deadman=5,enable=6,alive=7") != NULL, "%s: %s",
-              row[i].text, said);
+            row[i].text, said);
     }
 }
 

@@ -126,7 +126,7 @@ TEST(a_form_that_changes_is_taken_when_it_is_sure_unless_told)
         in.frames = 0;
         frames(100);
         CHECK(told ? in.frames == 0 : in.frames >= 100 - CYBERGLOVE_SURE && wrong == 0,
-              "%d: %lu, wrong %lu", told, (unsigned long)in.frames, (unsigned long)wrong);
+            "%d: %lu, wrong %lu", told, (unsigned long)in.frames, (unsigned long)wrong);
         glove.forced = 0;
         in.frames = 0;
         frames(100);
@@ -189,15 +189,15 @@ TEST(what_goes_wrong_is_counted_and_does_not_get_in)
         go_wrong(row[i].kind, row[i].status);
         CHECK(wrong == 0, "%zu: %lu wrong frames came", i, (unsigned long)wrong);
         CHECK((int)in.frames == row[i].come, "%zu: %lu frames of %d", i, (unsigned long)in.frames,
-              row[i].come);
+            row[i].come);
         if (row[i].count == ANY) {
             CHECK(in.lost[row[i].cause] > BAD * 9 / 10 && lost() >= BAD && lost() < BAD + BAD / 10,
-                  "%zu: %lu, in all %lu", i, (unsigned long)in.lost[row[i].cause],
-                  (unsigned long)lost());
+                "%zu: %lu, in all %lu", i, (unsigned long)in.lost[row[i].cause],
+                (unsigned long)lost());
         } else {
             CHECK((int)in.lost[row[i].cause] == row[i].count && (int)lost() == row[i].count,
-                  "%zu: %lu, in all %lu", i, (unsigned long)in.lost[row[i].cause],
-                  (unsigned long)lost());
+                "%zu: %lu, in all %lu", i, (unsigned long)in.lost[row[i].cause],
+                (unsigned long)lost());
         }
         CHECK_EQ_I64(in.errors, row[i].kind == EMU_CYBER_ERROR ? BAD : 0);
     }
@@ -209,11 +209,11 @@ TEST(noise_between_frames_is_counted)
     for (int status = 0; status < 2; status++) {
         go_wrong(EMU_CYBER_HEADLESS, status);
         CHECK(wrong == 0 && in.frames == FRAMES - BAD, "%lu, wrong %lu", (unsigned long)in.frames,
-              (unsigned long)wrong);
+            (unsigned long)wrong);
         CHECK(in.strays > 20 * (BAD - lost()), "%lu", (unsigned long)in.strays);
         go_wrong(EMU_CYBER_GARBAGE, status);
         CHECK(wrong == 0 && in.frames == FRAMES - BAD, "%lu, wrong %lu", (unsigned long)in.frames,
-              (unsigned long)wrong);
+            (unsigned long)wrong);
         CHECK_EQ_I64(in.strays, BAD * (EMU_CYBER_NOISE_B + 24 + status));
     }
 }
@@ -265,12 +265,12 @@ TEST(any_bytes_give_only_what_has_the_form_of_a_frame)
                 CHECK(byte == 0 && (h[0] == 'S' || h[0] == 'G') &&
                           memcmp(h + 1, in.sample, SENSORS) == 0 &&
                           (h[-1] == 0 || bytes < sizeof last) && !memchr(in.sample, 0, SENSORS),
-                      "byte %lu", (unsigned long)bytes);
+                    "byte %lu", (unsigned long)bytes);
                 CHECK(!in.told || in.status & 1, "status %d", in.status);
             }
         }
         CHECK(in.frames > 300 && 24 * in.frames + in.strays <= bytes, "%lu frames, %lu strays",
-              (unsigned long)in.frames, (unsigned long)in.strays);
+            (unsigned long)in.frames, (unsigned long)in.strays);
     }
 }
 
@@ -294,7 +294,7 @@ TEST(a_sample_is_a_code_of_the_card)
 }
 
 TEST_MAIN("serial/parser", each_frame_comes_as_it_was_sent, a_frame_that_is_asked_for_is_one,
-          the_form_is_learned_or_told, a_form_that_changes_is_taken_when_it_is_sure_unless_told,
-          what_goes_wrong_is_counted_and_does_not_get_in, noise_between_frames_is_counted,
-          all_frames_wrong_and_then_well_again, any_bytes_give_only_what_has_the_form_of_a_frame,
-          each_cause_has_its_word, a_sample_is_a_code_of_the_card);
+    the_form_is_learned_or_told, a_form_that_changes_is_taken_when_it_is_sure_unless_told,
+    what_goes_wrong_is_counted_and_does_not_get_in, noise_between_frames_is_counted,
+    all_frames_wrong_and_then_well_again, any_bytes_give_only_what_has_the_form_of_a_frame,
+    each_cause_has_its_word, a_sample_is_a_code_of_the_card);

@@ -49,16 +49,10 @@ void EXPORT(box_out)(uint32_t port, uint32_t width_B, uint32_t value)
     emu_out(&box, (uint16_t)port, width_B, value);
 }
 
-void EXPORT(box_advance_ns)(uint32_t ns)
-{
-    emu_advance_ns(&box, ns);
-}
+void EXPORT(box_advance_ns)(uint32_t ns) { emu_advance_ns(&box, ns); }
 
 /* 1: the MM-32X-AT's interrupt line is up. */
-uint32_t EXPORT(box_interrupt)(void)
-{
-    return box.mm.flags != 0;
-}
+uint32_t EXPORT(box_interrupt)(void) { return box.mm.flags != 0; }
 
 /* A pin by the number that guest/pin.h gives it; high byte: which kind of pin. */
 int32_t EXPORT(box_pin)(uint32_t n)

@@ -19,10 +19,7 @@ static struct {
     unsigned fingers;
 } cards;
 
-struct emu_box *posix_cards_box(void)
-{
-    return &cards.none;
-}
+struct emu_box *posix_cards_box(void) { return &cards.none; }
 
 /* Nobody looks on here. */
 const struct posix_cards_watch *posix_cards_watch(void)
@@ -33,26 +30,14 @@ const struct posix_cards_watch *posix_cards_watch(void)
 
 /* --- wiring: docs/CARDS.md, but for one finger's supply, see supply() --- */
 
-static unsigned card_of(unsigned finger)
-{
-    return finger < EMU_AXES ? A : B;
-}
+static unsigned card_of(unsigned finger) { return finger < EMU_AXES ? A : B; }
 
-static unsigned axis_of(unsigned finger)
-{
-    return finger % EMU_AXES;
-}
+static unsigned axis_of(unsigned finger) { return finger % EMU_AXES; }
 
-static unsigned common(void)
-{
-    return cards.fingers > 1 ? B : A;
-}
+static unsigned common(void) { return cards.fingers > 1 ? B : A; }
 
 /* One finger: channel 1 instead of 4, since Debian's driver reads no channels but 0 and 1. */
-static unsigned supply(void)
-{
-    return cards.fingers > 1 ? 4 : 1;
-}
+static unsigned supply(void) { return cards.fingers > 1 ? 4 : 1; }
 
 static void show_drive(const struct exh_drive_in *in)
 {
@@ -113,8 +98,8 @@ int cards_start(const struct posix_cards *c, unsigned fingers, int glove)
     if (iopl(3)) { return -errno; }
     for (unsigned i = 0; i < fingers; i++) {
         set_pin(PIN_ENC + 4 * card_of(i) + axis_of(i), 0);
-        config(card_of(i), GPCT, axis_of(i), 3, INSN_CONFIG_GPCT_QUADRATURE_ENCODER, QUADRATURE_X4,
-               0);
+        config(
+            card_of(i), GPCT, axis_of(i), 3, INSN_CONFIG_GPCT_QUADRATURE_ENCODER, QUADRATURE_X4, 0);
     }
     for (unsigned card = A; card <= common(); card++) {
         config(card, S526_DIO, 0, 1, INSN_CONFIG_DIO_INPUT, 0, 0);
@@ -125,10 +110,7 @@ int cards_start(const struct posix_cards *c, unsigned fingers, int glove)
     return 0;
 }
 
-void cards_at(double t_s)
-{
-    (void)t_s; /* the cards' time is the machine's */
-}
+void cards_at(double t_s) { (void)t_s; /* the cards' time is the machine's */ }
 
 static int16_t ad(unsigned card, unsigned channel)
 {

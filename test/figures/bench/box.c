@@ -11,10 +11,7 @@
 
 #include <string.h>
 
-static void no_error(struct error *e)
-{
-    error_add(e, 0);
-}
+static void no_error(struct error *e) { error_add(e, 0); }
 
 /* --- the kernels --- */
 
@@ -27,10 +24,7 @@ static void kernel_setup(void)
     for (uint32_t i = 0; i < BENCH_OPS; i++) { tick_input(&kernel_in[i], i); }
 }
 
-static void kernel_op(uint32_t i)
-{
-    bench_sink = tick_once(&kernel, &kernel_in[i]);
-}
+static void kernel_op(uint32_t i) { bench_sink = tick_once(&kernel, &kernel_in[i]); }
 
 /* --- the full box: a glove frame in every tick, planes and a state packet in every fifth --- */
 
@@ -89,8 +83,8 @@ static uint32_t bent_at(uint32_t i)
 }
 
 /* Along the axis that the fingertip moves along most, so that the normal is exact. */
-static void put_plane(struct exh_wire_plane *p, unsigned f, const struct exh_vec3 *from,
-                      const struct exh_vec3 *to)
+static void put_plane(
+    struct exh_wire_plane *p, unsigned f, const struct exh_vec3 *from, const struct exh_vec3 *to)
 {
     const int32_t was[3] = {from->x, from->y, from->z}, is[3] = {to->x, to->y, to->z};
     int axis = 0;
@@ -178,12 +172,13 @@ static void box_op(uint32_t i)
 
 static const struct kernel kernels[] = {
     {"integer_tick_x5", "", 1, 0, 1, kernel_setup, kernel_op, no_error,
-     "22 low-passes, fingertips, distances, laws; errors: filter_2_x22, hand_tip_x5, "
-     "precontact_x5, contact_law_x5",
-     0, NULL},
+        "22 low-passes, fingertips, distances, laws; errors: filter_2_x22, hand_tip_x5, "
+        "precontact_x5, contact_law_x5",
+        0, NULL},
     {"full_box_tick", "", 1, 0, 1, box_setup, box_op, no_error,
-     "glove, link and five fingers at 2 kHz, planes and states in every fifth tick; the bits are "
-     "the golden vectors'",
-     0, NULL},
+        "glove, link and five fingers at 2 kHz, planes and states in every fifth tick; the bits "
+        "are "
+        "the golden vectors'",
+        0, NULL},
 };
 const struct kernel_group box_group = {kernels, sizeof kernels / sizeof kernels[0]};

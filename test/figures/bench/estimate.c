@@ -33,40 +33,19 @@ static void setup_all(int32_t p)
     bench_seed();
 }
 
-static void setup_1(void)
-{
-    setup_all(0);
-}
+static void setup_1(void) { setup_all(0); }
 
-static void setup_2(void)
-{
-    setup_all(1);
-}
+static void setup_2(void) { setup_all(1); }
 
-static void setup_16(void)
-{
-    setup_all(4);
-}
+static void setup_16(void) { setup_all(4); }
 
-static void window_op(uint32_t i)
-{
-    bench_sink = window_step(hump[i]);
-}
+static void window_op(uint32_t i) { bench_sink = window_step(hump[i]); }
 
-static void pole_op(uint32_t i)
-{
-    bench_sink = pole_step(hump[i]);
-}
+static void pole_op(uint32_t i) { bench_sink = pole_step(hump[i]); }
 
-static void foaw_op(uint32_t i)
-{
-    bench_sink = foaw_step(hump[i]);
-}
+static void foaw_op(uint32_t i) { bench_sink = foaw_step(hump[i]); }
 
-static void track_op(uint32_t i)
-{
-    bench_sink = track_step(hump[i]);
-}
+static void track_op(uint32_t i) { bench_sink = track_step(hump[i]); }
 
 /* A hand: up to +-12 m/s, +-1 count of noise, through the wrap of the count; now and
  * then a jump beyond full scale. Changes since the last 17 ticks in y[0..16], newest 0,
@@ -103,20 +82,11 @@ static void window_error(struct error *e, int32_t p)
     }
 }
 
-static void error_1(struct error *e)
-{
-    window_error(e, 0);
-}
+static void error_1(struct error *e) { window_error(e, 0); }
 
-static void error_2(struct error *e)
-{
-    window_error(e, 1);
-}
+static void error_2(struct error *e) { window_error(e, 1); }
 
-static void error_16(struct error *e)
-{
-    window_error(e, 4);
-}
+static void error_16(struct error *e) { window_error(e, 4); }
 
 static void pole_error(struct error *e)
 {
@@ -182,14 +152,14 @@ static void track_error(struct error *e)
 
 static const struct kernel kernels[] = {
     {"velocity_window_1", "m/s", MPS, 1.5, 1, setup_1, window_op, error_1,
-     "half LSB + 2^-31 of the gain; " HAND, 0, NULL},
+        "half LSB + 2^-31 of the gain; " HAND, 0, NULL},
     {"velocity_window_2", "m/s", MPS, 1.5, 1, setup_2, window_op, error_2, "as above", 0, NULL},
     {"velocity_window_16", "m/s", MPS, 1.5, 1, setup_16, window_op, error_16, "as above", 0, NULL},
     {"velocity_pole", "m/s", MPS, 4, 1, setup_1, pole_op, pole_error,
-     "1.5 + coefficient rounded at 2^-32; " HAND, 0, NULL},
+        "1.5 + coefficient rounded at 2^-32; " HAND, 0, NULL},
     {"velocity_foaw_16", "m/s", MPS, 1.5, 1, setup_1, foaw_op, foaw_error,
-     "window chosen exactly, then as window; " HAND, 0, NULL},
+        "window chosen exactly, then as window; " HAND, 0, NULL},
     {"velocity_track", "m/s", MPS, 64, 1, setup_1, track_op, track_error,
-     "coefficients rounded at 2^-32, jumps of 2000 counts; " HAND, 0, NULL},
+        "coefficients rounded at 2^-32, jumps of 2000 counts; " HAND, 0, NULL},
 };
 const struct kernel_group estimate_group = {kernels, sizeof kernels / sizeof kernels[0]};

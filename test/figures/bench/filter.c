@@ -48,10 +48,7 @@ static void high_setup(void)
     inputs();
 }
 
-static void filter_op(uint32_t i)
-{
-    exh_filter_step(state, &cfg, &x[i], y, CHANNELS);
-}
+static void filter_op(uint32_t i) { exh_filter_step(state, &cfg, &x[i], y, CHANNELS); }
 
 static void quantizer_setup(void)
 {
@@ -147,14 +144,15 @@ static void quantizer_error(struct error *e)
 
 static const struct kernel kernels[] = {
     {"filter_2_x22", "FS", 1 / 2147483648.0, 2.5, 1, second_setup, filter_op, second_error,
-     "half an LSB of input and output, states' words; steps, sines and noise at fc/fs 0.1, 0.01, "
-     "0.001, 0.0001",
-     708, IDSP},
+        "half an LSB of input and output, states' words; steps, sines and noise at fc/fs 0.1, "
+        "0.01, "
+        "0.001, 0.0001",
+        708, IDSP},
     {"filter_1_x22", "FS", 1 / 2147483648.0, 2.5, 1, first_setup, filter_op, first_error,
-     "as above", 0, NULL},
+        "as above", 0, NULL},
     {"filter_2_high_x22", "FS", 1 / 2147483648.0, 4, 1, high_setup, filter_op, high_error,
-     "coefficients rounded at 2^-32; as above at fc/fs 0.12, 0.25, 0.4, 0.45", 0, NULL},
+        "coefficients rounded at 2^-32; as above at fc/fs 0.12, 0.25, 0.4, 0.45", 0, NULL},
     {"quantizer_x22", "code", 1, 1, 1, quantizer_setup, quantizer_op, quantizer_error,
-     "half a code and half the hysteresis of one code; 14 bits", 0, NULL},
+        "half a code and half the hysteresis of one code; 14 bits", 0, NULL},
 };
 const struct kernel_group filter_group = {kernels, sizeof kernels / sizeof kernels[0]};

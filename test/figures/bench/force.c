@@ -25,10 +25,7 @@ static struct law_double in_double;
 static struct law_float in_float;
 static struct force_drift drift;
 
-static double si(int32_t raw, unsigned q)
-{
-    return (double)raw / (double)(UINT64_C(1) << q);
-}
+static double si(int32_t raw, unsigned q) { return (double)raw / (double)(UINT64_C(1) << q); }
 
 static void start(void)
 {
@@ -45,12 +42,11 @@ static void start(void)
             at_vf[f][i] = (float)at_v[f][i];
         }
     }
-    in_double = (struct law_double){
-        si(p->k_Npm_q10, EXH_Q_K), si(p->b_Nspm_q20, EXH_Q_B), si(p->f0_N_q20, EXH_Q_FORCE),
-        si(path_par.own.q_lim_m_q30, EXH_Q_POS), si(path_par.drive.f_max_N_q20, EXH_Q_FORCE)};
-    in_float =
-        (struct law_float){(float)in_double.k_Npm, (float)in_double.b_Nspm, (float)in_double.f0_N,
-                           (float)in_double.lim_m, (float)in_double.f_max_N};
+    in_double = (struct law_double){si(p->k_Npm_q10, EXH_Q_K), si(p->b_Nspm_q20, EXH_Q_B),
+        si(p->f0_N_q20, EXH_Q_FORCE), si(path_par.own.q_lim_m_q30, EXH_Q_POS),
+        si(path_par.drive.f_max_N_q20, EXH_Q_FORCE)};
+    in_float = (struct law_float){(float)in_double.k_Npm, (float)in_double.b_Nspm,
+        (float)in_double.f0_N, (float)in_double.lim_m, (float)in_double.f_max_N};
     safety = (struct exh_safety){.state = EXH_STATE_RUN, .fingers = 1};
 }
 
@@ -95,15 +91,15 @@ static long double exact_law(const struct exh_contact_par *p, struct exh_contact
     long double f = inward ? p->f0_N_q20 : 0;
     if (past >= 0) {
         f += bench_q((long double)((int64_t)p->k_Npm_q10 * exh_clamp(past, INT32_MIN, INT32_MAX)),
-                     EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE);
+            EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE);
         f += bench_q((long double)((int64_t)p->b_Nspm_q20 * in.vel_mps_q27),
-                     EXH_Q_B + EXH_Q_VEL - EXH_Q_FORCE);
+            EXH_Q_B + EXH_Q_VEL - EXH_Q_FORCE);
     }
     return f;
 }
 
-static long double law_off(struct exh_contact *s, const struct exh_contact_par *p,
-                           struct exh_contact_in in)
+static long double law_off(
+    struct exh_contact *s, const struct exh_contact_par *p, struct exh_contact_in in)
 {
     struct exh_force_ledger l;
     exh_contact_step(s, p, in, &l);
@@ -170,8 +166,8 @@ static void float_error(struct error *e)
     start();
     for (uint32_t i = 0; i < HOUR; i++) {
         const struct exh_contact_in in = hour_in(i);
-        const float f = law_float(&in_float, (float)si(in.pos_m_q30, EXH_Q_POS),
-                                  (float)si(in.vel_mps_q27, EXH_Q_VEL));
+        const float f = law_float(
+            &in_float, (float)si(in.pos_m_q30, EXH_Q_POS), (float)si(in.vel_mps_q27, EXH_Q_VEL));
         const long double off = (long double)f * (1 << EXH_Q_FORCE) - exact_plain(in);
         error_add(e, off);
         note(&drift.law_float, i, off);
@@ -194,16 +190,13 @@ static void law_force_error(struct error *e)
         struct exh_force_ledger l;
         exh_contact_step(&contact[0], &path_par.contact, in, &l);
         exh_drive_force_step(&drive[0], &path_cfg.drive, &open, &l);
-        error_add(e,
-                  l.force_N_q20 - bench_clamp(exact_law(&path_par.contact, in, contact[0].inward),
-                                              0, most_q20()));
+        error_add(
+            e, l.force_N_q20 -
+                   bench_clamp(exact_law(&path_par.contact, in, contact[0].inward), 0, most_q20()));
     }
 }
 
-struct force_drift force_drift(void)
-{
-    return drift;
-}
+struct force_drift force_drift(void) { return drift; }
 
 /* --- limits --- */
 
@@ -335,8 +328,8 @@ static void safety_error(struct error *e)
     start();
     for (int i = 0; i < CASES; i++) {
         const uint32_t din = bench_in(0, 3) ? PATH_HEALTHY : (uint32_t)bench_in(0, 0x1FF);
-        const struct exh_safety_in box = {din,          0, (uint32_t)bench_in(0, 2),
-                                          EXH_CMD_NONE, 1, EXH_ARM_ALL};
+        const struct exh_safety_in box = {
+            din, 0, (uint32_t)bench_in(0, 2), EXH_CMD_NONE, 1, EXH_ARM_ALL};
         const uint32_t want = (din & EXH_DIN_ESTOP ? 0u : EXH_FAULT_ESTOP) |
                               (din & EXH_DIN_DEADMAN ? 0u : EXH_FAULT_DEADMAN) |
                               (din & EXH_DIN_WATCHDOG ? 0u : EXH_FAULT_WATCHDOG) |
@@ -358,25 +351,25 @@ static void safety_error(struct error *e)
 
 static const struct kernel kernels[] = {
     {"contact_law_x5", "N", NEWTON, 1, 1, start, law_op, law_error,
-     "contact.h; 1 h of 2 kHz ticks, then random gains at full scale", 104,
-     "integer Q31 law with contact test, F0, clamp" HARNESS},
+        "contact.h; 1 h of 2 kHz ticks, then random gains at full scale", 104,
+        "integer Q31 law with contact test, F0, clamp" HARNESS},
     {"law_and_force_x5", "N", NEWTON, 1, 1, start, law_force_op, law_force_error,
-     "contact.h, limits exact; 1 h of 2 kHz ticks", 123,
-     "CMSIS-DSP arm_pid_q31, Ki = 0: no contact test, F0 or clamp" HARNESS},
+        "contact.h, limits exact; 1 h of 2 kHz ticks", 123,
+        "CMSIS-DSP arm_pid_q31, Ki = 0: no contact test, F0 or clamp" HARNESS},
     {"plain_double_law_x5", "N", NEWTON, 1, 1, start, double_op, double_error,
-     "for the ratio: contact test, F0, clamp; the same hour; exact, as inputs have few bits", 97,
-     "double law" HARNESS},
+        "for the ratio: contact test, F0, clamp; the same hour; exact, as inputs have few bits", 97,
+        "double law" HARNESS},
     {"plain_float_law_x5", "N", NEWTON, 64, 1, start, float_op, float_error,
-     "for the ratio: contact test, F0, clamp; the same hour", 96, "float law" HARNESS},
+        "for the ratio: contact test, F0, clamp; the same hour", 96, "float law" HARNESS},
     {"drive_force", "N", NEWTON, 1, 1, force_setup, force_op, force_error,
-     "one step; random slew limits, full-scale force", 0, NULL},
+        "one step; random slew limits, full-scale force", 0, NULL},
     {"drive_current", "A", AMPERE, 2.5, 1, force_setup, current_op, current_error,
-     "table 1 LSB, fold-back 2.5; the I2t budget used up and regained 25 times", 0, NULL},
+        "table 1 LSB, fold-back 2.5; the I2t budget used up and regained 25 times", 0, NULL},
     {"drive_monitor_N", "N", NEWTON, 1.04, 1, force_setup, monitor_op, monitor_error,
-     "table 1 LSB + half an LSB of current; every code", 0, NULL},
+        "table 1 LSB + half an LSB of current; every code", 0, NULL},
     {"gate_1", "code", 1, 0.5, 1, force_setup, gate_op, gate_error,
-     "one rounding; full-scale currents", 0, NULL},
+        "one rounding; full-scale currents", 0, NULL},
     {"safety_step", "wrong", 1, 0, 1, force_setup, safety_op, safety_error,
-     "state and cause; every input", 0, NULL},
+        "state and cause; every input", 0, NULL},
 };
 const struct kernel_group force_group = {kernels, sizeof kernels / sizeof kernels[0]};

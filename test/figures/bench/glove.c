@@ -33,7 +33,7 @@ static struct exh_glove_par defaults(void)
 {
     const struct exh_signal *r = exh_glove_rows;
     const struct exh_glove_par par = {r[0].dflt, r[1].dflt, r[2].dflt, r[3].dflt, r[4].dflt,
-                                      r[5].dflt, r[6].dflt, r[7].dflt, r[8].dflt};
+        r[5].dflt, r[6].dflt, r[7].dflt, r[8].dflt};
     return par;
 }
 
@@ -41,8 +41,8 @@ static struct exh_glove_par defaults(void)
 static void frame(struct exh_glove_in *to)
 {
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
-        to->raw[i] = (int16_t)bench_in(exh_glove_cal_default.sensor[i].low_raw,
-                                       exh_glove_cal_default.sensor[i].high_raw);
+        to->raw[i] = (int16_t)bench_in(
+            exh_glove_cal_default.sensor[i].low_raw, exh_glove_cal_default.sensor[i].high_raw);
     }
 }
 
@@ -108,10 +108,10 @@ static void line_error(struct error *e)
 
 static const struct kernel kernels[] = {
     {"glove_step", "turn", TURN, 1.75, 1, step_setup, step_op, line_error,
-     "three roundings, two of them at a share: lines and cross terms of any codes in the span; "
-     "22 channels with low-pass and quantizer",
-     0, NULL},
+        "three roundings, two of them at a share: lines and cross terms of any codes in the span; "
+        "22 channels with low-pass and quantizer",
+        0, NULL},
     {"glove_step_plain", "turn", TURN, 1.75, 1, plain_setup, step_op, line_error,
-     "the same without low-pass", 0, NULL},
+        "the same without low-pass", 0, NULL},
 };
 const struct kernel_group glove_group = {kernels, sizeof kernels / sizeof kernels[0]};

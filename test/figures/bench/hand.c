@@ -24,8 +24,8 @@ static void any_posture(int32_t q[EXH_HAND_JOINTS])
 
 static void setup(void)
 {
-    const struct exh_hand_par par = {exh_hand_rows[0].dflt, exh_hand_rows[1].dflt,
-                                     exh_hand_rows[2].dflt, exh_hand_rows[3].dflt};
+    const struct exh_hand_par par = {
+        exh_hand_rows[0].dflt, exh_hand_rows[1].dflt, exh_hand_rows[2].dflt, exh_hand_rows[3].dflt};
     bench_seed();
     for (uint32_t f = 0; f < EXH_FINGERS; f++) {
         EXH_ASSERT(exh_hand_setup(&finger[f], &exh_hit2_bones[f], &par) == 0);
@@ -117,8 +117,8 @@ static struct exact exact_of(const struct exh_hand_finger *f, const int32_t q[EX
     return y;
 }
 
-static void add_vec(struct error *e, const struct exh_vec3 *got, const long double want[3],
-                    long double one)
+static void add_vec(
+    struct error *e, const struct exh_vec3 *got, const long double want[3], long double one)
 {
     error_add(e, got->x - want[0] * one);
     error_add(e, got->y - want[1] * one);
@@ -182,17 +182,18 @@ static void slope_error(struct error *e)
 
 static const struct kernel kernels[] = {
     {"sincos", "", SCALED(30), 2.25, 1, setup, sincos_op, sincos_error,
-     "angle.h; both of 10^6 angles (all 2^32 in make stress)", 56,
-     "both, glibc sincosf, 0.032 ppm; 51 idsp cossin, 8.9 ppm; 90 on i686 by two probes"},
+        "angle.h; both of 10^6 angles (all 2^32 in make stress)", 56,
+        "both, glibc sincosf, 0.032 ppm; 51 idsp cossin, 8.9 ppm; 90 on i686 by two probes"},
     {"hand_joints_x5", "turn", SCALED(32), 0.5, 1, setup, joints_op, joints_error,
-     "one rounding; random sensors, five fingers", 0, NULL},
+        "one rounding; random sensors, five fingers", 0, NULL},
     {"hand_tip", "m", SCALED(30), 2.15, 1, setup, tip_op, tip_error,
-     "hand.h; 10^6 postures, half within a hand's limits, half any angles", 0, NULL},
+        "hand.h; 10^6 postures, half within a hand's limits, half any angles", 0, NULL},
     {"hand_tip_x5", "m", SCALED(30), 2.15, 1, setup, tips_op, tip_error,
-     "hand.h; as above, five fingers an op", 1281,
-     "tips of five fingers in Q31 by CMSIS sine tables, 3.7 um; float 955, 0.023 um; on i686 2474, "
-     "1401"},
+        "hand.h; as above, five fingers an op", 1281,
+        "tips of five fingers in Q31 by CMSIS sine tables, 3.7 um; float 955, 0.023 um; on i686 "
+        "2474, "
+        "1401"},
     {"hand_tip_slope", "m/m", SCALED(24), 4, 1, setup, slope_op, slope_error,
-     "hand.h; 250000 postures as above, default arms", 0, NULL},
+        "hand.h; 250000 postures as above, default arms", 0, NULL},
 };
 const struct kernel_group hand_group = {kernels, sizeof kernels / sizeof kernels[0]};

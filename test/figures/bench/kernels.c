@@ -15,9 +15,9 @@
 #define BENCH_FLAGS "flags not told"
 #endif
 
-static const struct kernel_group *const groups[] = {
-    &number_group,     &estimate_group,  &force_group, &filter_group, &glove_group,  &hand_group,
-    &precontact_group, &passivity_group, &scene_group, &modbus_group, &params_group, &box_group};
+static const struct kernel_group *const groups[] = {&number_group, &estimate_group, &force_group,
+    &filter_group, &glove_group, &hand_group, &precontact_group, &passivity_group, &scene_group,
+    &modbus_group, &params_group, &box_group};
 
 static void for_each(void (*visit)(const struct kernel *k))
 {
@@ -33,8 +33,8 @@ static void print_error(const struct kernel *k)
     k->error(&e);
     rms = sqrt((double)(e.sum_squares / (long double)(e.n ? e.n : 1)));
     printf("%s,%s,%.4g,%.4g,%.4g,%.4g,%g,%llu,%s\n", k->name, k->unit[0] ? k->unit : "-",
-           (double)e.max * k->lsb, rms * k->lsb, (double)e.max, rms, k->bound_lsb,
-           (unsigned long long)e.n, k->why);
+        (double)e.max * k->lsb, rms * k->lsb, (double)e.max, rms, k->bound_lsb,
+        (unsigned long long)e.n, k->why);
 }
 
 static void errors(void)
@@ -44,14 +44,11 @@ static void errors(void)
     d = force_drift();
     printf("# drift over 1 h of 2 kHz ticks, worst error in LSB of force (0.95 uN), first second /"
            " last second: contact_law %.3f / %.3f, plain float law %.1f / %.1f\n",
-           d.law.first_second_lsb, d.law.last_second_lsb, d.law_float.first_second_lsb,
-           d.law_float.last_second_lsb);
+        d.law.first_second_lsb, d.law.last_second_lsb, d.law_float.first_second_lsb,
+        d.law_float.last_second_lsb);
 }
 
-static void empty(uint32_t i)
-{
-    (void)i;
-}
+static void empty(uint32_t i) { (void)i; }
 
 /* One unmeasured round first: it binds symbols and warms the states. */
 static void run(void (*op)(uint32_t i))
@@ -79,10 +76,7 @@ static void print_anchor(const struct kernel *k)
     if (k->source != NULL) { printf("%s,%g,%s\n", k->name, k->anchor, k->source); }
 }
 
-static void anchors(void)
-{
-    for_each(print_anchor);
-}
+static void anchors(void) { for_each(print_anchor); }
 
 static void build(void)
 {

@@ -28,10 +28,7 @@ void error_add(struct error *e, long double lsb)
     if (!(abs <= e->max)) { e->max = abs; }
 }
 
-void bench_seed(void)
-{
-    state = UINT64_C(20130506);
-}
+void bench_seed(void) { state = UINT64_C(20130506); }
 
 uint64_t bench_u64(void)
 {

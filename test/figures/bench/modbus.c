@@ -29,8 +29,8 @@ static struct exh_modbus_rtu line;
 
 static void start(uint8_t function, uint32_t at, uint32_t n)
 {
-    const uint8_t head[6] = {function, (uint8_t)(at >> 8), (uint8_t)(at & 0xFFu),
-                             0,        (uint8_t)n,         (uint8_t)(2 * n)};
+    const uint8_t head[6] = {
+        function, (uint8_t)(at >> 8), (uint8_t)(at & 0xFFu), 0, (uint8_t)n, (uint8_t)(2 * n)};
     bench_seed();
     for (uint16_t i = 0; i < ROWS; i++) {
         row[i] = (struct exh_signal){
@@ -42,34 +42,22 @@ static void start(uint8_t function, uint32_t at, uint32_t n)
     for (uint32_t i = 0; i < SIGNALS; i++) { signal[i] = bench_i32(); }
     for (uint32_t i = 0; i < PARAMS; i++) { wanted[i] = bench_i32(); }
     regs = (struct exh_regs){.signals = &out_table,
-                             .signal = signal,
-                             .params = &par_table,
-                             .active = active,
-                             .wanted = wanted,
-                             .staged = staged,
-                             .touched = touched,
-                             .may = EXH_REGS_MAY};
+        .signal = signal,
+        .params = &par_table,
+        .active = active,
+        .wanted = wanted,
+        .staged = staged,
+        .touched = touched,
+        .may = EXH_REGS_MAY};
     EXH_ASSERT(exh_regs_setup(&regs) == 0);
     memset(req, 0, sizeof req);
     memcpy(req, head, sizeof head);
 }
 
-static void start_raw(void)
-{
-    start(4, EXH_REGS_SIGNAL_AT + 2 * 78, READ);
-}
-static void start_float(void)
-{
-    start(4, EXH_REGS_SIGNAL_FLOAT_AT + 2 * 78, READ);
-}
-static void start_staged(void)
-{
-    start(3, EXH_REGS_PARAM_FLOAT_AT + 2 * 350, READ);
-}
-static void start_write(void)
-{
-    start(16, EXH_REGS_PARAM_FLOAT_AT + 2 * 350, WRITE);
-}
+static void start_raw(void) { start(4, EXH_REGS_SIGNAL_AT + 2 * 78, READ); }
+static void start_float(void) { start(4, EXH_REGS_SIGNAL_FLOAT_AT + 2 * 78, READ); }
+static void start_staged(void) { start(3, EXH_REGS_PARAM_FLOAT_AT + 2 * 350, READ); }
+static void start_write(void) { start(16, EXH_REGS_PARAM_FLOAT_AT + 2 * 350, WRITE); }
 
 static void read_op(uint32_t i)
 {
@@ -115,10 +103,7 @@ static void start_numbers(void)
     for (uint32_t i = 0; i < BENCH_OPS; i++) { bits[i] = exh_float_from_raw(bench_i32(), 30); }
 }
 
-static void float_of_op(uint32_t i)
-{
-    bench_sink = exh_float_from_raw(signal[i % SIGNALS], 30);
-}
+static void float_of_op(uint32_t i) { bench_sink = exh_float_from_raw(signal[i % SIGNALS], 30); }
 
 static void float_raw_op(uint32_t i)
 {
@@ -160,25 +145,22 @@ static void float_raw_error(struct error *e)
     }
 }
 
-static void no_error(struct error *e)
-{
-    error_add(e, 0);
-}
+static void no_error(struct error *e) { error_add(e, 0); }
 
 static const struct kernel kernels[] = {
     {"modbus_read_raw", "", 1, 0, READ, start_raw, read_op, no_error,
-     "exact; per register; 124 of a table", 0, NULL},
+        "exact; per register; 124 of a table", 0, NULL},
     {"modbus_read_float", "", 1, 0, READ, start_float, read_op, no_error,
-     "per register; 124 of a table", 0, NULL},
+        "per register; 124 of a table", 0, NULL},
     {"modbus_read_staged", "", 1, 0, READ, start_staged, read_op, no_error,
-     "floats; per register; 124 of the end of 420 parameters", 0, NULL},
+        "floats; per register; 124 of the end of 420 parameters", 0, NULL},
     {"modbus_write_float", "", 1, 0, WRITE, start_write, write_op, no_error,
-     "per register; 122 of them", 0, NULL},
+        "per register; 122 of them", 0, NULL},
     {"modbus_rtu_read_staged", "", 1, 0, READ, start_line, line_op, no_error,
-     "the same with both CRCs; per register", 0, NULL},
+        "the same with both CRCs; per register", 0, NULL},
     {"float_of", "", 1, 0, 1, start_numbers, float_of_op, float_of_error,
-     "modbus.h: the host's bits, any fraction", 0, NULL},
+        "modbus.h: the host's bits, any fraction", 0, NULL},
     {"float_raw", "", 1, 0, 1, start_numbers, float_raw_op, float_raw_error,
-     "modbus.h: nearest, of two the even one; any bits, any fraction", 0, NULL},
+        "modbus.h: nearest, of two the even one; any bits, any fraction", 0, NULL},
 };
 const struct kernel_group modbus_group = {kernels, sizeof kernels / sizeof kernels[0]};

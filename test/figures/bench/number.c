@@ -33,10 +33,7 @@ static void setup_numbers(void)
 
 static const struct exh_gain third = {1431655765, 32}; /* 1/3: never a power of two */
 
-static void gain_op(uint32_t i)
-{
-    bench_sink = exh_gain_mul(third, x[i]);
-}
+static void gain_op(uint32_t i) { bench_sink = exh_gain_mul(third, x[i]); }
 
 /* Gains num/den over 0.5..1, so that the result may fill 32 bits. */
 static void gain_error(struct error *e)
@@ -47,15 +44,12 @@ static void gain_error(struct error *e)
         const int32_t in = bench_i32();
         struct exh_gain g;
         if (exh_gain_set(&g, (uint64_t)(uint32_t)num, (uint64_t)(uint32_t)den) < 0) { continue; }
-        error_add(e, (long double)exh_gain_mul(g, in) -
-                         (long double)((int64_t)in * num) / (long double)den);
+        error_add(e,
+            (long double)exh_gain_mul(g, in) - (long double)((int64_t)in * num) / (long double)den);
     }
 }
 
-static void mul_shr_op(uint32_t i)
-{
-    bench_sink = exh_mul_shr(x[i], y[i], 20);
-}
+static void mul_shr_op(uint32_t i) { bench_sink = exh_mul_shr(x[i], y[i], 20); }
 
 static void mul_shr_error(struct error *e)
 {
@@ -67,10 +61,7 @@ static void mul_shr_error(struct error *e)
     }
 }
 
-static void mul64_op(uint32_t i)
-{
-    bench_sink = exh_mul64_q31(wide_x[i], y[i]);
-}
+static void mul64_op(uint32_t i) { bench_sink = exh_mul64_q31(wide_x[i], y[i]); }
 
 static void mul64_error(struct error *e)
 {
@@ -93,10 +84,7 @@ static void crc_setup(void)
     for (uint32_t i = 0; i < sizeof block; i++) { block[i] = (uint8_t)(bench_u64() & 0xFF); }
 }
 
-static void crc_op(uint32_t i)
-{
-    bench_sink = exh_crc32(0, block + i, 64);
-}
+static void crc_op(uint32_t i) { bench_sink = exh_crc32(0, block + i, 64); }
 
 static uint32_t crc_bit_by_bit(const uint8_t *p, uint32_t len)
 {
@@ -120,8 +108,8 @@ static void crc_error(struct error *e)
 /* A frame of the drop scene: one finger's inputs and outputs and nine signals. */
 #define FRAME_SIGNALS 9u
 
-static void frame_fields(struct exh_bytes *c, struct exh_drive_in *in, struct exh_drive_out *out,
-                         int32_t *signal)
+static void frame_fields(
+    struct exh_bytes *c, struct exh_drive_in *in, struct exh_drive_out *out, int32_t *signal)
 {
     exh_drive_in_serialize(c, in, 1);
     exh_drive_out_serialize(c, out, 1);
@@ -140,10 +128,7 @@ static uint32_t write_frame(uint32_t tick, const int32_t *from)
     return exh_record_end(&c);
 }
 
-static void frame_op(uint32_t i)
-{
-    bench_sink = write_frame(i, &x[i % (BENCH_OPS - 12)]);
-}
+static void frame_op(uint32_t i) { bench_sink = write_frame(i, &x[i % (BENCH_OPS - 12)]); }
 
 static void frame_error(struct error *e)
 {
@@ -202,15 +187,9 @@ static void words_setup(void)
     }
 }
 
-static const uint8_t *stretch(uint32_t i)
-{
-    return &ab[i * LEGAL % (BENCH_OPS * 8)];
-}
+static const uint8_t *stretch(uint32_t i) { return &ab[i * LEGAL % (BENCH_OPS * 8)]; }
 
-static void lines_run_op(uint32_t i)
-{
-    exh_quad_ab_run(&lines, &exh_quad_x4, stretch(i), LEGAL);
-}
+static void lines_run_op(uint32_t i) { exh_quad_ab_run(&lines, &exh_quad_x4, stretch(i), LEGAL); }
 
 static void lines_step_op(uint32_t i)
 {
@@ -298,15 +277,12 @@ static void extend_error(struct error *e)
     exh_quad_step(&counter, &encoder_cfg, 0);
     for (int i = 0; i < CASES; i++) {
         at += (uint32_t)bench_in(-(1 << 23) + 1, (1 << 23) - 1);
-        error_add(e, (long double)exh_quad_step(&counter, &encoder_cfg, at & 0xFFFFFF) -
-                         exh_from_u32(at));
+        error_add(e,
+            (long double)exh_quad_step(&counter, &encoder_cfg, at & 0xFFFFFF) - exh_from_u32(at));
     }
 }
 
-static void pos_op(uint32_t i)
-{
-    bench_sink = exh_quad_pos_m_q30(&encoder, x[i]);
-}
+static void pos_op(uint32_t i) { bench_sink = exh_quad_pos_m_q30(&encoder, x[i]); }
 
 static void pos_error(struct error *e)
 {
@@ -381,15 +357,9 @@ static void table_error(struct error *e, unsigned n)
     }
 }
 
-static void table2_error(struct error *e)
-{
-    table_error(e, 2);
-}
+static void table2_error(struct error *e) { table_error(e, 2); }
 
-static void table16_error(struct error *e)
-{
-    table_error(e, 16);
-}
+static void table16_error(struct error *e) { table_error(e, 16); }
 
 #define SCALED(q) (1.0 / (double)(UINT64_C(1) << (q)))
 #define QUAD_PACKED_PEER \
@@ -398,30 +368,30 @@ static void table16_error(struct error *e)
 
 static const struct kernel kernels[] = {
     {"mul_shr", "", 1, 0.5, 1, setup_numbers, mul_shr_op, mul_shr_error,
-     "one rounding; all of int32_t and every shift", 0, NULL},
+        "one rounding; all of int32_t and every shift", 0, NULL},
     {"gain_mul", "", 1, 1.5, 1, setup_numbers, gain_op, gain_error,
-     "one rounding + 2^-31 of the result; random ratios 0.5..1, full scale", 0, NULL},
+        "one rounding + 2^-31 of the result; random ratios 0.5..1, full scale", 0, NULL},
     {"mul64_q31", "", 1, 0.5, 1, setup_numbers, mul64_op, mul64_error,
-     "one rounding; all of int64_t", 0, NULL},
+        "one rounding; all of int64_t", 0, NULL},
     {"crc32_64B", "wrong", 1, 0, 1, crc_setup, crc_op, crc_error,
-     "equal to the bit-by-bit definition; 0..64 random bytes", 0, NULL},
+        "equal to the bit-by-bit definition; 0..64 random bytes", 0, NULL},
     {"record_frame", "wrong", 1, 0, 1, setup_numbers, frame_op, frame_error,
-     "reads back as written; the drop scene's frame", 0, NULL},
+        "reads back as written; the drop scene's frame", 0, NULL},
     {"quad_ab_run_x4", "count", 1, 0, LEGAL, lines_setup, lines_run_op, lines_run_error,
-     "exact; 64 samples a run; legal walk of 8192, then 254 double steps, all flagged", 14.2,
-     QUAD_PEER},
+        "exact; 64 samples a run; legal walk of 8192, then 254 double steps, all flagged", 14.2,
+        QUAD_PEER},
     {"quad_ab_step_x4", "count", 1, 0, LEGAL, lines_setup, lines_step_op, lines_step_error,
-     "exact; one sample a call; the same samples", 0, NULL},
+        "exact; one sample a call; the same samples", 0, NULL},
     {"quad_ab_word", "count", 1, 0, LEGAL, words_setup, lines_word_op, lines_word_error,
-     "exact; 64 samples a word; legal walk of 8192, then 256 double steps, all flagged", 2.0,
-     QUAD_PACKED_PEER},
+        "exact; 64 samples a word; legal walk of 8192, then 256 double steps, all flagged", 2.0,
+        QUAD_PACKED_PEER},
     {"quad_extend", "count", 1, 0, 1, extend_setup, extend_op, extend_error,
-     "exact; 24-bit counter, moves up to half its width", 0, NULL},
+        "exact; 24-bit counter, moves up to half its width", 0, NULL},
     {"quad_pos", "m", SCALED(EXH_Q_POS), 0.5, 1, setup_numbers, pos_op, pos_error,
-     "one rounding; steps 1..488 um, full-scale counts", 0, NULL},
+        "one rounding; steps 1..488 um, full-scale counts", 0, NULL},
     {"table_at_2", "", 1, 1, 1, table2_setup, table2_op, table2_error,
-     "drive.h; random slopes, all of int32_t", 0, NULL},
+        "drive.h; random slopes, all of int32_t", 0, NULL},
     {"table_at_16", "", 1, 1, 1, table16_setup, table16_op, table16_error,
-     "drive.h; random slopes, all of int32_t", 0, NULL},
+        "drive.h; random slopes, all of int32_t", 0, NULL},
 };
 const struct kernel_group number_group = {kernels, sizeof kernels / sizeof kernels[0]};

@@ -84,20 +84,17 @@ static void led_op(uint32_t i)
     bench_sink = p.moving;
 }
 
-static void no_error(struct error *e)
-{
-    error_add(e, 0);
-}
+static void no_error(struct error *e) { error_add(e, 0); }
 
 static const struct kernel kernels[] = {
     {"params_stage", "", 1, 0, 1, start, stage_op, no_error, "exact; one of 208 values", 0, NULL},
     {"params_apply_nothing", "", 1, 0, 1, start, apply_op, no_error,
-     "a tick in which nothing moves", 0, NULL},
+        "a tick in which nothing moves", 0, NULL},
     {"params_apply_staged", "", 1, 0, 1, start, staged_op, no_error,
-     "a tick in which something is new; 208 values", 0, NULL},
+        "a tick in which something is new; 208 values", 0, NULL},
     {"params_apply_moving", "", 1, 0, 1, start_moving, apply_op, no_error,
-     "a tick in which one is on its way; 20 slewed values", 0, NULL},
+        "a tick in which one is on its way; 20 slewed values", 0, NULL},
     {"gains_step", "", 1, 0, 1, start_led, led_op, no_error,
-     "five walls on their way, 8 knots; every tick of a scene with a rule", 0, NULL},
+        "five walls on their way, 8 knots; every tick of a scene with a rule", 0, NULL},
 };
 const struct kernel_group params_group = {kernels, sizeof kernels / sizeof kernels[0]};

@@ -21,7 +21,7 @@ static void start(void)
     ledger = (struct exh_force_ledger){.spring_N_q20 = 20 << EXH_Q_FORCE};
     EXH_ASSERT(exh_table_invert(held, path_cfg.calib.force_to_cur, 2) == 0);
     EXH_ASSERT(exh_passivity_setup(&cfg, &par, &path_cfg.drive, (struct exh_table){held, 2}, scale,
-                                   EXH_Q(3, 1, EXH_Q_VEL)) == 0);
+                   EXH_Q(3, 1, EXH_Q_VEL)) == 0);
 }
 
 /* In and out of a wall half-way, at 1.5 A. */
@@ -55,6 +55,6 @@ static void error(struct error *e)
 
 static const struct kernel kernels[] = {
     {"passivity", "N", 1.0 / (1 << EXH_Q_FORCE), 3, 1, start, op, error,
-     "passivity.h; energy owed, 0 to twice what may be", 0, NULL},
+        "passivity.h; energy owed, 0 to twice what may be", 0, NULL},
 };
 const struct kernel_group passivity_group = {kernels, sizeof kernels / sizeof kernels[0]};

@@ -32,6 +32,5 @@ struct exh_contact_in path_in(uint32_t i)
     const int64_t top_q30 = EXH_Q(280, 1000, EXH_Q_POS);
     const int64_t slope_q27 = EXH_Q(280 * 1000, 512 * 1000, EXH_Q_VEL);
     return (struct exh_contact_in){(int32_t)(top_q30 * at * (1024 - at) >> 20),
-                                   (int32_t)(slope_q27 * (1024 - 2 * at) / 1024),
-                                   path_par.own.q_lim_m_q30};
+        (int32_t)(slope_q27 * (1024 - 2 * at) / 1024), path_par.own.q_lim_m_q30};
 }

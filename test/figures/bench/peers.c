@@ -49,8 +49,8 @@ long double peer_round(long double x, unsigned q)
 static struct butterworth design(uint32_t ticks)
 {
     const long double g = tanl(PI / ticks), k = sqrtl(2), d = 1 + g * (g + k);
-    const struct butterworth f = {ticks,     g * g / d,           2 * g * g / d,
-                                  g * g / d, 2 * (g * g - 1) / d, (1 + g * (g - k)) / d};
+    const struct butterworth f = {
+        ticks, g * g / d, 2 * g * g / d, g * g / d, 2 * (g * g - 1) / d, (1 + g * (g - k)) / d};
     return f;
 }
 
@@ -133,7 +133,7 @@ static void print_errors(const struct filter_peer *p)
     printf("%s", p->name);
     for (uint32_t ticks = 10; ticks <= 10000; ticks *= 10) {
         printf(",%.2g,%.2g,%.2g", worst_at_rest(p, ticks), rms_of_step(p, ticks),
-               rms_of_sine(p, ticks));
+            rms_of_sine(p, ticks));
     }
     printf(",%d\n", latches(p));
 }
@@ -151,15 +151,12 @@ static void print_sine(const struct sine_peer *p)
         error_add(&e, 1e6L * (c - cosl(a)));
     }
     printf("%s,%.3g,%.3g,%u\n", p->name, (double)e.max,
-           (double)sqrtl(e.sum_squares / (long double)e.n), (unsigned)p->table_B);
+        (double)sqrtl(e.sum_squares / (long double)e.n), (unsigned)p->table_B);
 }
 
 /* --- counts --- */
 
-static void empty(uint32_t i)
-{
-    (void)i;
-}
+static void empty(uint32_t i) { (void)i; }
 
 static void run(const char *name, void (*op)(uint32_t i), uint32_t per)
 {

@@ -16,15 +16,9 @@ static union {
     double f64[5];
 } coeff[CHANNELS];
 
-static long double native_q31(long double x)
-{
-    return peer_round(x, 31);
-}
+static long double native_q31(long double x) { return peer_round(x, 31); }
 
-static long double native_q15(long double x)
-{
-    return peer_round(x, 15);
-}
+static long double native_q15(long double x) { return peer_round(x, 15); }
 
 /* Coefficients of 30 fraction bits (postShift 1), the signs of a turned. adjusted: b1 taken
  * so that the gain at 0 Hz is 1 in spite of the rounding, as a careful user would. */
@@ -74,17 +68,14 @@ static q31_t out_q31[BLOCK];
             run(&name[k], &peer_x_q31[i + k], &out_q31[k], 1); \
         } \
     } \
-    static void name##_block(uint32_t i) \
-    { \
-        run(&name[0], &peer_x_q31[i], out_q31, BLOCK); \
-    }
+    static void name##_block(uint32_t i) { run(&name[0], &peer_x_q31[i], out_q31, BLOCK); }
 
 Q31_PEER(df1, arm_biquad_casd_df1_inst_q31, q31_t, arm_biquad_cascade_df1_init_q31,
-         arm_biquad_cascade_df1_q31)
+    arm_biquad_cascade_df1_q31)
 Q31_PEER(fast, arm_biquad_casd_df1_inst_q31, q31_t, arm_biquad_cascade_df1_init_q31,
-         arm_biquad_cascade_df1_fast_q31)
+    arm_biquad_cascade_df1_fast_q31)
 Q31_PEER(wide, arm_biquad_cas_df1_32x64_ins_q31, q63_t, arm_biquad_cas_df1_32x64_init_q31,
-         arm_biquad_cas_df1_32x64_q31)
+    arm_biquad_cas_df1_32x64_q31)
 
 static arm_biquad_casd_df1_inst_q15 q15[CHANNELS];
 static q15_t q15_state[CHANNELS][4], out_q15[BLOCK];
@@ -137,10 +128,7 @@ static void q15_block(uint32_t i)
             start(&name[k], 1, c, name##_state[k]); \
         } \
     } \
-    static long double name##_native(long double x) \
-    { \
-        return (type)x; \
-    } \
+    static long double name##_native(long double x) { return (type)x; } \
     static long double name##_step(long double x) \
     { \
         type in = (type)x, y; \
@@ -153,35 +141,32 @@ static void q15_block(uint32_t i)
             run(&name[k], &peer_x_##bits[i + k], &name##_out[k], 1); \
         } \
     } \
-    static void name##_block(uint32_t i) \
-    { \
-        run(&name[0], &peer_x_##bits[i], name##_out, BLOCK); \
-    }
+    static void name##_block(uint32_t i) { run(&name[0], &peer_x_##bits[i], name##_out, BLOCK); }
 
 FLOAT_PEER(f32, float, f32, arm_biquad_cascade_df2T_instance_f32, arm_biquad_cascade_df2T_init_f32,
-           arm_biquad_cascade_df2T_f32)
+    arm_biquad_cascade_df2T_f32)
 FLOAT_PEER(f64, double, f64, arm_biquad_cascade_df2T_instance_f64, arm_biquad_cascade_df2T_init_f64,
-           arm_biquad_cascade_df2T_f64)
+    arm_biquad_cascade_df2T_f64)
 
 static const struct filter_peer filters[] = {
     {"CMSIS df1_q31", df1_setup, native_q31, df1_step, df1_tick, df1_block,
-     sizeof df1[0] + sizeof df1_state[0] + 5 * sizeof(q31_t)},
+        sizeof df1[0] + sizeof df1_state[0] + 5 * sizeof(q31_t)},
     {"CMSIS df1_q31 b1 adj.", df1_adjusted, native_q31, df1_step, df1_tick, df1_block,
-     sizeof df1[0] + sizeof df1_state[0] + 5 * sizeof(q31_t)},
+        sizeof df1[0] + sizeof df1_state[0] + 5 * sizeof(q31_t)},
     {"CMSIS df1_fast_q31", fast_setup, native_q31, fast_step, fast_tick, fast_block,
-     sizeof fast[0] + sizeof fast_state[0] + 5 * sizeof(q31_t)},
+        sizeof fast[0] + sizeof fast_state[0] + 5 * sizeof(q31_t)},
     {"CMSIS fast b1 adj.", fast_adjusted, native_q31, fast_step, fast_tick, fast_block,
-     sizeof fast[0] + sizeof fast_state[0] + 5 * sizeof(q31_t)},
+        sizeof fast[0] + sizeof fast_state[0] + 5 * sizeof(q31_t)},
     {"CMSIS df1_32x64_q31", wide_setup, native_q31, wide_step, wide_tick, wide_block,
-     sizeof wide[0] + sizeof wide_state[0] + 5 * sizeof(q31_t)},
+        sizeof wide[0] + sizeof wide_state[0] + 5 * sizeof(q31_t)},
     {"CMSIS 32x64 b1 adj.", wide_adjusted, native_q31, wide_step, wide_tick, wide_block,
-     sizeof wide[0] + sizeof wide_state[0] + 5 * sizeof(q31_t)},
+        sizeof wide[0] + sizeof wide_state[0] + 5 * sizeof(q31_t)},
     {"CMSIS df1_q15", q15_setup, native_q15, q15_step, q15_tick, q15_block,
-     sizeof q15[0] + sizeof q15_state[0] + 6 * sizeof(q15_t)},
+        sizeof q15[0] + sizeof q15_state[0] + 6 * sizeof(q15_t)},
     {"CMSIS df2T_f32", f32_setup, f32_native, f32_step, f32_tick, f32_block,
-     sizeof f32[0] + sizeof f32_state[0] + 5 * sizeof(float)},
+        sizeof f32[0] + sizeof f32_state[0] + 5 * sizeof(float)},
     {"CMSIS df2T_f64", f64_setup, f64_native, f64_step, f64_tick, f64_block,
-     sizeof f64[0] + sizeof f64_state[0] + 5 * sizeof(double)},
+        sizeof f64[0] + sizeof f64_state[0] + 5 * sizeof(double)},
 };
 
 /* --- sines: arm_sin_q31 takes 0 .. 1 as a turn, arm_sin_cos_q31 -1 .. 1 as half turns --- */
@@ -219,5 +204,5 @@ static const struct sine_peer sines[] = {
     {"CMSIS sin_cos_q31", pair, pair_op, 513 * 4},
 };
 
-const struct peer_group cmsis_peers = {filters, sizeof filters / sizeof filters[0], sines,
-                                       sizeof sines / sizeof sines[0]};
+const struct peer_group cmsis_peers = {
+    filters, sizeof filters / sizeof filters[0], sines, sizeof sines / sizeof sines[0]};

@@ -11,10 +11,7 @@ static struct {
 } biquad[CHANNELS];
 static fix16_t in[BENCH_OPS + BLOCK], out[BLOCK];
 
-static long double native(long double x)
-{
-    return peer_round(x, FULL_BITS);
-}
+static long double native(long double x) { return peer_round(x, FULL_BITS); }
 
 static void setup(const struct butterworth *f)
 {
@@ -100,5 +97,5 @@ static const struct sine_peer sines[] = {
     {"libfixmath 205 KB table", table, table_op, FIXMATH_LUT_B},
 };
 
-const struct peer_group fixmath_peers = {filters, sizeof filters / sizeof filters[0], sines,
-                                         sizeof sines / sizeof sines[0]};
+const struct peer_group fixmath_peers = {
+    filters, sizeof filters / sizeof filters[0], sines, sizeof sines / sizeof sines[0]};

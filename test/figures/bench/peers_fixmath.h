@@ -13,10 +13,7 @@ fix16_t fixmath_lut_sin(fix16_t rad);
 fix16_t fixmath_lut_cos(fix16_t rad);
 #define FIXMATH_LUT_B (102688u * 2)
 
-static inline fix16_t fixmath_of(long double x)
-{
-    return (fix16_t)lrintl(x * 65536);
-}
+static inline fix16_t fixmath_of(long double x) { return (fix16_t)lrintl(x * 65536); }
 
 /* A binary angle, 2^32 a turn, in radians to the nearest. */
 static inline fix16_t fixmath_rad(int32_t turn_q32)

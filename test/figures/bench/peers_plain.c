@@ -6,10 +6,7 @@
 
 #include <math.h>
 
-static long double native_q31(long double x)
-{
-    return peer_round(x, 31);
-}
+static long double native_q31(long double x) { return peer_round(x, 31); }
 
 /* --- ours --- */
 
@@ -33,10 +30,7 @@ static long double ours_step(long double x)
     return y / 2147483648.0L;
 }
 
-static void ours_tick(uint32_t i)
-{
-    exh_filter_step(state, &cfg, &peer_x_q31[i], y_q31, CHANNELS);
-}
+static void ours_tick(uint32_t i) { exh_filter_step(state, &cfg, &peer_x_q31[i], y_q31, CHANNELS); }
 
 static void ours_block(uint32_t i)
 {
@@ -116,14 +110,8 @@ static void float_sine_op(uint32_t i)
             type##_biquad[k].s1 = type##_biquad[k].s2 = 0; \
         } \
     } \
-    static long double type##_native(long double x) \
-    { \
-        return (type)x; \
-    } \
-    static long double type##_step(long double x) \
-    { \
-        return type##_one(0, (type)x); \
-    } \
+    static long double type##_native(long double x) { return (type)x; } \
+    static long double type##_step(long double x) { return type##_one(0, (type)x); } \
     static void type##_tick(uint32_t i) \
     { \
         for (uint32_t k = 0; k < CHANNELS; k++) { type##_out[k] = type##_one(k, in[i + k]); } \
@@ -139,13 +127,13 @@ PLAIN(double, peer_x_f64)
 static const struct filter_peer filters[] = {
     {"exhand", ours_setup, native_q31, ours_step, ours_tick, ours_block, sizeof state[0]},
     {"plain double DF2T", double_setup, double_native, double_step, double_tick, double_block,
-     sizeof double_biquad[0]},
+        sizeof double_biquad[0]},
     {"plain float DF2T", float_setup, float_native, float_step, float_tick, float_block,
-     sizeof float_biquad[0]},
+        sizeof float_biquad[0]},
 };
 static const struct sine_peer sines[] = {{"exhand sincos", ours_sine, ours_sine_op, 0},
-                                         {"libm double sin + cos", double_sine, double_sine_op, 0},
-                                         {"libm float sinf + cosf", float_sine, float_sine_op, 0}};
+    {"libm double sin + cos", double_sine, double_sine_op, 0},
+    {"libm float sinf + cosf", float_sine, float_sine_op, 0}};
 
-const struct peer_group plain_peers = {filters, sizeof filters / sizeof filters[0], sines,
-                                       sizeof sines / sizeof sines[0]};
+const struct peer_group plain_peers = {
+    filters, sizeof filters / sizeof filters[0], sines, sizeof sines / sizeof sines[0]};

@@ -20,10 +20,7 @@ void idsp_sine(int32_t turn, int32_t *cosine, int32_t *sine);
 
 static int32_t out[BLOCK];
 
-static long double native_q31(long double x)
-{
-    return peer_round(x, 31);
-}
+static long double native_q31(long double x) { return peer_round(x, 31); }
 
 /* Coefficients of 30 fraction bits, b1 taken so that the gain at 0 Hz is 1, as a careful user
  * would. */
@@ -52,7 +49,7 @@ BIQUAD(dither)
 static void lowpass_setup(const struct butterworth *f)
 {
     const int32_t k[2] = {(int32_t)lrintl((1 + f->a1 + f->a2) / 4 * 4294967296.0L),
-                          (int32_t)lrintl((f->a2 - f->a1 - 3) / 4 * 4294967296.0L)};
+        (int32_t)lrintl((f->a2 - f->a1 - 3) / 4 * 4294967296.0L)};
     idsp_lowpass_start(k);
 }
 
@@ -61,10 +58,7 @@ static void lowpass_setup(const struct butterworth *f)
     { \
         return idsp_##name##_step((int32_t)(x * 2147483648.0L)) / 2147483648.0L; \
     } \
-    static void name##_tick(uint32_t i) \
-    { \
-        idsp_##name##_tick(&peer_x_q31[i], out); \
-    } \
+    static void name##_tick(uint32_t i) { idsp_##name##_tick(&peer_x_q31[i], out); } \
     static void name##_block(uint32_t i) \
     { \
         for (uint32_t k = 0; k < BLOCK; k++) { out[k] = idsp_##name##_step(peer_x_q31[i + k]); } \
@@ -94,9 +88,9 @@ static const struct filter_peer filters[] = {
     {"idsp DF1Wide", wide_setup, native_q31, wide_step, wide_tick, wide_block, 48},
     {"idsp DF1Dither", dither_setup, native_q31, dither_step, dither_tick, dither_block, 40},
     {"idsp Lowpass<2> poles matched", lowpass_setup, native_q31, lowpass_step, lowpass_tick,
-     lowpass_block, 24},
+        lowpass_block, 24},
 };
 static const struct sine_peer sines[] = {{"idsp cossin", both, both_op, 512}};
 
-const struct peer_group rust_peers = {filters, sizeof filters / sizeof filters[0], sines,
-                                      sizeof sines / sizeof sines[0]};
+const struct peer_group rust_peers = {
+    filters, sizeof filters / sizeof filters[0], sines, sizeof sines / sizeof sines[0]};

@@ -60,10 +60,10 @@ struct pipe_wall_now {
         int frozen; \
     }; \
     void pipe_wall_##NAME##_start(struct pipe_wall_##NAME *s, const struct pipe_wall_par *p, \
-                                  const struct pipe_wall_now *now); \
+        const struct pipe_wall_now *now); \
     T pipe_wall_##NAME(struct pipe_wall_##NAME *s, int32_t cnt, T lim); \
-    void pipe_glove_##NAME##_start(struct pipe_glove_##NAME *s, const struct pipe_glove_par *p, \
-                                   const int16_t *raw); \
+    void pipe_glove_##NAME##_start( \
+        struct pipe_glove_##NAME *s, const struct pipe_glove_par *p, const int16_t *raw); \
     void pipe_glove_##NAME(struct pipe_glove_##NAME *s, const int16_t *raw); \
     void pipe_plane_##NAME##_start(struct pipe_plane_##NAME *s, const struct pipe_plane_par *p); \
     void pipe_plane_##NAME(struct pipe_plane_##NAME *s, const T tip[3], T q, int touching);

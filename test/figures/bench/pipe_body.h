@@ -3,8 +3,8 @@
 
 /* --- a finger --- */
 
-void N2(wall, start)(struct N(wall) * s, const struct pipe_wall_par *p,
-                     const struct pipe_wall_now *now)
+void N2(wall, start)(
+    struct N(wall) * s, const struct pipe_wall_par *p, const struct pipe_wall_now *now)
 {
     const struct N(wall) zero = {0};
     *s = zero;

@@ -31,10 +31,7 @@ static struct {
     double n[3], point[3], tip[FINGERS][BENCH_OPS][3], q[FINGERS][BENCH_OPS], lim[FINGERS];
 } dbl;
 
-static double si(int32_t raw)
-{
-    return (double)raw / (double)(1 << EXH_Q_POS);
-}
+static double si(int32_t raw) { return (double)raw / (double)(1 << EXH_Q_POS); }
 
 /* 64 mm down and up again over 1024 ticks, onto (0.6, 0, 0.8). */
 static void fill(void)
@@ -46,10 +43,7 @@ static void fill(void)
             const int32_t off = MM(60) - MM(70) / 512 * (u < 512 ? u : 1024 - u);
             struct exh_precontact_in *in = &at[f][i];
             *in = (struct exh_precontact_in){{MM(60) + off / 10 * 6, MM(3), MM(80) + off / 10 * 8},
-                                             {-6 * (1 << 20), 0, -8 * (1 << 20)},
-                                             MM(100) - off,
-                                             0,
-                                             off < -MM(7)};
+                {-6 * (1 << 20), 0, -8 * (1 << 20)}, MM(100) - off, 0, off < -MM(7)};
             dbl.tip[f][i][0] = si(in->tip_m_q30.x);
             dbl.tip[f][i][1] = si(in->tip_m_q30.y);
             dbl.tip[f][i][2] = si(in->tip_m_q30.z);
@@ -73,15 +67,9 @@ static void start_with(int from_slope)
     for (uint32_t f = 0; f < FINGERS; f++) { exh_precontact_update(&finger[f], &cfg, &plane, 0); }
 }
 
-static void start(void)
-{
-    start_with(0);
-}
+static void start(void) { start_with(0); }
 
-static void start_slope(void)
-{
-    start_with(1);
-}
+static void start_slope(void) { start_with(1); }
 
 static void step_op(uint32_t i)
 {
@@ -161,20 +149,11 @@ static void error_of(struct error *e, int from_slope)
     }
 }
 
-static void step_error(struct error *e)
-{
-    error_of(e, 0);
-}
+static void step_error(struct error *e) { error_of(e, 0); }
 
-static void slope_error(struct error *e)
-{
-    error_of(e, 1);
-}
+static void slope_error(struct error *e) { error_of(e, 1); }
 
-static void no_error(struct error *e)
-{
-    error_add(e, 0);
-}
+static void no_error(struct error *e) { error_add(e, 0); }
 
 /* --- packets --- */
 
@@ -196,10 +175,7 @@ static void start_wire(void)
     buf_B = exh_wire_encode(&tx, &planes, 0, buf, sizeof buf);
 }
 
-static void write_op(uint32_t i)
-{
-    bench_sink = exh_wire_encode(&tx, &state, i, buf, sizeof buf);
-}
+static void write_op(uint32_t i) { bench_sink = exh_wire_encode(&tx, &state, i, buf, sizeof buf); }
 
 static void take_op(uint32_t i)
 {
@@ -211,12 +187,12 @@ static void take_op(uint32_t i)
 #define METRE (1.0 / (1 << EXH_Q_POS))
 static const struct kernel kernels[] = {
     {"precontact_x5", "m", METRE, 1, 1, start, step_op, step_error,
-     "precontact.h: d 1/2 LSB and q_lim 1 from exact; random planes and fingertips", 0, NULL},
+        "precontact.h: d 1/2 LSB and q_lim 1 from exact; random planes and fingertips", 0, NULL},
     {"precontact_slope_x5", "m", METRE, 4, 1, start_slope, step_op, slope_error,
-     "s from the slope: q24 of it at d of up to 20 mm; random planes", 0, NULL},
+        "s from the slope: q24 of it at d of up to 20 mm; random planes", 0, NULL},
     {"plain_double_freeze_x5", "m", METRE, 0, 1, start, double_op, no_error,
-     "for the ratio: distance and freeze rule alone; its error is not taken", 116,
-     "double distance and freeze rule, 5 fingers, private harness, gcc 12.2 -O2"},
+        "for the ratio: distance and freeze rule alone; its error is not taken", 116,
+        "double distance and freeze rule, 5 fingers, private harness, gcc 12.2 -O2"},
     {"precontact_tell_x5", "", 1, 0, 1, start, tell_op, no_error, "exact", 0, NULL},
     {"wire_write_state", "", 1, 0, 1, start_wire, write_op, no_error, "exact; 236 bytes", 0, NULL},
     {"wire_take_planes", "", 1, 0, 1, start_wire, take_op, no_error, "exact; 231 bytes", 0, NULL},

@@ -40,10 +40,7 @@ static void arm(const struct exh_safety *safety, void (*tick)(void))
     EXH_ASSERT(exh_safety_is_running(safety));
 }
 
-static void drop_once(void)
-{
-    drop_tick(&state, &path_cfg, &in, &out, &signals);
-}
+static void drop_once(void) { drop_tick(&state, &path_cfg, &in, &out, &signals); }
 
 static void drop_start(void)
 {
@@ -61,10 +58,7 @@ static void drop_op(uint32_t i)
     bench_sink = out.dac_raw[0];
 }
 
-static void minimal_once(void)
-{
-    exh_scene_minimal.tick(&in, &out);
-}
+static void minimal_once(void) { exh_scene_minimal.tick(&in, &out); }
 
 static void minimal_start(void)
 {
@@ -103,23 +97,23 @@ static void drop_error(struct error *e)
     struct exact x;
     drop_start();
     x = (struct exact){.step_m = bench_q(p->quad.step_m_q42, EXH_Q_STEP),
-                       .T_s = 1 / 2000.0L,
-                       .k_Npm = bench_q(p->contact.k_Npm_q10, EXH_Q_K),
-                       .b_Nspm = bench_q(p->contact.b_Nspm_q20, EXH_Q_B),
-                       .lim_m = bench_q(p->own.q_lim_m_q30, EXH_Q_POS),
-                       .f_max_N = bench_q(p->drive.f_max_N_q20, EXH_Q_FORCE),
-                       .slew_Nps = p->drive.slew_up_Nps,
-                       .A_per_N = 1 / bench_q(p->own.kf_NpA_q20, EXH_Q_FORCE),
-                       .peak_A = bench_q(p->drive.i_peak_A_q26, EXH_Q_CUR),
-                       .code_per_A = bench_q(p->drive.dac_rawpA_q16, EXH_Q_DAC),
-                       .code_zero = p->drive.dac_zero_raw};
+        .T_s = 1 / 2000.0L,
+        .k_Npm = bench_q(p->contact.k_Npm_q10, EXH_Q_K),
+        .b_Nspm = bench_q(p->contact.b_Nspm_q20, EXH_Q_B),
+        .lim_m = bench_q(p->own.q_lim_m_q30, EXH_Q_POS),
+        .f_max_N = bench_q(p->drive.f_max_N_q20, EXH_Q_FORCE),
+        .slew_Nps = p->drive.slew_up_Nps,
+        .A_per_N = 1 / bench_q(p->own.kf_NpA_q20, EXH_Q_FORCE),
+        .peak_A = bench_q(p->drive.i_peak_A_q26, EXH_Q_CUR),
+        .code_per_A = bench_q(p->drive.dac_rawpA_q16, EXH_Q_DAC),
+        .code_zero = p->drive.dac_zero_raw};
     for (uint32_t i = 1; i < TICKS; i++) {
         const int32_t noise = bench_in(-1, 1);
         long double want;
         input(i, noise);
         drop_tick(&state, &path_cfg, &in, &out, &signals);
         want = exact_code(&x, path_cnt(i) + noise,
-                          state.contact.inward ? bench_q(p->contact.f0_N_q20, EXH_Q_FORCE) : 0);
+            state.contact.inward ? bench_q(p->contact.f0_N_q20, EXH_Q_FORCE) : 0);
         error_add(e, (long double)out.dac_raw[0] - want);
     }
 }
@@ -138,8 +132,8 @@ static void minimal_error(struct error *e)
 
 static const struct kernel kernels[] = {
     {"drop_tick", "code", 1, 0.501, 1, drop_start, drop_op, drop_error,
-     "half a code + all before it; 150 s at 2 kHz, k = 1997.3, b = 6.17", 0, NULL},
+        "half a code + all before it; 150 s at 2 kHz, k = 1997.3, b = 6.17", 0, NULL},
     {"minimal_tick", "code", 1, 0.501, 1, minimal_start, minimal_op, minimal_error,
-     "half a code + all before it; 300 s at 1 kHz, force and slew limits act", 0, NULL},
+        "half a code + all before it; 300 s at 1 kHz, force and slew limits act", 0, NULL},
 };
 const struct kernel_group scene_group = {kernels, sizeof kernels / sizeof kernels[0]};

@@ -23,8 +23,8 @@ static const char *const hand_scene[] = {"glove", "bilateral"};
 
 void scenes_gains(uint32_t rate_Hz, int32_t *k_Npm, int32_t *b_Nspm)
 {
-    static const int32_t row[][3] = {{90, 1500, 0},   {100, 2000, 0},    {200, 2000, 15},
-                                     {500, 6000, 20}, {1000, 10000, 40}, {2000, 20000, 60}};
+    static const int32_t row[][3] = {{90, 1500, 0}, {100, 2000, 0}, {200, 2000, 15},
+        {500, 6000, 20}, {1000, 10000, 40}, {2000, 20000, 60}};
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
         if ((uint32_t)row[i][0] <= rate_Hz) {
             *k_Npm = row[i][1];
@@ -34,27 +34,23 @@ void scenes_gains(uint32_t rate_Hz, int32_t *k_Npm, int32_t *b_Nspm)
 }
 
 void scenes_print(const char *scene, uint32_t rate_Hz, const char *quantity, const char *unit,
-                  const struct scenes_sum *sum)
+    const struct scenes_sum *sum)
 {
     for (int w = 0; w < WAYS; w++) {
         const struct error *e = &sum->way[w];
         printf("%s,%u,%s,%s,%s,%.4g,%.4g\n", scene, (unsigned)rate_Hz, scenes_way[w], quantity,
-               unit, (double)e->max,
-               sqrt((double)(e->sum_squares / (long double)(e->n ? e->n : 1))));
+            unit, (double)e->max, sqrt((double)(e->sum_squares / (long double)(e->n ? e->n : 1))));
     }
 }
 
-static void empty(uint32_t i)
-{
-    (void)i;
-}
+static void empty(uint32_t i) { (void)i; }
 
 static void cost(const char *scene, void (*const op[WAYS])(uint32_t i), int timed)
 {
     for (int w = 0; w < WAYS; w++) {
         if (timed) {
             printf("%s,%s,%.2f\n", scene, scenes_way[w],
-                   bench_least_ns(op[w]) - bench_least_ns(empty));
+                bench_least_ns(op[w]) - bench_least_ns(empty));
         } else {
             for (uint32_t i = 0; i < BENCH_OPS; i++) { op[w](i); }
             bench_measure(op[w], BENCH_OPS);

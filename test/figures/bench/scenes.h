@@ -33,7 +33,7 @@ struct scenes_sum {
     struct error way[WAYS];
 };
 void scenes_print(const char *scene, uint32_t rate_Hz, const char *quantity, const char *unit,
-                  const struct scenes_sum *sum);
+    const struct scenes_sum *sum);
 
 /* Of the minimal scene, whose parts are private. */
 int32_t minimal_force_N_q20(void);

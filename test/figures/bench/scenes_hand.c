@@ -117,8 +117,8 @@ static void glove_numbers(const struct glove_sensor_par *sensor, int32_t fc_Hz_q
     pipe_glove_exact_start(&glove_exact, &glove_par, in.glove.raw);
 }
 
-static void wall_numbers(const struct bilateral_par *p, const struct bilateral_cfg *cfg,
-                         const struct bilateral *s)
+static void wall_numbers(
+    const struct bilateral_par *p, const struct bilateral_cfg *cfg, const struct bilateral *s)
 {
     for (unsigned f = 0; f < PIPE_FINGERS; f++) {
         const struct exh_knot *end =
@@ -127,12 +127,9 @@ static void wall_numbers(const struct bilateral_par *p, const struct bilateral_c
         const struct exh_contact *c = &s->finger[f].contact;
         int32_t most =
             p->drive[f].f_max_N_q20 < m->f_max_N_q20 ? p->drive[f].f_max_N_q20 : m->f_max_N_q20;
-        const struct pipe_wall_now now = {cnt_now[f],
-                                          bench_q(c->turn_m_q30, EXH_Q_POS),
-                                          bench_q(s->finger[f].drive.force_N_q20, EXH_Q_FORCE),
-                                          c->inward,
-                                          c->touching,
-                                          (int)s->finger[f].rest_ticks};
+        const struct pipe_wall_now now = {cnt_now[f], bench_q(c->turn_m_q30, EXH_Q_POS),
+            bench_q(s->finger[f].drive.force_N_q20, EXH_Q_FORCE), c->inward, c->touching,
+            (int)s->finger[f].rest_ticks};
         struct pipe_wall_par w = {0};
         if (end->x < most) { most = end->x; }
         w.step_m = bench_q(p->quad[f].step_m_q42, EXH_Q_STEP);
@@ -171,9 +168,9 @@ static void put_planes(const struct bilateral_par *p)
     for (unsigned f = 0; f < PIPE_FINGERS; f++) {
         struct exh_wire_plane *w = &planes.u.planes.plane[f];
         struct pipe_plane_par par = {.pad_m = bench_q(p->hand[f].pad_m_q30, EXH_Q_POS),
-                                     .d_lim_m = bench_q(p->precontact[f].d_lim_m_q30, EXH_Q_POS),
-                                     .hyst_m = bench_q(p->precontact[f].hyst_m_q30, EXH_Q_POS),
-                                     .scale = bench_q(p->precontact[f].scale_q24, 24)};
+            .d_lim_m = bench_q(p->precontact[f].d_lim_m_q30, EXH_Q_POS),
+            .hyst_m = bench_q(p->precontact[f].hyst_m_q30, EXH_Q_POS),
+            .scale = bench_q(p->precontact[f].scale_q24, 24)};
         long double way[3], len = 0;
         for (int k = 0; k < 3; k++) {
             way[k] = glove_exact.tip[f][k] - at.tip[f][k];
@@ -231,7 +228,7 @@ static void begin(const char *name, uint32_t rate_Hz)
         inputs(0);
         tick();
         glove_numbers(((const struct glove_par *)scene->params->active)->sensor,
-                      ((const struct glove_par *)scene->params->active)->glove.fc_Hz_q16);
+            ((const struct glove_par *)scene->params->active)->glove.fc_Hz_q16);
         return;
     }
     hello.u.hello.role = EXH_WIRE_WORLD;
@@ -285,8 +282,8 @@ static void in_exact(void)
     }
 }
 
-static void add(struct scenes_sum *s, long double fixed, long double dbl, long double flt,
-                long double want)
+static void add(
+    struct scenes_sum *s, long double fixed, long double dbl, long double flt, long double want)
 {
     error_add(&s->way[FIXED], fixed - want);
     error_add(&s->way[DOUBLE], dbl - want);

@@ -4,10 +4,7 @@
 
 #include "minimal/minimal.c"
 
-int32_t minimal_force_N_q20(void)
-{
-    return s.drive.force_N_q20;
-}
+int32_t minimal_force_N_q20(void) { return s.drive.force_N_q20; }
 
 void minimal_par(struct pipe_wall_par *p, long double *lim_m)
 {

@@ -122,8 +122,8 @@ static int32_t cnt_at(uint32_t i, uint32_t rate_Hz)
     return (int32_t)(top_m / 2 * (1 - cos(2 * PI * i / (ROUND_S * rate_Hz))) / (double)par.step_m);
 }
 
-static void compare(struct scenes_sum *force, struct scenes_sum *way, struct scenes_sum *energy,
-                    int32_t cnt)
+static void compare(
+    struct scenes_sum *force, struct scenes_sum *way, struct scenes_sum *energy, int32_t cnt)
 {
     const int32_t *sig = scene->signal;
     const int32_t f_q20 = scene == &exh_scene_minimal
@@ -141,11 +141,11 @@ static void compare(struct scenes_sum *force, struct scenes_sum *way, struct sce
     error_add(&way->way[FLOAT], (long double)in_float.q - exact.q);
     if (sig != NULL) {
         error_add(&way->way[FIXED],
-                  bench_q(((const struct drop_signals *)sig)->q_m_q30, EXH_Q_POS) - exact.q);
+            bench_q(((const struct drop_signals *)sig)->q_m_q30, EXH_Q_POS) - exact.q);
     }
     if (scene == &exh_scene_guarded) {
         error_add(&energy->way[FIXED],
-                  bench_q(((const struct guarded_signals *)sig)->energy_J_q24, 24) - exact.energy);
+            bench_q(((const struct guarded_signals *)sig)->energy_J_q24, 24) - exact.energy);
         error_add(&energy->way[DOUBLE], (long double)in_double.energy - exact.energy);
         error_add(&energy->way[FLOAT], (long double)in_float.energy - exact.energy);
     }

@@ -54,7 +54,7 @@ int main(int argc, char **argv)
     }
     printf("simulation: %.1f s of one finger at %d Hz in %.3f s of CPU: %.0f x real time, wanted"
            " %d: %s\n",
-           posix_time_s(), RATE_HZ, cpu_s, posix_time_s() / cpu_s, WANT,
-           posix_time_s() >= WANT * cpu_s ? "PASS" : "FAIL");
+        posix_time_s(), RATE_HZ, cpu_s, posix_time_s() / cpu_s, WANT,
+        posix_time_s() >= WANT * cpu_s ? "PASS" : "FAIL");
     return 0;
 }

@@ -6,8 +6,8 @@
 #define APART 205u /* ticks from one finger to the next */
 #define MEET  300u /* a finger meets its plane so far into its bend */
 
-static const struct exh_material_par material = {EXH_Q(19973, 1, EXH_Q_K), EXH_Q(617, 10, EXH_Q_B),
-                                                 EXH_Q(12, 1, EXH_Q_FORCE)};
+static const struct exh_material_par material = {
+    EXH_Q(19973, 1, EXH_Q_K), EXH_Q(617, 10, EXH_Q_B), EXH_Q(12, 1, EXH_Q_FORCE)};
 
 /* 0 .. ROUND/2 and back. */
 static int32_t bent_at(uint32_t i)
@@ -72,12 +72,11 @@ int tick_setup(struct tick_box *b)
     static const struct exh_period T = {1, 2000};
     static const struct exh_filter_par filter = {2, EXH_Q(20, 1, 16)};
     static const struct exh_contact_par wall = {EXH_Q(19973, 1, EXH_Q_K), EXH_Q(617, 10, EXH_Q_B),
-                                                EXH_Q(107, 1000, EXH_Q_FORCE),
-                                                EXH_Q(2, 10000, EXH_Q_POS), 0};
-    static const struct exh_precontact_par freeze = {-MM(5), MM(1), 1 << 24, 0, 0,
-                                                     60000,  MM(5), 60000,   50};
-    const struct exh_hand_par hand = {exh_hand_rows[0].dflt, exh_hand_rows[1].dflt,
-                                      exh_hand_rows[2].dflt, exh_hand_rows[3].dflt};
+        EXH_Q(107, 1000, EXH_Q_FORCE), EXH_Q(2, 10000, EXH_Q_POS), 0};
+    static const struct exh_precontact_par freeze = {
+        -MM(5), MM(1), 1 << 24, 0, 0, 60000, MM(5), 60000, 50};
+    const struct exh_hand_par hand = {
+        exh_hand_rows[0].dflt, exh_hand_rows[1].dflt, exh_hand_rows[2].dflt, exh_hand_rows[3].dflt};
     const struct tick_box power_on = {.wall = wall, .freeze = freeze};
     struct tick_in at_rest;
     int err;

@@ -37,91 +37,31 @@ struct estimator {
 
 /* pole_100: the pole of exp(-2 pi 100 Hz T). track_0.9: theta = 0.9. */
 static const struct estimator estimators[] = {
-    {"difference",
-     "velocity_window_1",
-     window_start,
-     window_step,
-     0,
-     1,
-     {{5.5, 14.6, 12.2, 11.3}, {30, 21, 26, 27}, 0.25, 13.1}},
+    {"difference", "velocity_window_1", window_start, window_step, 0, 1,
+        {{5.5, 14.6, 12.2, 11.3}, {30, 21, 26, 27}, 0.25, 13.1}},
     {"window_2", "velocity_window_2", window_start, window_step, 1, 0, {{0}, {0}, 0, 0}},
-    {"window_4",
-     "velocity_window_2",
-     window_start,
-     window_step,
-     2,
-     1,
-     {{2.6, 3.5, 3.5, 3.8}, {6.9, 5.7, 5.8, 4.8}, 1.00, 7.7}},
-    {"window_16",
-     "velocity_window_16",
-     window_start,
-     window_step,
-     4,
-     1,
-     {{1.0, 0.58, 0.41, 0.98}, {1.0, 1.8, 1.9, 1.1}, 4.00, 27.9}},
-    {"pole_100",
-     "velocity_pole",
-     pole_start,
-     pole_step,
-     1354,
-     1,
-     {{2.0, 2.7, 2.8, 2.7}, {7.5, 4.6, 4.9, 5.1}, 1.61, 11.5}},
-    {"foaw_16",
-     "velocity_foaw_16",
-     foaw_start,
-     foaw_step,
-     16,
-     1,
-     {{1.1, 0.38, 0.28, 0.21}, {1.8, 0.62, 0.72, 0.49}, 1.97, 11.7}},
-    {"track_0.9",
-     "velocity_track",
-     track_start,
-     track_step,
-     4500,
-     1,
-     {{0.33, 0.11, 0.10, 0.11}, {0.59, 0.25, 0.23, 0.27}, 9.25, 63}},
-    {"double_window_4",
-     "plain double window",
-     double_window_start,
-     double_window_step,
-     4,
-     0,
-     {{0}, {0}, 0, 0}},
-    {"float_window_4",
-     "plain float window",
-     float_window_start,
-     float_window_step,
-     4,
-     0,
-     {{0}, {0}, 0, 0}},
-    {"double_pole_100",
-     "plain double pole",
-     double_pole_start,
-     double_pole_step,
-     1354,
-     0,
-     {{0}, {0}, 0, 0}},
-    {"float_pole_100",
-     "plain float pole",
-     float_pole_start,
-     float_pole_step,
-     1354,
-     0,
-     {{0}, {0}, 0, 0}},
-    {"double_foaw_16",
-     "plain double foaw",
-     double_foaw_start,
-     double_foaw_step,
-     16,
-     0,
-     {{0}, {0}, 0, 0}},
-    {"float_foaw_16",
-     "plain float foaw",
-     float_foaw_start,
-     float_foaw_step,
-     16,
-     0,
-     {{0}, {0}, 0, 0}},
+    {"window_4", "velocity_window_2", window_start, window_step, 2, 1,
+        {{2.6, 3.5, 3.5, 3.8}, {6.9, 5.7, 5.8, 4.8}, 1.00, 7.7}},
+    {"window_16", "velocity_window_16", window_start, window_step, 4, 1,
+        {{1.0, 0.58, 0.41, 0.98}, {1.0, 1.8, 1.9, 1.1}, 4.00, 27.9}},
+    {"pole_100", "velocity_pole", pole_start, pole_step, 1354, 1,
+        {{2.0, 2.7, 2.8, 2.7}, {7.5, 4.6, 4.9, 5.1}, 1.61, 11.5}},
+    {"foaw_16", "velocity_foaw_16", foaw_start, foaw_step, 16, 1,
+        {{1.1, 0.38, 0.28, 0.21}, {1.8, 0.62, 0.72, 0.49}, 1.97, 11.7}},
+    {"track_0.9", "velocity_track", track_start, track_step, 4500, 1,
+        {{0.33, 0.11, 0.10, 0.11}, {0.59, 0.25, 0.23, 0.27}, 9.25, 63}},
+    {"double_window_4", "plain double window", double_window_start, double_window_step, 4, 0,
+        {{0}, {0}, 0, 0}},
+    {"float_window_4", "plain float window", float_window_start, float_window_step, 4, 0,
+        {{0}, {0}, 0, 0}},
+    {"double_pole_100", "plain double pole", double_pole_start, double_pole_step, 1354, 0,
+        {{0}, {0}, 0, 0}},
+    {"float_pole_100", "plain float pole", float_pole_start, float_pole_step, 1354, 0,
+        {{0}, {0}, 0, 0}},
+    {"double_foaw_16", "plain double foaw", double_foaw_start, double_foaw_step, 16, 0,
+        {{0}, {0}, 0, 0}},
+    {"float_foaw_16", "plain float foaw", float_foaw_start, float_foaw_step, 16, 0,
+        {{0}, {0}, 0, 0}},
 };
 
 /* --- the movements --- */
@@ -146,8 +86,8 @@ struct moments {
 };
 
 /* Error of the estimate, m/s. The encoder's grid lies anywhere: phase 0..1. */
-static struct moments follow(const struct estimator *e, double step_m, double phase,
-                             const struct movement *m, int ticks)
+static struct moments follow(
+    const struct estimator *e, double step_m, double phase, const struct movement *m, int ticks)
 {
     const struct exh_velocity_scale s = {(int32_t)(step_m * 4398046511104.0 + 0.5), period};
     double sum = 0, squares = 0, max = 0;
@@ -188,8 +128,8 @@ static struct figures judge(const struct estimator *e, double step_m)
     return f;
 }
 
-static void print(const char *who, const struct estimator *e, double step_um,
-                  const struct figures *f)
+static void print(
+    const char *who, const struct estimator *e, double step_um, const struct figures *f)
 {
     printf("%s,%s,%s,%.4g", who, e->name, e->kernel, step_um);
     for (int k = 0; k < SPEEDS; k++) { printf(",%.3g,%.3g", f->rms_mmps[k], f->max_mmps[k]); }

@@ -16,7 +16,12 @@
 #define SECOND 2000u
 
 static const struct work_group *const groups[] = {
-    &law_works,     &table_works, &hand_works, &freeze_works, &passivity_works, &speed_works,
+    &law_works,
+    &table_works,
+    &hand_works,
+    &freeze_works,
+    &passivity_works,
+    &speed_works,
 #ifdef PEERS_CMSIS
     &cmsis_works,
 #endif
@@ -44,13 +49,13 @@ static void print_errors(const struct work *w)
         for (size_t k = 0; k < sizeof until / sizeof until[0]; k++) {
             if (i + 1 == until[k] * SECOND) {
                 printf("%s,%s,%s,%s,%u,%.4g,%.4g\n", w->kernel, w->name, w->kind, w->unit,
-                       (unsigned)until[k], (double)second.max, rms_of(&second));
+                    (unsigned)until[k], (double)second.max, rms_of(&second));
             }
         }
         second = (struct error){0, 0, 0};
     }
     printf("%s,%s,%s,%s,all,%.4g,%.4g\n", w->kernel, w->name, w->kind, w->unit, (double)all.max,
-           rms_of(&all));
+        rms_of(&all));
 }
 
 static void run(void (*op)(uint32_t i))
@@ -66,10 +71,7 @@ static void print_count(const struct work *w)
     printf("%s,%s,%lu\n", w->kernel, w->name, (unsigned long)BENCH_OPS);
 }
 
-static void empty(uint32_t i)
-{
-    (void)i;
-}
+static void empty(uint32_t i) { (void)i; }
 
 static void print_time(const struct work *w)
 {

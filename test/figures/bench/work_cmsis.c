@@ -131,10 +131,7 @@ static long double curve_off(uint32_t i)
 /* --- fingertips: lengths and places of 0.5 m full scale; sines of 30 bits, as those of sums may
  * pass 1 --- */
 
-static q31_t mul(q31_t a, q31_t b)
-{
-    return (q31_t)((q63_t)a * b >> 30);
-}
+static q31_t mul(q31_t a, q31_t b) { return (q31_t)((q63_t)a * b >> 30); }
 
 static void tip_q31(const struct exh_hand_bones *b, const int32_t q[3], int32_t tip[3])
 {
@@ -173,8 +170,8 @@ static long double hand_error(uint32_t i)
     int32_t q[3], tip[3];
     hand_posture(q);
     tip_q31(&exh_hit2_bones[i % WORK_FINGERS], q, tip);
-    return hand_off(i % WORK_FINGERS, q,
-                    (double[3]){tip[0] * 0x1p-32, tip[1] * 0x1p-32, tip[2] * 0x1p-32});
+    return hand_off(
+        i % WORK_FINGERS, q, (double[3]){tip[0] * 0x1p-32, tip[1] * 0x1p-32, tip[2] * 0x1p-32});
 }
 
 static const struct work works[] = {
@@ -182,7 +179,7 @@ static const struct work works[] = {
     {"law", "CMSIS pid_q15", "integer", "N", WORK_HOUR, law_setup, law_q15_op, law_q15_off},
     {"law", "CMSIS pid_f32", "float", "N", WORK_HOUR, law_setup, law_f32_op, law_f32_off},
     {"table", "CMSIS linear_interp_q31", "integer", "ppm", 300000, curve_setup, curve_op,
-     curve_off},
+        curve_off},
     {"hand", "CMSIS sine tables in Q31", "integer", "m", 200000, hand_seed, hand_op, hand_error},
 };
 const struct work_group cmsis_works = {works, sizeof works / sizeof works[0]};

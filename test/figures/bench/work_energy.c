@@ -25,7 +25,7 @@ void energy_seed(void)
     state = (struct exh_passivity){0, 0, 0, 0, 0, 0};
     EXH_ASSERT(exh_table_invert(held, path_cfg.calib.force_to_cur, 2) == 0);
     EXH_ASSERT(exh_passivity_setup(&cfg, &par, &path_cfg.drive, (struct exh_table){held, 2}, scale,
-                                   EXH_Q(3, 1, EXH_Q_VEL)) == 0);
+                   EXH_Q(3, 1, EXH_Q_VEL)) == 0);
     wall_seed();
     for (uint32_t i = 0; i < BENCH_OPS; i++) { energy_cnt[i] = wall_cnt(); }
     wall_seed();
@@ -36,15 +36,9 @@ void energy_seed(void)
     exact_Ncnt_q20 = last_cnt = held_q20 = 0;
 }
 
-double energy_step_m(void)
-{
-    return cfg.step_m_q42 * 0x1p-42;
-}
+double energy_step_m(void) { return cfg.step_m_q42 * 0x1p-42; }
 
-static long double joules(long double Ncnt)
-{
-    return Ncnt * energy_step_m();
-}
+static long double joules(long double Ncnt) { return Ncnt * energy_step_m(); }
 
 /* Exact: what was held, times the counts; and what is held next: the spring, and more on the way
  * in. */
@@ -58,10 +52,7 @@ long double energy_next(int32_t *cnt, int32_t *asked_q20)
     return joules((long double)exact_Ncnt_q20 * 0x1p-20L);
 }
 
-void energy_hold(int32_t force_q20)
-{
-    held_q20 = force_q20;
-}
+void energy_hold(int32_t force_q20) { held_q20 = force_q20; }
 
 /* --- ours --- */
 
@@ -128,8 +119,8 @@ static long double float_off(uint32_t i)
 static const struct work works[] = {
     {"passivity", "exhand passivity", "ours", "J", WORK_HOUR, energy_seed, ours_op, ours_off},
     {"passivity", "plain double observer", "float", "J", WORK_HOUR, energy_seed, double_op,
-     double_off},
+        double_off},
     {"passivity", "plain float observer", "float", "J", WORK_HOUR, energy_seed, float_op,
-     float_off},
+        float_off},
 };
 const struct work_group passivity_works = {works, sizeof works / sizeof works[0]};

@@ -76,10 +76,7 @@ static fix16_t lerp32(int32_t x)
 }
 
 #define CURVE(name) \
-    static void name##_op(uint32_t i) \
-    { \
-        bench_sink = name(curve_at[i]); \
-    } \
+    static void name##_op(uint32_t i) { bench_sink = name(curve_at[i]); } \
     static long double name##_off(uint32_t i) \
     { \
         const int32_t x = bench_in(0, (int32_t)((CURVE_KNOTS - 1) << 26) - 1); \
@@ -150,9 +147,9 @@ static void hand_setup(void)
         fix16_t tip[3]; \
         hand_posture(q); \
         name##_tip(i % WORK_FINGERS, \
-                   (fix16_t[3]){fixmath_rad(q[0]), fixmath_rad(q[1]), fixmath_rad(q[2])}, tip); \
+            (fix16_t[3]){fixmath_rad(q[0]), fixmath_rad(q[1]), fixmath_rad(q[2])}, tip); \
         return hand_off(i % WORK_FINGERS, q, \
-                        (double[3]){tip[0] / 65536e3, tip[1] / 65536e3, tip[2] / 65536e3}); \
+            (double[3]){tip[0] / 65536e3, tip[1] / 65536e3, tip[2] / 65536e3}); \
     }
 HAND(series, fix16_sin, fix16_cos)
 HAND(lut, fixmath_lut_sin, fixmath_lut_cos)
@@ -271,8 +268,8 @@ static const struct work works[] = {
     {"hand", "libfixmath sines", "integer", "m", CASES, hand_setup, series_op, series_off},
     {"hand", "libfixmath 205 KB table", "integer", "m", CASES, hand_setup, lut_op, lut_off},
     {"precontact", "libfixmath freeze", "integer", "m", 300000, freeze_setup, freeze_op,
-     freeze_off},
+        freeze_off},
     {"passivity", "libfixmath observer", "integer", "J", WORK_HOUR, energy_setup, energy_op,
-     energy_off},
+        energy_off},
 };
 const struct work_group fixmath_works = {works, sizeof works / sizeof works[0]};

@@ -23,10 +23,7 @@ static float tip_f[BENCH_OPS][WORK_FINGERS][4];
 static const struct exh_plane plane = {
     EXH_PLANE_HIT, 0, 1, {644245094, 0, 858993459}, {MM(60), 0, MM(80)}};
 
-static double si(int32_t raw)
-{
-    return raw * 0x1p-30;
-}
+static double si(int32_t raw) { return raw * 0x1p-30; }
 
 static void tell(uint32_t f, const struct exh_plane *p)
 {
@@ -37,12 +34,7 @@ static void tell(uint32_t f, const struct exh_plane *p)
     in_double[f].offset = n[0] * si(p->point_m_q30.x) + n[1] * si(p->point_m_q30.y) +
                           n[2] * si(p->point_m_q30.z) + si(MM(7));
     in_float[f] = (struct plain_freeze_float){{(float)n[0], (float)n[1], (float)n[2]},
-                                              (float)in_double[f].offset,
-                                              -0.005f,
-                                              0.001f,
-                                              0,
-                                              1,
-                                              0};
+        (float)in_double[f].offset, -0.005f, 0.001f, 0, 1, 0};
 }
 
 /* 64 mm down and up again over 1024 ticks, onto (0.6, 0, 0.8). */
@@ -51,16 +43,13 @@ static struct exh_precontact_in on_path(uint32_t i, uint32_t f)
     const int32_t u = (int32_t)((i + 205 * f) % BENCH_OPS);
     const int32_t off = MM(60) - MM(70) / 512 * (u < 512 ? u : 1024 - u);
     return (struct exh_precontact_in){{MM(60) + off / 10 * 6, MM(3), MM(80) + off / 10 * 8},
-                                      {0, 0, 0},
-                                      MM(100) - off,
-                                      0,
-                                      off < -MM(7)};
+        {0, 0, 0}, MM(100) - off, 0, off < -MM(7)};
 }
 
 static void setup(void)
 {
-    EXH_ASSERT(exh_precontact_setup(&cfg, &par, material, 1, MM(7), (struct exh_period){1, 2000}) ==
-               0);
+    EXH_ASSERT(
+        exh_precontact_setup(&cfg, &par, material, 1, MM(7), (struct exh_period){1, 2000}) == 0);
     for (uint32_t f = 0; f < WORK_FINGERS; f++) {
         for (uint32_t i = 0; i < BENCH_OPS; i++) {
             const struct exh_precontact_in in = on_path(i, f);
@@ -146,8 +135,8 @@ static long double next(struct exh_vec3 *p)
     return d;
 }
 
-static void as_case(struct freeze_case *c, const struct exh_plane *p,
-                    const struct exh_precontact_in *in)
+static void as_case(
+    struct freeze_case *c, const struct exh_plane *p, const struct exh_precontact_in *in)
 {
     for (int k = 0; k < 3; k++) {
         c->normal[k] = bench_q((&p->normal_q30.x)[k], 30);
@@ -196,8 +185,8 @@ static long double float_off(uint32_t i)
     struct exh_vec3 p;
     const long double d = next(&p);
     (void)i;
-    plain_freeze_float(&in_float[0], (float[3]){(float)si(p.x), (float)si(p.y), (float)si(p.z)}, 0,
-                       0);
+    plain_freeze_float(
+        &in_float[0], (float[3]){(float)si(p.x), (float)si(p.y), (float)si(p.z)}, 0, 0);
     return in_float[0].d - d;
 }
 

@@ -37,8 +37,8 @@ void hand_seed(void)
 
 static void setup(void)
 {
-    const struct exh_hand_par par = {exh_hand_rows[0].dflt, exh_hand_rows[1].dflt,
-                                     exh_hand_rows[2].dflt, exh_hand_rows[3].dflt};
+    const struct exh_hand_par par = {
+        exh_hand_rows[0].dflt, exh_hand_rows[1].dflt, exh_hand_rows[2].dflt, exh_hand_rows[3].dflt};
     hand_seed();
     for (uint32_t f = 0; f < WORK_FINGERS; f++) {
         const struct exh_hand_bones *b = &exh_hit2_bones[f];
@@ -74,7 +74,7 @@ long double hand_off(uint32_t f, const int32_t q[3], const double got[3])
         const long double side =
             bench_q(b->rot_q30[i][0], 30) * cosl(q0) + bench_q(b->rot_q30[i][1], 30) * sinl(q0);
         const long double off = got[i] - (bench_q(b->base_m_q32[i], 32) + side * out +
-                                          bench_q(b->rot_q30[i][2], 30) * up);
+                                             bench_q(b->rot_q30[i][2], 30) * up);
         square += off * off;
     }
     return sqrtl(square);
@@ -116,8 +116,8 @@ static long double ours_off(uint32_t i)
     int32_t q[3];
     hand_posture(q);
     exh_hand_tip(&finger[i % WORK_FINGERS], q, &tip);
-    return hand_off(i % WORK_FINGERS, q,
-                    (double[3]){tip.x * 0x1p-30, tip.y * 0x1p-30, tip.z * 0x1p-30});
+    return hand_off(
+        i % WORK_FINGERS, q, (double[3]){tip.x * 0x1p-30, tip.y * 0x1p-30, tip.z * 0x1p-30});
 }
 
 static long double double_off(uint32_t i)

@@ -37,8 +37,8 @@ long double wall_N(long double pos_m, long double last)
 
 /* --- ours --- */
 
-static const struct exh_contact_par par = {EXH_Q(7989, 4, EXH_Q_K), EXH_Q(395, 64, EXH_Q_B), 0, 0,
-                                           0};
+static const struct exh_contact_par par = {
+    EXH_Q(7989, 4, EXH_Q_K), EXH_Q(395, 64, EXH_Q_B), 0, 0, 0};
 static struct exh_contact contact[WORK_FINGERS];
 static struct exh_force_ledger ledger;
 
@@ -63,8 +63,8 @@ static void setup(void)
 static void ours_op(uint32_t i)
 {
     for (uint32_t f = 0; f < WORK_FINGERS; f++) {
-        exh_contact_step(&contact[f], &par, (struct exh_contact_in){op_pos[i][f], op_vel[i][f], 0},
-                         &ledger);
+        exh_contact_step(
+            &contact[f], &par, (struct exh_contact_in){op_pos[i][f], op_vel[i][f], 0}, &ledger);
         bench_sink = ledger.spring_N_q20 + ledger.damper_N_q20;
     }
 }

@@ -48,10 +48,7 @@ static void float_foaw_setup(void)
 }
 
 #define OP(name) \
-    static void name##_op(uint32_t i) \
-    { \
-        bench_sink = name##_raw(cnt[i]) > 0; \
-    }
+    static void name##_op(uint32_t i) { bench_sink = name##_raw(cnt[i]) > 0; }
 OP(double_window)
 OP(float_window)
 OP(double_pole)

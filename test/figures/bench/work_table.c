@@ -50,10 +50,7 @@ static void setup(void)
     EXH_ASSERT(exh_table_setup(knot, CURVE_KNOTS) == 0);
 }
 
-static void ours_op(uint32_t i)
-{
-    bench_sink = exh_table_at(table, curve_at[i]);
-}
+static void ours_op(uint32_t i) { bench_sink = exh_table_at(table, curve_at[i]); }
 
 static volatile double sink_double;
 static volatile float sink_float;
@@ -88,7 +85,7 @@ static long double float_off(uint32_t i)
     const int32_t x = bench_in(0, 15 * SPAN - 1);
     (void)i;
     return 1e6L * (plain_table_float(&in_float, (float)x * (1 / 1073741824.0f)) -
-                   curve_exact(x) / 1073741824);
+                      curve_exact(x) / 1073741824);
 }
 
 static const struct work works[] = {

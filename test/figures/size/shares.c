@@ -25,7 +25,7 @@ const char share_finger[sizeof(struct bilateral_finger) + sizeof(struct bilatera
 const char share_glove[sizeof(struct exh_glove) + sizeof(struct exh_glove_cfg) +
                        sizeof(struct exh_glove_cal) +
                        2 * (sizeof(struct exh_glove_par) + sizeof(struct glove_own_par) +
-                            EXH_GLOVE_SENSORS * sizeof(struct glove_sensor_par))] = {0};
+                               EXH_GLOVE_SENSORS * sizeof(struct glove_sensor_par))] = {0};
 
 const char share_link[sizeof(struct bilateral_wire) + sizeof(struct bilateral_wire_cfg) +
                       2 * sizeof(struct exh_scene_mail)] = {0};

@@ -109,8 +109,8 @@ static int set_up(int argc, char **argv)
     return err;
 }
 
-__attribute__((noinline)) static void counted_tick(const struct exh_scene_in *in,
-                                                   struct exh_drive_out *out)
+__attribute__((noinline)) static void counted_tick(
+    const struct exh_scene_in *in, struct exh_drive_out *out)
 {
     EXH_SCENE.tick(in, out);
 }
@@ -124,8 +124,8 @@ __attribute__((noinline)) static void whole_tick(struct exh_scene_in *in, struct
     if (as.log) { exh_log_after(as.tick, in, out); }
 }
 
-__attribute__((noinline)) static void counted_whole_tick(struct exh_scene_in *in,
-                                                         struct exh_drive_out *out)
+__attribute__((noinline)) static void counted_whole_tick(
+    struct exh_scene_in *in, struct exh_drive_out *out)
 {
     whole_tick(in, out);
 }
@@ -187,8 +187,8 @@ static void arm(struct exh_scene_in *in, struct exh_drive_out *out)
     in->command = EXH_CMD_NONE;
 }
 
-static unsigned long sweep(unsigned long ticks, enum which which, struct exh_scene_in *in,
-                           struct exh_drive_out *out)
+static unsigned long sweep(
+    unsigned long ticks, enum which which, struct exh_scene_in *in, struct exh_drive_out *out)
 {
     unsigned long counted = 0;
     for (unsigned long k = 0; k < ticks; k++) {

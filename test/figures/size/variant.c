@@ -33,8 +33,8 @@ static void before(uint32_t tick, struct exh_scene_in *in)
 static const struct exh_loop_hooks hooks = {
     .start = start, .before = before, .after = exh_log_after};
 #else
-static const struct exh_loop_hooks hooks = {.start = exh_deadman_start,
-                                            .before = exh_deadman_before};
+static const struct exh_loop_hooks hooks = {
+    .start = exh_deadman_start, .before = exh_deadman_before};
 #endif
 
 int main(void)

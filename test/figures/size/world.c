@@ -10,10 +10,7 @@ static struct exh_wire_rx rx;
 static struct exh_wire_state first, newest;
 static struct exh_wire_planes planes;
 
-static int32_t size_of(int32_t v)
-{
-    return v < 0 ? -v : v;
-}
+static int32_t size_of(int32_t v) { return v < 0 ? -v : v; }
 
 void world_place(void)
 {

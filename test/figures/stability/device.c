@@ -20,11 +20,8 @@ enum part { FRICTION = 1, STEPS = 2, STRING = 4 };
 static const struct {
     const char *name;
     unsigned parts;
-} variant[] = {{"none", 0},
-               {"friction", FRICTION},
-               {"steps", STEPS},
-               {"string", STRING},
-               {"all", FRICTION | STEPS | STRING}};
+} variant[] = {{"none", 0}, {"friction", FRICTION}, {"steps", STEPS}, {"string", STRING},
+    {"all", FRICTION | STEPS | STRING}};
 
 enum ends { REST, BUZZ, SWINGS, LEAVES, ENDS };
 static const char *const end_name[ENDS] = {"rest", "buzz", "swings", "leaves"};
@@ -99,34 +96,32 @@ static double share(const struct count *c, int side, unsigned ends)
 
 static int say(const struct count *c)
 {
-    FILE *csv = csv_open("device",
-                         "switched on,rho,cells,at rest %,within three steps %,swings %,leaves %");
+    FILE *csv = csv_open(
+        "device", "switched on,rho,cells,at rest %,within three steps %,swings %,leaves %");
     int failed;
     for (size_t v = 0; v < LEN(variant); v++) {
         for (int side = 0; side < 2; side++) {
             fprintf(csv, "%s,%s,%ld,%.1f,%.1f,%.1f,%.1f\n", variant[v].name, side ? "> 1" : "< 1",
-                    c[v].all[side], share(&c[v], side, 1 << REST), share(&c[v], side, 1 << BUZZ),
-                    share(&c[v], side, 1 << SWINGS), share(&c[v], side, 1 << LEAVES));
+                c[v].all[side], share(&c[v], side, 1 << REST), share(&c[v], side, 1 << BUZZ),
+                share(&c[v], side, 1 << SWINGS), share(&c[v], side, 1 << LEAVES));
         }
     }
     csv_close(csv);
     failed = must(share(&c[1], 0, 1 << REST) >= 99, "device: friction on, rho < 1: at rest: 99 %",
-                  "%.1f %% of %ld; rho > 1: %.1f %%", share(&c[1], 0, 1 << REST), c[1].all[0],
-                  share(&c[1], 1, 1 << REST));
-    failed +=
-        must(share(&c[2], 0, 1 << REST | 1 << BUZZ) >= 98,
-             "device: steps on, rho < 1: within three steps: 98 %", "%.1f %%, at rest %.1f %%",
-             share(&c[2], 0, 1 << REST | 1 << BUZZ), share(&c[2], 0, 1 << REST));
-    failed +=
-        must(share(&c[3], 0, 1 << LEAVES) <= 0,
-             "device: a string that only pulls, a peak, rho < 1: stays", "%.1f %%, at rest %.1f %%",
-             100 - share(&c[3], 0, 1 << LEAVES), share(&c[3], 0, 1 << REST));
+        "%.1f %% of %ld; rho > 1: %.1f %%", share(&c[1], 0, 1 << REST), c[1].all[0],
+        share(&c[1], 1, 1 << REST));
+    failed += must(share(&c[2], 0, 1 << REST | 1 << BUZZ) >= 98,
+        "device: steps on, rho < 1: within three steps: 98 %", "%.1f %%, at rest %.1f %%",
+        share(&c[2], 0, 1 << REST | 1 << BUZZ), share(&c[2], 0, 1 << REST));
+    failed += must(share(&c[3], 0, 1 << LEAVES) <= 0,
+        "device: a string that only pulls, a peak, rho < 1: stays", "%.1f %%, at rest %.1f %%",
+        100 - share(&c[3], 0, 1 << LEAVES), share(&c[3], 0, 1 << REST));
     return failed + must(share(&c[4], 0, 1 << REST | 1 << BUZZ) >= 95 &&
                              share(&c[4], 0, 1 << LEAVES) + share(&c[4], 1, 1 << LEAVES) <= 0,
-                         "device: all on, rho < 1: within three steps: 95 %; nothing leaves",
-                         "%.1f %%, at rest %.1f %%; rho > 1: %.1f %% at rest",
-                         share(&c[4], 0, 1 << REST | 1 << BUZZ), share(&c[4], 0, 1 << REST),
-                         share(&c[4], 1, 1 << REST));
+                        "device: all on, rho < 1: within three steps: 95 %; nothing leaves",
+                        "%.1f %%, at rest %.1f %%; rho > 1: %.1f %% at rest",
+                        share(&c[4], 0, 1 << REST | 1 << BUZZ), share(&c[4], 0, 1 << REST),
+                        share(&c[4], 1, 1 << REST));
 }
 
 static int counted(enum size size)
@@ -164,11 +159,11 @@ static const struct {
 static struct wall in_plane(size_t p, double k, double b, double viscous)
 {
     const struct wall w = {.T = {1, plane[p].rate_Hz},
-                           .mass_kg = plane[p].mass_kg,
-                           .delay = 1,
-                           .k_Npm = k,
-                           .b_Nspm = b,
-                           .viscous_Nspm = viscous};
+        .mass_kg = plane[p].mass_kg,
+        .delay = 1,
+        .k_Npm = k,
+        .b_Nspm = b,
+        .viscous_Nspm = viscous};
     return w;
 }
 
@@ -194,16 +189,15 @@ static void planes(enum size size)
 {
     static const int cells[] = {8, 28, 48};
     const int n = cells[size];
-    FILE *csv =
-        csv_open("device_plane",
-                 "panel,rate_hz,mass_kg,k_n_per_m,b_ns_per_m,rho,ends_steps_string,ends_all");
+    FILE *csv = csv_open("device_plane",
+        "panel,rate_hz,mass_kg,k_n_per_m,b_ns_per_m,rho,ends_steps_string,ends_all");
     for (size_t i = 0; i < LEN(plane) * (size_t)(n * n); i++) {
         const size_t p = i / (size_t)(n * n);
         const double b = spaced(0.3, 1e3, (int)i % n, n);
         const struct wall w = in_plane(p, spaced(30, 1e6, (int)i / n % n, n), b, 0);
         fprintf(csv, "%zu,%u,%g,%g,%g,%.5f,%s,%s\n", p, (unsigned)plane[p].rate_Hz,
-                plane[p].mass_kg, w.k_Npm, w.b_Nspm, rho_of(&w), end_name[run(w, STEPS | STRING)],
-                end_name[run(w, FRICTION | STEPS | STRING)]);
+            plane[p].mass_kg, w.k_Npm, w.b_Nspm, rho_of(&w), end_name[run(w, STEPS | STRING)],
+            end_name[run(w, FRICTION | STEPS | STRING)]);
     }
     csv_close(csv);
     plane_borders();

@@ -54,8 +54,8 @@ static void law_start(int32_t k_Npm_q10)
     static const struct exh_velocity_par p = {2};
     memset(&law, 0, sizeof law);
     law.quad_par = (struct exh_quad_par){scale.step_m_q42, exh_quad_rows[1].dflt};
-    law.par = (struct exh_contact_par){k_Npm_q10, EXH_Q(5, 1, EXH_Q_B), EXH_Q(1, 2, EXH_Q_FORCE),
-                                       EXH_Q(1, 1000, EXH_Q_POS), 0};
+    law.par = (struct exh_contact_par){
+        k_Npm_q10, EXH_Q(5, 1, EXH_Q_B), EXH_Q(1, 2, EXH_Q_FORCE), EXH_Q(1, 1000, EXH_Q_POS), 0};
     for (int i = 0; i < EXH_DRIVE_ROWS; i++) {
         ((int32_t *)&law.drive_par)[i] = exh_drive_rows[i].dflt;
     }
@@ -65,30 +65,23 @@ static void law_start(int32_t k_Npm_q10)
         exh_velocity_window_setup(&law.velocity_cfg, scale, &p) != 0 ||
         exh_table_setup(law.knot, 2) != 0 || exh_table_invert(law.held, law.knot, 2) != 0 ||
         exh_drive_setup(&law.drive_cfg, &law.drive_par, T, (struct exh_table){law.knot, 2},
-                        (struct exh_table){NULL, 0}) != 0 ||
+            (struct exh_table){NULL, 0}) != 0 ||
         exh_passivity_setup(&law.passivity_cfg, &law.passivity_par, &law.drive_cfg,
-                            (struct exh_table){law.held, 2}, scale, EXH_Q(3, 1, EXH_Q_VEL)) != 0) {
+            (struct exh_table){law.held, 2}, scale, EXH_Q(3, 1, EXH_Q_VEL)) != 0) {
         abort();
     }
 }
 
 /* Below what the motor carries for ever, and above. */
-static void cool_start(void)
-{
-    law_start(EXH_Q(800, 1, EXH_Q_K));
-}
+static void cool_start(void) { law_start(EXH_Q(800, 1, EXH_Q_K)); }
 
-static void hot_start(void)
-{
-    law_start(EXH_Q(2000, 1, EXH_Q_K));
-}
+static void hot_start(void) { law_start(EXH_Q(2000, 1, EXH_Q_K)); }
 
 static void law_tick(unsigned i, int32_t out[OUTS])
 {
     static const struct exh_permit open = {EXH_PERMIT_OPEN, INT32_C(1) << 30, 0, 1, {0, 0}};
     const int32_t cnt = exh_quad_step(&law.quad, &law.quad_cfg, (uint32_t)wave[i] + 65000u);
-    const struct exh_contact_in in = {
-        exh_quad_pos_m_q30(&law.quad_par, cnt),
+    const struct exh_contact_in in = {exh_quad_pos_m_q30(&law.quad_par, cnt),
         exh_velocity_window_step(&law.velocity, &law.velocity_cfg, cnt),
         -EXH_Q(3, 1000, EXH_Q_POS)};
     struct exh_force_ledger f;
@@ -103,10 +96,7 @@ static void law_tick(unsigned i, int32_t out[OUTS])
     out[1] = c.coded_A_q26;
 }
 
-static int64_t law_sum(void)
-{
-    return law.passivity.energy_Ncnt_q20;
-}
+static int64_t law_sum(void) { return law.passivity.energy_Ncnt_q20; }
 
 /* A count that passes 2^31 in every period, through all estimators of velocity. */
 static struct {
@@ -158,10 +148,7 @@ static void low_tick(unsigned i, int32_t out[OUTS])
     for (int k = 0; k < 2; k++) { exh_filter_step(&low.s[k], &low.cfg[k], &x, &out[k], 1); }
 }
 
-static int64_t nothing_summed(void)
-{
-    return 0;
-}
+static int64_t nothing_summed(void) { return 0; }
 
 static const struct law {
     const char *name;
@@ -171,13 +158,13 @@ static const struct law {
     int32_t may; /* LSB */
 } laws[] = {
     {"drift: encoder, law, drive, energy: every period as an early one", cool_start, law_tick,
-     law_sum, 0},
+        law_sum, 0},
     {"drift: velocities across 2^31 counts: every period as an early one", speed_start, speed_tick,
-     nothing_summed, 0},
+        nothing_summed, 0},
     {"drift: low-passes: every period as an early one, to 1 LSB", low_start, low_tick,
-     nothing_summed, 1},
+        nothing_summed, 1},
     {"drift: force and current that I2t holds back: to 2 LSB", hot_start, law_tick, nothing_summed,
-     2},
+        2},
 };
 
 struct seen {
@@ -220,11 +207,9 @@ int drifts(uint64_t ticks)
         }
         y.sum_off = laws[l].sum() - y.first_sum - y.each * (int64_t)(periods - SETTLED);
         failed += must(y.off <= laws[l].may && y.sum_off == 0, laws[l].name,
-                       "%" PRIu64 " ticks, off by %" PRId64 " LSB, sum by %" PRId64, ticks, y.off,
-                       y.sum_off);
+            "%" PRIu64 " ticks, off by %" PRId64 " LSB, sum by %" PRId64, ticks, y.off, y.sum_off);
         fprintf(csv, "%.*s,%" PRIu64 ",%" PRId64 ",%" PRId64 ",%" PRId64 "\n",
-                (int)strcspn(laws[l].name + 7, ":"), laws[l].name + 7, ticks, y.off, y.late,
-                y.sum_off);
+            (int)strcspn(laws[l].name + 7, ":"), laws[l].name + 7, ticks, y.off, y.late, y.sum_off);
     }
     csv_close(csv);
     return failed;

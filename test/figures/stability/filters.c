@@ -76,10 +76,7 @@ static int32_t filter_step(union state *s, const void *cfg, int32_t x)
     return y;
 }
 
-static void filter_start(union state *s, int32_t x)
-{
-    exh_filter_reset(&s->filter, &x, 1);
-}
+static void filter_start(union state *s, int32_t x) { exh_filter_reset(&s->filter, &x, 1); }
 
 static int32_t pole_step(union state *s, const void *cfg, int32_t x)
 {
@@ -196,9 +193,8 @@ static double all_starts(const struct kind *k, struct rest *r)
 static int low_passes(enum size size)
 {
     static const int points[] = {8, 40, 100};
-    FILE *csv =
-        csv_open("filters",
-                 "fc_per_fs,order,tau_to_rest,left_adc,left_direct_truncated,left_direct_rounded");
+    FILE *csv = csv_open("filters",
+        "fc_per_fs,order,tau_to_rest,left_adc,left_direct_truncated,left_direct_rounded");
     struct rest r = {0, 0, 0, 0, 0, 0};
     const double low = size == SHORT ? 1e-5 : 1e-6;
     for (int order = 1; order <= 2; order++) {
@@ -212,8 +208,8 @@ static int low_passes(enum size size)
             if (exh_filter_setup(&cfg, &par, (struct exh_period){1, 20000}) != 0) { abort(); }
             tau = all_starts(&k, &r);
             /* At rest is exactly at the input: nothing is left. */
-            fprintf(csv, "%.5g,%d,%.1f,%g,", ratio, order, tau,
-                    (double)(r.runs - r.exact) - before);
+            fprintf(
+                csv, "%.5g,%d,%.1f,%g,", ratio, order, tau, (double)(r.runs - r.exact) - before);
             if (order == 2 && ratio >= 1e-5) {
                 fprintf(csv, "%.3g,%.3g\n", direct_left(ratio, 0), direct_left(ratio, 1));
             } else {
@@ -222,8 +218,7 @@ static int low_passes(enum size size)
         }
     }
     csv_close(csv);
-    return must(
-        r.exact == r.runs,
+    return must(r.exact == r.runs,
         "filters: the output of every low-pass comes to stand at its input, fc/fs to 0.49",
         "%ld of %ld; the state, too, in %ld, in %.0f time constants; else circles of up to %d",
         r.exact, r.runs, r.stand, r.most_tau, r.longest);
@@ -251,16 +246,13 @@ static int velocities(enum size size)
         all_starts(&kt, &track);
     }
     return must(pole.stand == pole.runs && pole.exact == pole.runs,
-                "filters: velocity through a pole comes to stand at 0",
-                "%ld, %ld of %ld; in %.0f time constants", pole.stand, pole.exact, pole.runs,
-                pole.most_tau) +
+               "filters: velocity through a pole comes to stand at 0",
+               "%ld, %ld of %ld; in %.0f time constants", pole.stand, pole.exact, pole.runs,
+               pole.most_tau) +
            must(track.stand == track.runs && track.exact == track.runs,
-                "filters: the observer comes to stand within (T_f/T + 1) 2^-32 counts",
-                "%ld, %ld of %ld; in %.0f time constants", track.stand, track.exact, track.runs,
-                track.most_tau);
+               "filters: the observer comes to stand within (T_f/T + 1) 2^-32 counts",
+               "%ld, %ld of %ld; in %.0f time constants", track.stand, track.exact, track.runs,
+               track.most_tau);
 }
 
-int filters_at_rest(enum size size)
-{
-    return low_passes(size) + velocities(size);
-}
+int filters_at_rest(enum size size) { return low_passes(size) + velocities(size); }

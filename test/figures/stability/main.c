@@ -33,10 +33,7 @@ void exh_assert_failed(const char *file, int line)
     abort();
 }
 
-uint64_t any_u64(void)
-{
-    return sim_random_u64(&rng);
-}
+uint64_t any_u64(void) { return sim_random_u64(&rng); }
 
 double spaced(double low, double high, int i, int n)
 {

@@ -83,12 +83,12 @@ static void cell(struct wall w, FILE *csv, struct tally *t)
     }
     if (far && y.stable != (rho < 1) && t->shown++ < DISAGREE) {
         printf("    %g Hz, %g kg, %d ticks, k %g, b %g: rho %.4f, simulated: %s\n", 1 / T,
-               w.mass_kg, w.delay, w.k_Npm, w.b_Nspm, rho, y.stable ? "decays" : "grows");
+            w.mass_kg, w.delay, w.k_Npm, w.b_Nspm, rho, y.stable ? "decays" : "grows");
     }
     if (y.rho > 0 && far && fabs(y.rho - rho) > t->worst_rho) { t->worst_rho = fabs(y.rho - rho); }
     t->rates += y.rho > 0 && far;
     fprintf(csv, "%g,%g,%d,%g,%g,%.4g,%.4g,%.6f,%d,%.6f\n", 1 / T, w.mass_kg, w.delay, w.k_Npm,
-            w.b_Nspm, w.k_Npm * T * T / w.mass_kg, w.b_Nspm * T / w.mass_kg, rho, y.stable, y.rho);
+        w.b_Nspm, w.k_Npm * T * T / w.mass_kg, w.b_Nspm * T / w.mass_kg, rho, y.stable, y.rho);
 }
 
 /* The largest alpha with rho < 1 at beta: what the picture draws as a line. */
@@ -131,10 +131,10 @@ int linear_map(enum size size)
     csv_close(csv);
     borders();
     failed = must((double)t.agree >= 0.99 * (double)t.far,
-                  "map: grows or decays as rho says, where rho is 0.005 off 1: 99 %",
-                  "%ld of %ld (%.2f %%); nearer %ld of %ld", t.agree, t.far,
-                  100.0 * (double)t.agree / (double)t.far, t.near_agree, t.near);
+        "map: grows or decays as rho says, where rho is 0.005 off 1: 99 %",
+        "%ld of %ld (%.2f %%); nearer %ld of %ld", t.agree, t.far,
+        100.0 * (double)t.agree / (double)t.far, t.near_agree, t.near);
     return failed + must(t.worst_rho < 0.02,
-                         "map: and by as much a tick, where 512 ticks or more show it: within 0.02",
-                         "%.4f, %ld cells", t.worst_rho, t.rates);
+                        "map: and by as much a tick, where 512 ticks or more show it: within 0.02",
+                        "%.4f, %ld cells", t.worst_rho, t.rates);
 }

@@ -36,8 +36,8 @@ static double range_of(struct wall *w, int ticks)
 }
 
 /* One load: at rest between two counts, `offset` of a step from one of them. */
-static struct result run_one(double alpha, int delay, double sigma, double beta, double offset,
-                             double from)
+static struct result run_one(
+    double alpha, int delay, double sigma, double beta, double offset, double from)
 {
     struct wall w = {.T = {1, 1000}, .k_Npm = K_NPM, .step_m = STEP_M, .delay = delay};
     struct result y = {CYCLE, 0};
@@ -97,7 +97,7 @@ struct tally {
 };
 
 static void judge(struct tally *t, double alpha, int delay, double border, double sigma,
-                  double beta, struct result y)
+    double beta, struct result y)
 {
     if (beta >= border + 0.1) {
         t->bounded_of++;
@@ -143,24 +143,24 @@ int quantized_plane(enum size size)
             const struct result y = run(alpha, delay, sigma, beta, LARGE);
             judge(&t, alpha, delay, border, sigma, beta, y);
             fprintf(csv, "%d,%g,%d,%.4f,%.4f,%s,%.3f\n", panel, alpha, delay, beta, sigma,
-                    end_name[y.ends], y.steps);
+                end_name[y.ends], y.steps);
         }
     }
     csv_close(csv);
     csv_close(lines);
     failed = must(t.rest == t.rest_of,
-                  "plane: rests at sigma >= 0.55, beta 0.1 beyond rho = 1, any load", "%d of %d",
-                  t.rest, t.rest_of);
+        "plane: rests at sigma >= 0.55, beta 0.1 beyond rho = 1, any load", "%d of %d", t.rest,
+        t.rest_of);
     failed += must(t.cycles == t.cycles_of,
-                   "plane: cycles at some load at sigma <= 0.45, beta 0.1 beyond rho = 1",
-                   "%d of %d", t.cycles, t.cycles_of);
+        "plane: cycles at some load at sigma <= 0.45, beta 0.1 beyond rho = 1", "%d of %d",
+        t.cycles, t.cycles_of);
     failed += must(t.bounded == t.bounded_of, "plane: does not grow at beta 0.1 beyond rho = 1",
-                   "%d of %d", t.bounded, t.bounded_of);
+        "%d of %d", t.bounded, t.bounded_of);
     failed += must(t.star >= 0.98 * t.star_of,
-                   "plane: below, grows exactly where 20 steps are more than A*: 98 %", "%d of %d",
-                   t.star, t.star_of);
+        "plane: below, grows exactly where 20 steps are more than A*: 98 %", "%d of %d", t.star,
+        t.star_of);
     return failed + must(t.amplitude <= 1.05,
-                         "plane: sigma = 0, beta >= 1.2 (1 + d): amplitude (2 / pi) (1 + d) / beta "
-                         "at most, 5 %",
-                         "%.2f of it", t.amplitude);
+                        "plane: sigma = 0, beta >= 1.2 (1 + d): amplitude (2 / pi) (1 + d) / beta "
+                        "at most, 5 %",
+                        "%.2f of it", t.amplitude);
 }

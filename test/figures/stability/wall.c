@@ -100,15 +100,15 @@ static int set_drive(struct wall *w)
     w->knot[1].x = EXH_Q(100, 1, EXH_Q_FORCE);
     w->knot[1].y = EXH_Q(6, 1, EXH_Q_CUR);
     if (exh_table_setup(w->knot, 2) != 0) { return -EXH_E_RANGE; }
-    return exh_drive_setup(&w->drive_cfg, p, w->T, (struct exh_table){w->knot, 2},
-                           (struct exh_table){NULL, 0});
+    return exh_drive_setup(
+        &w->drive_cfg, p, w->T, (struct exh_table){w->knot, 2}, (struct exh_table){NULL, 0});
 }
 
 int wall_start(struct wall *w)
 {
     static const struct exh_velocity_par difference = {0};
-    const struct exh_contact_par law = {rounded(w->k_Npm * 1024), rounded(w->b_Nspm * 1048576), 0,
-                                        0, 0};
+    const struct exh_contact_par law = {
+        rounded(w->k_Npm * 1024), rounded(w->b_Nspm * 1048576), 0, 0, 0};
     int err = 0;
     w->T_s = (double)w->T.num / w->T.den;
     w->par = law;

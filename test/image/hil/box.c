@@ -87,15 +87,9 @@ int box_out(struct box *b, struct hil *h, uint16_t port, unsigned size, uint32_t
 
 /* --- the wiring --- */
 
-static unsigned card_of(unsigned finger)
-{
-    return finger < ON_A ? 0 : 1;
-}
+static unsigned card_of(unsigned finger) { return finger < ON_A ? 0 : 1; }
 
-static unsigned axis_of(unsigned finger)
-{
-    return finger < ON_A ? finger : finger - ON_A;
-}
+static unsigned axis_of(unsigned finger) { return finger < ON_A ? finger : finger - ON_A; }
 
 static uint8_t pin(uint32_t din, uint32_t bit, unsigned at)
 {

@@ -7,10 +7,7 @@
 
 enum { PIC1 = 0x20, PIC2 = 0xA0 };
 
-static void raise_irq0(struct chips *c)
-{
-    c->pic[0].irr |= 1;
-}
+static void raise_irq0(struct chips *c) { c->pic[0].irr |= 1; }
 
 /* Lines that may go in: requested, not masked, none of higher priority in service. */
 static unsigned wanting(const struct pic *p)
@@ -20,10 +17,7 @@ static unsigned wanting(const struct pic *p)
     return p->irr & ~(unsigned)p->mask & above;
 }
 
-int pic_wants(const struct chips *c)
-{
-    return wanting(&c->pic[0]) != 0;
-}
+int pic_wants(const struct chips *c) { return wanting(&c->pic[0]) != 0; }
 
 int pic_accept(struct chips *c)
 {
@@ -210,10 +204,7 @@ uint64_t chips_next_ps(const struct chips *c)
     return pit_at < hpet_at ? pit_at : hpet_at;
 }
 
-uint64_t chips_timer_loads(const struct chips *c)
-{
-    return c->pit.loads + c->hpet.loads;
-}
+uint64_t chips_timer_loads(const struct chips *c) { return c->pit.loads + c->hpet.loads; }
 
 double chips_period_s(const struct chips *c)
 {

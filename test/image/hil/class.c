@@ -39,8 +39,8 @@ static uint32_t signal(const struct class_of *c, const struct hil *h, uint32_t a
     return hil_word(h, hil_word(h, c->scene + SCENE_SIGNAL) + 4 * at);
 }
 
-unsigned class_out(struct class_of *c, const struct hil *h, const struct exh_drive_out *out,
-                   unsigned key)
+unsigned class_out(
+    struct class_of *c, const struct hil *h, const struct exh_drive_out *out, unsigned key)
 {
     const struct exh_signal_table *t = c->twin ? c->twin->signals : NULL;
     key |= out->enable ? COUNT_RUNS : 0;

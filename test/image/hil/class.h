@@ -13,7 +13,7 @@ struct class_of {
 
 /* Sum of enum count_key: before the tick, of what goes in; and behind it, of what came out. */
 unsigned class_in(struct class_of *c, const struct hil *h, const struct exh_scene_in *in);
-unsigned class_out(struct class_of *c, const struct hil *h, const struct exh_drive_out *out,
-                   unsigned key);
+unsigned class_out(
+    struct class_of *c, const struct hil *h, const struct exh_drive_out *out, unsigned key);
 
 #endif

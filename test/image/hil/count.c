@@ -42,10 +42,7 @@ void count_tick(struct count *c, const struct hil *h)
     c->at_ps = h->now_ps;
 }
 
-void count_scene(struct count *c, const struct hil *h)
-{
-    c->scene_at = h->insns;
-}
+void count_scene(struct count *c, const struct hil *h) { c->scene_at = h->insns; }
 
 uint32_t count_scene_end(struct count *c, const struct hil *h, unsigned key)
 {
@@ -102,14 +99,10 @@ static const char *class_name(unsigned key, char *text, size_t cap_B)
     static const struct {
         unsigned of;
         const char *name;
-    } count[] = {{COUNT_TRACKS, "track"},
-                 {COUNT_HELLO, "hello"},
-                 {COUNT_PLANES, "planes"},
-                 {COUNT_PARAM, "param"},
-                 {COUNT_REFUSED, "refused"}};
-    size_t at =
-        (size_t)snprintf(text, cap_B, "%s%s%s", key & COUNT_RUNS ? "runs" : "off",
-                         key & COUNT_FIRST ? ", first" : "", key & COUNT_GLOVE ? ", glove" : "");
+    } count[] = {{COUNT_TRACKS, "track"}, {COUNT_HELLO, "hello"}, {COUNT_PLANES, "planes"},
+        {COUNT_PARAM, "param"}, {COUNT_REFUSED, "refused"}};
+    size_t at = (size_t)snprintf(text, cap_B, "%s%s%s", key & COUNT_RUNS ? "runs" : "off",
+        key & COUNT_FIRST ? ", first" : "", key & COUNT_GLOVE ? ", glove" : "");
     for (unsigned i = 0; i < sizeof count / sizeof count[0]; i++) {
         const unsigned n = key / count[i].of & COUNT_MASK;
         if (n && at < cap_B) {
@@ -136,7 +129,7 @@ static uint32_t print_classes(struct count *c)
         char name[96];
         const uint32_t ppm = (uint32_t)((uint64_t)(k->max - k->min) * 1000000 / k->max);
         printf("  %6u %-40s %8" PRIu64 " %6" PRIu32 " %6" PRIu32 " %6.2f %%\n", k->key,
-               class_name(k->key, name, sizeof name), k->n, k->min, k->max, ppm * 1e-4);
+            class_name(k->key, name, sizeof name), k->n, k->min, k->max, ppm * 1e-4);
         if (ppm > widest_ppm) { widest_ppm = ppm; }
     }
     return widest_ppm;
@@ -147,7 +140,7 @@ uint32_t count_print(struct count *c, const struct hil *h, double period_s)
     const double insn_us = (double)h->cost.insn_ps * 1e-6;
     printf("  boot to the first tick: %" PRIu64 " instructions, %" PRIu64
            " port accesses, %.3f ms\n",
-           c->boot_insns, c->boot_ports, (double)c->boot_ps * 1e-9);
+        c->boot_insns, c->boot_ports, (double)c->boot_ps * 1e-9);
     printf("  %-34s %9s %9s %9s\n", "per tick", "min", "median", "max");
     print_row("instructions", &c->insns);
     print_row("of them the scene's", &c->scene);
@@ -155,7 +148,7 @@ uint32_t count_print(struct count *c, const struct hil *h, double period_s)
     print_row("of them to the cards", &c->cards);
     print_row("busy, ns", &c->busy_ns);
     printf("  share of %.3f us: instructions %.2f %% (max), all %.2f %% (max)\n", period_s * 1e6,
-           100 * count_range(&c->insns).max * insn_us / (period_s * 1e6),
-           100 * count_range(&c->busy_ns).max * 1e-9 / period_s);
+        100 * count_range(&c->insns).max * insn_us / (period_s * 1e6),
+        100 * count_range(&c->busy_ns).max * 1e-9 / period_s);
     return print_classes(c);
 }

@@ -123,7 +123,4 @@ void hpet_write(struct chips *c, uint64_t now_ps, uint32_t offset, uint32_t valu
     }
 }
 
-int hpet_is_legacy(const struct hpet *t)
-{
-    return (t->config & HPET_LEGACY) != 0;
-}
+int hpet_is_legacy(const struct hpet *t) { return (t->config & HPET_LEGACY) != 0; }

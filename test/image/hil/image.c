@@ -80,7 +80,7 @@ static int is_called(const char *symbol, const char *name)
 
 /* In the symbol table that section s is. */
 static uint32_t find(const struct file *f, const Elf32_Shdr *s, const Elf32_Shdr *names,
-                     const char *name, char *found, size_t cap_B)
+    const char *name, char *found, size_t cap_B)
 {
     for (uint32_t at = 0; at + sizeof(Elf32_Sym) <= s->sh_size; at += (uint32_t)sizeof(Elf32_Sym)) {
         Elf32_Sym sym;

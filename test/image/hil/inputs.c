@@ -10,10 +10,7 @@ static uint32_t draw(struct inputs *s)
 }
 
 /* One time in n. */
-static int one_in(struct inputs *s, uint32_t n)
-{
-    return draw(s) % n == 0;
-}
+static int one_in(struct inputs *s, uint32_t n) { return draw(s) % n == 0; }
 
 /* From the whole range, its ends, or beside the last. */
 static uint32_t value(struct inputs *s, uint32_t last, uint32_t mask)

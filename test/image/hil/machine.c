@@ -23,10 +23,7 @@ uint32_t hil_reg(const struct hil *h, int id)
     return v;
 }
 
-static void set_reg(struct hil *h, int id, uint32_t v)
-{
-    uc_reg_write(h->uc, id, &v);
-}
+static void set_reg(struct hil *h, int id, uint32_t v) { uc_reg_write(h->uc, id, &v); }
 
 uint32_t hil_word(const struct hil *h, uint32_t address)
 {
@@ -171,7 +168,7 @@ static void on_exception(uc_engine *uc, uint32_t vector, void *user)
     struct hil *h = user;
     (void)uc;
     hil_broke(h, "processor exception, vector %u, at 0x%lx", (unsigned)vector,
-              (unsigned long)hil_reg(h, UC_X86_REG_EIP));
+        (unsigned long)hil_reg(h, UC_X86_REG_EIP));
 }
 
 static uint64_t on_hpet_read(uc_engine *uc, uint64_t offset, unsigned size, void *user)

@@ -125,10 +125,7 @@ static void before(uint32_t tick, struct exh_scene_in *in)
     exh_deadman_before(tick, in);
 }
 
-static int put(const void *p, size_t n)
-{
-    return n == 0 || fwrite(p, n, 1, run.to) == 1;
-}
+static int put(const void *p, size_t n) { return n == 0 || fwrite(p, n, 1, run.to) == 1; }
 
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
@@ -143,7 +140,7 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     f->glove = in->glove;
     if (!put(f, sizeof *f) || !put(sc->signal, run.signals * sizeof sc->signal[0]) ||
         (sc->link && (!put(sc->link->in, sizeof *sc->link->in) ||
-                      !put(sc->link->out, sizeof *sc->link->out)))) {
+                         !put(sc->link->out, sizeof *sc->link->out)))) {
         posix_stop();
     }
 }

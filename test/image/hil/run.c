@@ -63,8 +63,8 @@ static void on_tick(struct hil *h, uint32_t address)
 static void on_wait(struct hil *h)
 {
     if (h->count_singly && h->singly != h->insns) {
-        hil_broke(h, "%" PRIu64 " instructions by blocks, %" PRIu64 " one by one", h->insns,
-                  h->singly);
+        hil_broke(
+            h, "%" PRIu64 " instructions by blocks, %" PRIu64 " one by one", h->insns, h->singly);
     }
     count_wait(&run.count, h);
 }
@@ -157,7 +157,7 @@ static int open_box(const char *symbol)
     }
     if (!run.opt->loop) { return 0; }
     if (run.opt->absent || setup_for(&run.world.ref_cfg, symbol, (uint64_t)run.opt->seed,
-                                     (uint32_t)run.opt->ticks) < 0) {
+                               (uint32_t)run.opt->ticks) < 0) {
         fprintf(stderr, "hil: --loop: not with %s\n", run.opt->absent ? "--absent" : symbol);
         return -1;
     }

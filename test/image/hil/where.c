@@ -71,7 +71,7 @@ void where_print(void)
     for (unsigned i = 0; i < sums; i++) {
         if (sum[i].n[0] != sum[i].n[1]) {
             printf("  0x%06" PRIx32 " %6" PRIu32 " %6" PRIu32 "\n", sum[i].address, sum[i].n[0],
-                   sum[i].n[1]);
+                sum[i].n[1]);
         }
     }
 }

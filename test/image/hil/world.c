@@ -19,7 +19,7 @@ static void differs(struct world *w, const char *what, unsigned i, int64_t image
     if (r->what[0] == 0) {
         r->first = w->ticks - 1;
         snprintf(r->what, sizeof r->what, "%s %u: %lld on pc104, %lld on posix", what, i,
-                 (long long)image, (long long)posix);
+            (long long)image, (long long)posix);
     }
 }
 

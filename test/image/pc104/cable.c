@@ -158,6 +158,6 @@ int main(int argc, char **argv)
     all = there; /* the rest of the emulator's life: it is answered, and sees the cable */
     while (there) { there = move(fd, 1000); }
     printf("sent %lu bad, %lu good, %lu ARP; %lu to be seen; heard %lu\n", sent, good, answered,
-           through + good + answered, heard);
+        through + good + answered, heard);
     return all ? 0 : 1;
 }

@@ -13,10 +13,7 @@ uint64_t frames_u64(struct frames *f)
     return z ^ z >> 31;
 }
 
-static size_t below(struct frames *f, size_t n)
-{
-    return (size_t)(frames_u64(f) % n);
-}
+static size_t below(struct frames *f, size_t n) { return (size_t)(frames_u64(f) % n); }
 
 static void put(uint8_t *at, uint32_t v, int bytes)
 {
@@ -36,10 +33,7 @@ static uint32_t add(uint32_t sum, const uint8_t *at, size_t n)
     return sum;
 }
 
-static uint32_t added(uint32_t a, uint32_t b)
-{
-    return a + b > 0xFFFF ? a + b - 0xFFFF : a + b;
-}
+static uint32_t added(uint32_t a, uint32_t b) { return a + b > 0xFFFF ? a + b - 0xFFFF : a + b; }
 
 void frames_sums(uint8_t *at, size_t len_B)
 {
@@ -135,11 +129,10 @@ static void bend(struct frames *f, uint8_t *at)
     static const struct {
         uint8_t at, bytes;
     } field[] = {{12, 2}, {14, 1}, {14, 1}, {16, 2}, {16, 2}, {18, 2}, {20, 2}, {20, 2}, {22, 1},
-                 {23, 1}, {24, 2}, {26, 4}, {30, 4}, {34, 2}, {36, 2}, {38, 2}, {38, 2}, {40, 2},
-                 {18, 1}, {19, 1}, {20, 2}, {22, 6}, {28, 4}, {32, 6}, {38, 4}, {6, 6}};
-    static const uint32_t odd[] = {
-        0,    1,    2,      5,      7,      8,      19,     20,     27,     28,     0x46,
-        0x4F, 0x60, 0x1FFF, 0x2000, 0x7FFF, 0x8000, 0x8100, 0x86DD, 0x0806, 0xFFFF, 0xFFFFFFFF};
+        {23, 1}, {24, 2}, {26, 4}, {30, 4}, {34, 2}, {36, 2}, {38, 2}, {38, 2}, {40, 2}, {18, 1},
+        {19, 1}, {20, 2}, {22, 6}, {28, 4}, {32, 6}, {38, 4}, {6, 6}};
+    static const uint32_t odd[] = {0, 1, 2, 5, 7, 8, 19, 20, 27, 28, 0x46, 0x4F, 0x60, 0x1FFF,
+        0x2000, 0x7FFF, 0x8000, 0x8100, 0x86DD, 0x0806, 0xFFFF, 0xFFFFFFFF};
     const size_t i = below(f, sizeof field / sizeof field[0]);
     const uint32_t v =
         below(f, 2) ? odd[below(f, sizeof odd / sizeof odd[0])] : (uint32_t)frames_u64(f);

@@ -22,10 +22,7 @@ static enum net_take take_at(size_t n, uint32_t now_us)
     return net_take(&net, frame, n, now_us, &at, &payload_B);
 }
 
-static enum net_take take(size_t n)
-{
-    return take_at(n, 0);
-}
+static enum net_take take(size_t n) { return take_at(n, 0); }
 
 static void fresh(void)
 {
@@ -46,24 +43,21 @@ static void dropped_at(size_t n, uint32_t now_us, enum net_drop why)
 {
     const uint32_t before = net.counts.drop[why], frames = net.counts.frames;
     const enum net_take got = take_at(n, now_us);
-    CHECK(got == NET_NOTHING && net.counts.drop[why] == before + 1 &&
-              net.counts.frames == frames + 1,
-          "%s: %d", net_drop_text(why), got);
+    CHECK(
+        got == NET_NOTHING && net.counts.drop[why] == before + 1 && net.counts.frames == frames + 1,
+        "%s: %d", net_drop_text(why), got);
     CHECK(at == NULL && payload_B == 0, "%s: hands over", net_drop_text(why));
 }
 
-static void dropped(size_t n, enum net_drop why)
-{
-    dropped_at(n, 0, why);
-}
+static void dropped(size_t n, enum net_drop why) { dropped_at(n, 0, why); }
 
 /* ---- worked examples: written down by hand, sums by hand ----------------------------- */
 
-static const uint8_t hello[] = {
-    0x52, 0x54, 0x00, 0x01, 0x02, 0x03, 0x02, 0x00, 0x00, 0x00, 0x00, 0x09, 0x08, 0x00, /* Ethernet
-                                                                                         */
-    0x45, 0x00, 0x00, 0x1F, 0x00, 0x00, 0x40, 0x00, 0x40, 0x11, 0x26, 0xCC, 0x0A, 0x00, 0x00,
-    0x01, 0x0A, 0x00, 0x00, 0x02,                   /* IPv4: 31 bytes, do not fragment, UDP */
+static const uint8_t hello[] = {0x52, 0x54, 0x00, 0x01, 0x02, 0x03, 0x02, 0x00, 0x00, 0x00, 0x00,
+    0x09, 0x08, 0x00, /* Ethernet
+                       */
+    0x45, 0x00, 0x00, 0x1F, 0x00, 0x00, 0x40, 0x00, 0x40, 0x11, 0x26, 0xCC, 0x0A, 0x00, 0x00, 0x01,
+    0x0A, 0x00, 0x00, 0x02,                         /* IPv4: 31 bytes, do not fragment, UDP */
     0x12, 0x8B, 0x12, 0x8B, 0x00, 0x0B, 0x02, 0x5D, /* UDP: 4747 to 4747, 11 bytes */
     0x61, 0x62, 0x63};                              /* abc */
 
@@ -100,12 +94,10 @@ TEST(a_datagram_is_made_as_in_the_example)
 
 TEST(arp_by_example)
 {
-    static const uint8_t ask[] = {255, 255, 255, 255, 255, 255, 0x52, 0x54, 0,    1, 2, 3, 8, 6,  0,
-                                  1,   8,   0,   6,   4,   0,   1,    0x52, 0x54, 0, 1, 2, 3, 10, 0,
-                                  0,   2,   0,   0,   0,   0,   0,    0,    10,   0, 0, 1};
-    static const uint8_t answer[] = {2,  0, 0, 0, 0, 9, 0x52, 0x54, 0,    1,    2,  3, 8, 6,
-                                     0,  1, 8, 0, 6, 4, 0,    2,    0x52, 0x54, 0,  1, 2, 3,
-                                     10, 0, 0, 2, 2, 0, 0,    0,    0,    9,    10, 0, 0, 1};
+    static const uint8_t ask[] = {255, 255, 255, 255, 255, 255, 0x52, 0x54, 0, 1, 2, 3, 8, 6, 0, 1,
+        8, 0, 6, 4, 0, 1, 0x52, 0x54, 0, 1, 2, 3, 10, 0, 0, 2, 0, 0, 0, 0, 0, 0, 10, 0, 0, 1};
+    static const uint8_t answer[] = {2, 0, 0, 0, 0, 9, 0x52, 0x54, 0, 1, 2, 3, 8, 6, 0, 1, 8, 0, 6,
+        4, 0, 2, 0x52, 0x54, 0, 1, 2, 3, 10, 0, 0, 2, 2, 0, 0, 0, 0, 9, 10, 0, 0, 1};
     fresh();
     CHECK_EQ_I64((int64_t)net_ask(&net, sent, 0), (int64_t)sizeof ask);
     CHECK(memcmp(sent, ask, sizeof ask) == 0, "asks otherwise");
@@ -187,8 +179,8 @@ TEST(arp_that_cannot_be_is_dropped)
 {
     static const struct {
         uint8_t at, value;
-    } wrong[] = {{15, 2}, {16, 9}, {18, 5},    {19, 6}, {21, 3},
-                 {21, 0}, {22, 1}, {22, 0xFF}, {11, 8}};
+    } wrong[] = {
+        {15, 2}, {16, 9}, {18, 5}, {19, 6}, {21, 3}, {21, 0}, {22, 1}, {22, 0xFF}, {11, 8}};
     struct frames odd = peer;
     fresh();
     for (unsigned i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
@@ -306,7 +298,7 @@ TEST(whatever_comes_is_counted_once_and_never_read_beyond_its_end)
         CHECK((got == NET_DATAGRAM) == (at != NULL), "frame %u: %d", i, got);
         CHECK(got != NET_DATAGRAM ||
                   (at == end + 42 && payload_B > 0 && payload_B <= 256 && 42 + payload_B <= n),
-              "frame %u: %zu of %zu bytes", i, payload_B, n);
+            "frame %u: %zu of %zu bytes", i, payload_B, n);
         if (got == NET_ANSWER) { CHECK_EQ_I64((int64_t)net_answer(&net, sent), NET_ARP_B); }
         (void)net_ask(&net, sent, i * 100);
     }
@@ -351,10 +343,9 @@ TEST(a_sum_of_zero_is_written_as_all_ones)
 
 TEST(addresses)
 {
-    static const char *const bad[] = {"",           "1",         "1.2.3",     "1.2.3.4.5",
-                                      "1.2.3.",     "1..2.3",    "1.2.3.256", "1.2.3.4 ",
-                                      "0.1.2.3",    "127.0.0.1", "224.0.0.1", "255.255.255.255",
-                                      "1.2.3.0004", "-1.2.3.4",  "1.2.3.4x",  "a.b.c.d"};
+    static const char *const bad[] = {"", "1", "1.2.3", "1.2.3.4.5", "1.2.3.", "1..2.3",
+        "1.2.3.256", "1.2.3.4 ", "0.1.2.3", "127.0.0.1", "224.0.0.1", "255.255.255.255",
+        "1.2.3.0004", "-1.2.3.4", "1.2.3.4x", "a.b.c.d"};
     uint32_t ip = 7;
     for (unsigned i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         CHECK(net_address(bad[i], &ip) < 0 && ip == 7, "\"%s\" is taken", bad[i]);
@@ -366,9 +357,8 @@ TEST(addresses)
 }
 
 TEST_MAIN("net", a_datagram_by_example, a_datagram_is_made_as_in_the_example, arp_by_example,
-          only_an_answer_that_was_asked_for_is_believed, a_question_does_not_stay_open,
-          it_asks_quickly_then_slowly_and_again_when_nothing_is_heard,
-          a_new_card_of_the_peer_is_found_by_asking, arp_that_cannot_be_is_dropped,
-          every_cause_of_a_drop, no_room_for_udp,
-          whatever_comes_is_counted_once_and_never_read_beyond_its_end,
-          what_we_make_a_peer_like_us_takes, a_sum_of_zero_is_written_as_all_ones, addresses);
+    only_an_answer_that_was_asked_for_is_believed, a_question_does_not_stay_open,
+    it_asks_quickly_then_slowly_and_again_when_nothing_is_heard,
+    a_new_card_of_the_peer_is_found_by_asking, arp_that_cannot_be_is_dropped, every_cause_of_a_drop,
+    no_room_for_udp, whatever_comes_is_counted_once_and_never_read_beyond_its_end,
+    what_we_make_a_peer_like_us_takes, a_sum_of_zero_is_written_as_all_ones, addresses);

@@ -104,8 +104,8 @@ static void print_cell(FILE *f, const struct cards_cell *c)
     }
     if (c->ends[CARDS_SAME]) {
         part(f, &parts);
-        fprintf(f, c->phase == EMU_PHASE_SAFE ? "**safe**, %u" : "no effect, %u",
-                c->ends[CARDS_SAME]);
+        fprintf(
+            f, c->phase == EMU_PHASE_SAFE ? "**safe**, %u" : "no effect, %u", c->ends[CARDS_SAME]);
     }
     if (c->ends[CARDS_LET_GO]) {
         part(f, &parts);
@@ -126,9 +126,9 @@ static void print_cell(FILE *f, const struct cards_cell *c)
 static void print_card(FILE *f, const struct cards_cell *cell, unsigned card)
 {
     fprintf(f, "\n%s at 0x%03X\n\n|", exh_box_card_text(card),
-            card == EMU_MM32XAT  ? 0x300u
-            : card == EMU_S526_B ? 0x280u
-                                 : 0x2C0u);
+        card == EMU_MM32XAT  ? 0x300u
+        : card == EMU_S526_B ? 0x280u
+                             : 0x2C0u);
     for (unsigned p = 0; p < EMU_PHASES; p++) { fprintf(f, " | %s", emu_phase_text(p)); }
     fprintf(f, " |\n|---|---|---|---|---|---|---|\n");
     for (int i = 0; i < CELLS; i++) {
@@ -171,7 +171,7 @@ static int print_table(FILE *f, const struct cards_cell *cell)
         runs += cell[i].accesses;
     }
     fprintf(f, "\n%d cells with an access, %lu beginnings tried: %d undefined, %d not seen.\n",
-            cells, runs, undefined, unseen);
+        cells, runs, undefined, unseen);
     return undefined;
 }
 
@@ -185,17 +185,14 @@ int cli_cards(int argc, char **argv)
         {"all", CLI_FLAG, &all, 0, 0, NULL, "begin at every access, not at some of each phase"},
         {"jobs", CLI_INT, &parallel, 1, 1024, "N", "processes at a time (one a core)"},
     };
-    const struct cli_command c = {"cards",
-                                  "[options]",
-                                  "Every misbehaviour of an emulated card in every phase of its "
-                                  "driver, and how it ends: the\n"
-                                  "table of docs/CARDS.md. Five fingers press against walls; "
-                                  "something goes wrong with one card,\n"
-                                  "from one access of a phase on, then from another, and stays. "
-                                  "Status 1: a cell is undefined.",
-                                  option,
-                                  (int)(sizeof option / sizeof option[0]),
-                                  0};
+    const struct cli_command c = {"cards", "[options]",
+        "Every misbehaviour of an emulated card in every phase of its "
+        "driver, and how it ends: the\n"
+        "table of docs/CARDS.md. Five fingers press against walls; "
+        "something goes wrong with one card,\n"
+        "from one access of a phase on, then from another, and stays. "
+        "Status 1: a cell is undefined.",
+        option, (int)(sizeof option / sizeof option[0]), 0};
     struct jobs jobs = {CELLS, 1, sizeof cell[0], cell, work, &asked, "cells", posix_interrupt};
     int err = cli_parse(&c, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }

@@ -68,8 +68,8 @@ static uint32_t pressing(const struct bilateral_run *r)
 /* Accesses of a card by phase, up to the end of so many ticks. */
 static int accesses(unsigned card, uint32_t ticks, uint32_t n[EMU_PHASES])
 {
-    const struct emu_fault count = {.kind = EMU_KINDS,
-                                    .card = (uint8_t)card}; /* no kind: only counted */
+    const struct emu_fault count = {
+        .kind = EMU_KINDS, .card = (uint8_t)card}; /* no kind: only counted */
     struct bilateral_run r;
     const int err = run_box(&count, ticks, 0, &r);
     memcpy(n, posix_cards_box()->in_phase, sizeof posix_cards_box()->in_phase);
@@ -119,7 +119,7 @@ static void judge_error(struct cards_cell *c, const struct emu_fault *f)
 }
 
 static void judge_run(struct cards_cell *c, const struct cards_healthy *h,
-                      const struct emu_fault *f, const struct bilateral_run *r)
+    const struct emu_fault *f, const struct bilateral_run *r)
 {
     const struct posix_cards_watch *w = posix_cards_watch();
     const uint32_t late = w->pressed > h->watch.pressed ? w->pressed - h->watch.pressed : 0;
@@ -140,8 +140,8 @@ static void judge_run(struct cards_cell *c, const struct cards_healthy *h,
     }
 }
 
-static void whole_run(struct cards_cell *c, const struct cards_healthy *h,
-                      const struct emu_fault *f)
+static void whole_run(
+    struct cards_cell *c, const struct cards_healthy *h, const struct emu_fault *f)
 {
     struct bilateral_run r;
     const int err = run_box(f, c->phase == EMU_PHASE_SAFE ? h->tick + 1 : 0, 0, &r);
@@ -182,10 +182,10 @@ void cards_cell(struct cards_cell *c, const struct cards_healthy *h)
     uint32_t opened = 0;
     for (uint32_t i = 0; i < n; i++) {
         const struct emu_fault f = {.kind = c->kind,
-                                    .card = c->card,
-                                    .axis = AXIS,
-                                    .phase = c->phase,
-                                    .after = h->before[c->card][c->phase] + i};
+            .card = c->card,
+            .axis = AXIS,
+            .phase = c->phase,
+            .after = h->before[c->card][c->phase] + i};
         if (!tried(c, i, n, opening ? CARDS_OPENINGS : CARDS_RUNS)) { continue; }
         if (opening && fails_to_open(c, &f)) {
             c->accesses++;

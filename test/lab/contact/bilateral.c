@@ -12,10 +12,7 @@ static struct {
     const char *preset;
 } is;
 
-static int studies(void)
-{
-    return is.sweep + (is.check > 0) + is.hands + is.crisp;
-}
+static int studies(void) { return is.sweep + (is.check > 0) + is.hands + is.crisp; }
 
 /* What says otherwise how the two are to be. */
 static int take_preset(const struct bilateral_options *o, double rate_Hz)
@@ -59,16 +56,16 @@ int lab_bilateral(int argc, char **argv)
 {
     const struct cli_option option[] = {
         {"preset", CLI_TEXT, &is.preset, 0, 0, "NAME",
-         "original: the commercial system at 90 Hz, beside this box at 2 kHz"},
+            "original: the commercial system at 90 Hz, beside this box at 2 kHz"},
         {"sweep", CLI_FLAG, &is.sweep, 0, 0, NULL,
-         "stiffness and missed contacts over delay, jitter and loss"},
+            "stiffness and missed contacts over delay, jitter and loss"},
         {"check", CLI_INT, &is.check, 1, 1e6, "N",
-         "random approaches: none may be felt before its freeze"},
+            "random approaches: none may be felt before its freeze"},
         {"hands", CLI_FLAG, &is.hands, 0, 0, NULL,
-         "80 fingers and hands: settling and stiffness of each"},
+            "80 fingers and hands: settling and stiffness of each"},
         {"crisp", CLI_FLAG, &is.crisp, 0, 0, NULL, "how fast force rises, over a grid of k and b"},
         {"jobs", CLI_INT, &is.jobs, 1, 1024, "N",
-         "processes at a time, of all but the experiment (one a core)"},
+            "processes at a time, of all but the experiment (one a core)"},
     };
     const struct bilateral_study study = {
         {option, (int)(sizeof option / sizeof option[0]), NULL}, refuse, run};

@@ -43,8 +43,8 @@ static void random_link(struct sim_random *r, struct sim_link_par *p)
 }
 
 /* One approach: any finger, wall, speed, hand, link and world. */
-static struct bilateral_run_cfg random_cfg(const struct bilateral_options *o, int i,
-                                           struct outcome *out)
+static struct bilateral_run_cfg random_cfg(
+    const struct bilateral_options *o, int i, struct outcome *out)
 {
     struct sim_random r = {.state = (uint64_t)o->seed * UINT64_C(0x9E3779B97F4A7C15) + (uint64_t)i};
     struct bilateral_run_cfg c = bilateral_at_speed(o, decades(&r, 0.03, 1.2));
@@ -81,7 +81,7 @@ static double age_s(const struct bilateral_run_cfg *c, int state_every)
 
 /* Whether the advice foretells that the plane may not be there in time. */
 static void advise(const struct bilateral_options *given, const struct bilateral_run_cfg *c,
-                   double scale, struct outcome *out)
+    double scale, struct outcome *out)
 {
     const struct bilateral_par *par = (const void *)exh_scene_bilateral.params->active;
     const struct exh_period T = {1, c->rate_Hz};
@@ -90,8 +90,8 @@ static void advise(const struct bilateral_options *given, const struct bilateral
     struct exh_precontact_need need;
     struct exh_precontact_advice a;
     o.run = *c;
-    need = bilateral_need(&o, scale > 0 ? scale : 1,
-                          out->speed_mps * (1 + c->board.exo.path[out->finger].vary));
+    need = bilateral_need(
+        &o, scale > 0 ? scale : 1, out->speed_mps * (1 + c->board.exo.path[out->finger].vary));
     need.age_us = old_s < 2 ? (int32_t)(1e6 * old_s) : 2000000;
     out->ray_m = c->ray_m;
     out->loss = c->board.line.way[0].loss;
@@ -150,16 +150,16 @@ static void say_missed(const struct outcome *r, int n)
            ".. %.0f mm, and saw them\n"
            "from 15 .. 60), %d others with packets lost, %d without; foretold and felt all the "
            "same: %d of %d\n",
-           missed, foreseen, 1e3 * shortest_m, 1e3 * longest_m, lossy, missed - foreseen - lossy,
-           cautious, told);
+        missed, foreseen, 1e3 * shortest_m, 1e3 * longest_m, lossy, missed - foreseen - lossy,
+        cautious, told);
 }
 
 int bilateral_check(const struct bilateral_options *o, int64_t approaches)
 {
     const int n = (int)approaches;
     struct outcome *r = calloc((size_t)n, sizeof *r);
-    const struct jobs jobs = {n, (int)o->jobs, sizeof *r,      r, work,
-                              o, "approaches", posix_interrupt};
+    const struct jobs jobs = {
+        n, (int)o->jobs, sizeof *r, r, work, o, "approaches", posix_interrupt};
     int done = 0, felt = 0, unfrozen = 0, early = 0, late = 0, missed = 0, ran;
     double low_m = 0, high_m = 0;
     if (r == NULL) {
@@ -178,7 +178,7 @@ int bilateral_check(const struct bilateral_options *o, int64_t approaches)
         if (r[i].felt && r[i].off_m > high_m) { high_m = r[i].off_m; }
         if (r[i].unfrozen || r[i].unplanned) {
             printf("approach %d: %s at %.3f m/s, wall at %.4f m: felt before its freeze\n", i,
-                   bilateral_finger_name[r[i].finger], r[i].speed_mps, r[i].at_m);
+                bilateral_finger_name[r[i].finger], r[i].speed_mps, r[i].at_m);
         }
     }
     printf("%d random approaches in closed loop: %d felt, %d before the freeze; %d missed: no "
@@ -186,7 +186,7 @@ int bilateral_check(const struct bilateral_options *o, int64_t approaches)
            "place, less where pad and object touch: %.2f .. %.2f mm of string (%d more than 1 mm "
            "early, %d "
            "more than 2 mm late)\n",
-           done, felt, unfrozen, missed, 1e3 * low_m, 1e3 * high_m, early, late);
+        done, felt, unfrozen, missed, 1e3 * low_m, 1e3 * high_m, early, late);
     say_missed(r, n);
     free(r);
     return ran ? ran : unfrozen || done < n ? 1 : 0;

@@ -82,10 +82,10 @@ static struct bilateral_run_cfg base(const struct bilateral_options *o, double o
 }
 
 static int run_cells(struct cell *cell, int n, void (*work)(const void *, int, void *),
-                     const struct bilateral_options *o)
+    const struct bilateral_options *o)
 {
-    const struct jobs jobs = {n, (int)o->jobs, sizeof *cell,   cell, work,
-                              o, "cells",      posix_interrupt};
+    const struct jobs jobs = {
+        n, (int)o->jobs, sizeof *cell, cell, work, o, "cells", posix_interrupt};
     int err = jobs_run(&jobs);
     for (int i = 0; err == 0 && i < n; i++) { err = !cell[i].done; }
     return err;
@@ -127,10 +127,7 @@ static void print_ms(double s, int there)
     }
 }
 
-static int has_line(const struct cell *c)
-{
-    return c->stiffness_Npm > 0;
-}
+static int has_line(const struct cell *c) { return c->stiffness_Npm > 0; }
 
 static int is_near(const struct cell *c)
 {
@@ -161,13 +158,13 @@ static void say_hands(const struct cell *cell)
            "%.0f %% of the paper's stiffness %d, with half of their contacts in 25 ms %d\n"
            "stiffness: %.0f .. %.0f N/m, median %.0f, %d of %d with a line, %d within %.0f %% of "
            "the paper's 41250 N/m\n",
-           1e3 * rest[0], 1e3 * rest[rests - 1], 1e3 * rest[rests / 2], contacts, rested, quick,
-           100 * NEAR, both, half, stiff[0], stiff[stiffs - 1], stiff[stiffs / 2], stiffs, HANDS,
-           near, 100 * NEAR);
+        1e3 * rest[0], 1e3 * rest[rests - 1], 1e3 * rest[rests / 2], contacts, rested, quick,
+        100 * NEAR, both, half, stiff[0], stiff[stiffs - 1], stiff[stiffs / 2], stiffs, HANDS, near,
+        100 * NEAR);
 }
 
 static int leave(const struct bilateral_options *o, const struct cell *cell, int n,
-                 const char *name, const char *columns, int at)
+    const char *name, const char *columns, int at)
 {
     char file[64];
     FILE *f, *g;
@@ -177,9 +174,9 @@ static int leave(const struct bilateral_options *o, const struct cell *cell, int
     g = f ? bilateral_out_file(o->out, file) : NULL;
     if (g == NULL) { return 1; }
     fprintf(f,
-            "%s,contacts,settled,rested,settle_s,rest_s,stiffness_n_per_m,rise_n_per_m,speed_m_per_"
-            "s,quick,quickest_s\n",
-            columns);
+        "%s,contacts,settled,rested,settle_s,rest_s,stiffness_n_per_m,rise_n_per_m,speed_m_per_"
+        "s,quick,quickest_s\n",
+        columns);
     for (int i = 0; i < n; i++) {
         const struct cell *c = &cell[i];
         for (int k = 0; k < at; k++) { fprintf(f, "%.9g,", c->at[k]); }
@@ -194,10 +191,10 @@ static int leave(const struct bilateral_options *o, const struct cell *cell, int
         fputc('\n', f);
     }
     fprintf(g,
-            "# Made by exhand bilateral --%s: gnuplot -c %s.gp PLOTS\nplots=ARG1\ndata='%s.csv'\n"
-            "k='%.6g'; b='%.6g'; speed='%.3g'\nload plots.'/bilateral_%s.gp'\n",
-            name, name, name, o->run.k_Npm, o->run.b_Nspm,
-            speed_of(o, at == 3 ? sim_path_speed("natural") : CRISP_MPS), name);
+        "# Made by exhand bilateral --%s: gnuplot -c %s.gp PLOTS\nplots=ARG1\ndata='%s.csv'\n"
+        "k='%.6g'; b='%.6g'; speed='%.3g'\nload plots.'/bilateral_%s.gp'\n",
+        name, name, name, o->run.k_Npm, o->run.b_Nspm,
+        speed_of(o, at == 3 ? sim_path_speed("natural") : CRISP_MPS), name);
     return (fclose(f) | fclose(g)) != 0;
 }
 

@@ -56,10 +56,7 @@ struct column {
     int columns;
 };
 
-static double *at(const struct column *c, enum row r)
-{
-    return &c->v[(int)r * c->columns];
-}
+static double *at(const struct column *c, enum row r) { return &c->v[(int)r * c->columns]; }
 
 /* All of one kind: none is 0 approaches. */
 static void fill_contacts(const struct column *to, const struct bilateral_contact *k, int n)
@@ -103,7 +100,7 @@ static void fill_samples(const struct column *to, const struct bilateral_run *r,
 }
 
 static int trace(const char *dir, int n, const struct bilateral_run *r, unsigned f,
-                 const struct bilateral_contact *k)
+    const struct bilateral_contact *k)
 {
     const struct bilateral_track *t = &r->finger[f];
     struct fall_sample *s = calloc(t->n + 1, sizeof *s);
@@ -115,8 +112,8 @@ static int trace(const char *dir, int n, const struct bilateral_run *r, unsigned
     return err;
 }
 
-static int column(const struct column *to, const struct bilateral_run_cfg *c, const char *dir,
-                  int n)
+static int column(
+    const struct column *to, const struct bilateral_run_cfg *c, const char *dir, int n)
 {
     static struct bilateral_contact contact[BILATERAL_CONTACTS_MAX];
     struct bilateral_run r;
@@ -139,8 +136,8 @@ static int column(const struct column *to, const struct bilateral_run_cfg *c, co
 }
 
 /* Of 90 Hz and a glove of 8 bits, a frame late, with nothing that smooths it. */
-static struct bilateral_run_cfg original_of(const struct bilateral_run_cfg *box,
-                                            struct run_setting setting[BILATERAL_SETTINGS_MAX + 3])
+static struct bilateral_run_cfg original_of(
+    const struct bilateral_run_cfg *box, struct run_setting setting[BILATERAL_SETTINGS_MAX + 3])
 {
     static const struct run_setting plain[3] = {
         {"glove_order", 0}, {"glove_bits", 16}, {"glove_hyst", 0}};
@@ -173,8 +170,8 @@ int bilateral_original(const struct bilateral_options *o)
         const int draw = n / 2 == o->speeds / 2;
         c.keep = 1;
         if (n % 2 == 0) { c = original_of(&c, setting); }
-        (void)snprintf(name[n], sizeof name[n], "%s %s", speed->name,
-                       n % 2 ? "this box" : "original");
+        (void)snprintf(
+            name[n], sizeof name[n], "%s %s", speed->name, n % 2 ? "this box" : "original");
         names[n] = name[n];
         err = column(&to, &c, draw ? o->out : NULL, n % 2);
         if (posix_interrupted()) { return 130; }

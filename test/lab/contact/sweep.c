@@ -13,8 +13,8 @@
 #define CELLS   (DELAYS * JITTERS * LOSSES)
 
 /* One way, s; jitter as a share of the delay. */
-static const double delay_s[DELAYS] = {0,     0.0025, 0.005, 0.0075, 0.01,  0.0125,
-                                       0.015, 0.0175, 0.02,  0.025,  0.035, 0.05};
+static const double delay_s[DELAYS] = {
+    0, 0.0025, 0.005, 0.0075, 0.01, 0.0125, 0.015, 0.0175, 0.02, 0.025, 0.035, 0.05};
 static const double jitter[JITTERS] = {0, 0.5, 1};
 static const double loss[LOSSES] = {0, 0.1, 0.3, 0.6};
 
@@ -118,16 +118,16 @@ static int files(const struct bilateral_options *o, const struct cell *cell)
     for (int i = 0; i < CELLS; i++) {
         const struct cell *c = &cell[i];
         fprintf(f, "%.9g,%.9g,%.9g,%d,%d,%d,%d,%d,", delay_s[i / (JITTERS * LOSSES)],
-                jitter[i / LOSSES % JITTERS], loss[i % LOSSES], c->tries, c->felt, c->missed,
-                c->early, same(cell, i));
+            jitter[i / LOSSES % JITTERS], loss[i % LOSSES], c->tries, c->felt, c->missed, c->early,
+            same(cell, i));
         if (share(cell, i) >= 0) { fprintf(f, "%.9g", share(cell, i)); }
         fputc('\n', f);
     }
     fprintf(g,
-            "# Made by exhand bilateral --sweep: gnuplot -c sweep.gp PLOTS\nplots=ARG1\n"
-            "data='sweep.csv'; speed='%.3g'; ray_mm='%.3g'; fps='%.4g'; allowed_ms=%.4g\n"
-            "jitters='0 0.5 1'; losses='0 0.1 0.3 0.6'\nload plots.'/bilateral_sweep.gp'\n",
-            o->speed[0].mps, 1e3 * o->run.ray_m, o->run.fps, 1e3 * allowed_s(o));
+        "# Made by exhand bilateral --sweep: gnuplot -c sweep.gp PLOTS\nplots=ARG1\n"
+        "data='sweep.csv'; speed='%.3g'; ray_mm='%.3g'; fps='%.4g'; allowed_ms=%.4g\n"
+        "jitters='0 0.5 1'; losses='0 0.1 0.3 0.6'\nload plots.'/bilateral_sweep.gp'\n",
+        o->speed[0].mps, 1e3 * o->run.ray_m, o->run.fps, 1e3 * allowed_s(o));
     return (fclose(f) | fclose(g)) != 0;
 }
 
@@ -160,8 +160,8 @@ int bilateral_sweep(const struct bilateral_options *given)
 {
     static struct cell cell[CELLS];
     static struct bilateral_options o;
-    const struct jobs jobs = {CELLS, (int)given->jobs, sizeof cell[0], cell, work,
-                              &o,    "cells",          posix_interrupt};
+    const struct jobs jobs = {
+        CELLS, (int)given->jobs, sizeof cell[0], cell, work, &o, "cells", posix_interrupt};
     int ran, err = 0, unfrozen = 0;
     o = *given;
     if (o.speeds > 1) { (void)snprintf(o.speed[0].name, BILATERAL_NAME_B, "natural"); }
@@ -180,7 +180,7 @@ int bilateral_sweep(const struct bilateral_options *given)
             printf("walls are seen from %.0f mm: by the advice in time up to %.1f ms there and "
                    "back, jitter and "
                    "lost\npackets' waits included\n",
-                   1e3 * o.run.ray_m, 1e3 * allowed_s(&o));
+                1e3 * o.run.ray_m, 1e3 * allowed_s(&o));
         }
         bilateral_run_free(&r);
     }

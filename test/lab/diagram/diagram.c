@@ -18,8 +18,16 @@
 static const struct {
     const char *ascii, *text;
 } unit[] = {
-    {"n", "N"},         {"a", "A"},   {"m_per_s", "m/s"}, {"n_per_m", "N/m"}, {"ns_per_m", "Ns/m"},
-    {"n_per_a", "N/A"}, {"hz", "Hz"}, {"n_per_s", "N/s"}, {"per_a", "per A"}, {"n_per_v", "N/V"},
+    {"n", "N"},
+    {"a", "A"},
+    {"m_per_s", "m/s"},
+    {"n_per_m", "N/m"},
+    {"ns_per_m", "Ns/m"},
+    {"n_per_a", "N/A"},
+    {"hz", "Hz"},
+    {"n_per_s", "N/s"},
+    {"per_a", "per A"},
+    {"n_per_v", "N/V"},
 };
 
 static const char *unit_text(const char *ascii)
@@ -37,8 +45,8 @@ static int parameter(char *to, size_t cap, const struct exh_scene *sc, const cha
     const struct exh_signal *r = cli_signal_find(p->table, name, NULL);
     if (r == NULL) { return 1; }
     snprintf(to, cap, "%s %.5g%s%s", name,
-             cli_signal_value(r, p->active[exh_signal_find(p->table, r->id, 0)]),
-             r->unit[0] ? " " : "", unit_text(r->unit));
+        cli_signal_value(r, p->active[exh_signal_find(p->table, r->id, 0)]), r->unit[0] ? " " : "",
+        unit_text(r->unit));
     return 0;
 }
 
@@ -101,14 +109,10 @@ int diagram_expand(FILE *in, FILE *out)
 
 int cli_diagram(int argc, char **argv)
 {
-    const struct cli_command c = {
-        "diagram",
-        "FILE",
+    const struct cli_command c = {"diagram", "FILE",
         "Prints FILE with {p:k}, a row of the signal and device tables, as its name, value and "
         "unit: the block diagrams, test/lab/diagram/*.dot, for Graphviz (make diagrams).",
-        NULL,
-        0,
-        1};
+        NULL, 0, 1};
     const char *name = NULL;
     int err = cli_parse(&c, argc, argv, &name);
     FILE *f;

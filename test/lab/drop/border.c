@@ -166,16 +166,13 @@ static void work(const void *ctx, int i, void *result)
     x.done = r.done && !r.error;
     x.stable = !r.faults && 10 * (r.falls - r.oscillating - r.incomplete) >= 9 * r.falls;
     x.rho = linear_rho(&p->o->base.board.device, 1 / p->o->rate_Hz[x.rate_i], x.k_Npm, x.b_Nspm,
-                       sweep_window(&p->o->base));
+        sweep_window(&p->o->base));
     memcpy(result, &x, sizeof x);
 }
 
 /* --- what came out --- */
 
-static int linear(const struct check *x)
-{
-    return x->rho >= 0 && x->rho < 1;
-}
+static int linear(const struct check *x) { return x->rho >= 0 && x->rho < 1; }
 
 static int print_agreement(const struct plan *p, const struct check *x, int n)
 {
@@ -198,13 +195,13 @@ static int print_agreement(const struct plan *p, const struct check *x, int n)
             to[1] += agree;
         }
         printf("%6.6g | %5d | %5d of %5d = %6.2f %%       | %4d of %4d\n", o->rate_Hz[r],
-               away[0] + near[0], away[1], away[0], away[0] ? 100.0 * away[1] / away[0] : 0,
-               near[1], near[0]);
+            away[0] + near[0], away[1], away[0], away[0] ? 100.0 * away[1] / away[0] : 0, near[1],
+            near[0]);
         all[0] += away[0];
         all[1] += away[1];
     }
     printf("   all |       | %5d of %5d = %6.2f %% (>= %.0f %%)\n", all[1], all[0],
-           all[0] ? 100.0 * all[1] / all[0] : 0, 100 * AGREE_MIN);
+        all[0] ? 100.0 * all[1] / all[0] : 0, 100 * AGREE_MIN);
     return all[0] > 0 && all[1] >= AGREE_MIN * all[0];
 }
 
@@ -221,7 +218,7 @@ static void print_parts(const struct plan *p, const struct check *x, int n, int 
         printf("\nThe same dropped from the height, %d falls a cell: the string goes slack, force "
                "only "
                "pulls\n\n%-38s",
-               DROPS, "");
+            DROPS, "");
     }
     for (int r = 0; r < p->o->rates; r++) { printf(" %9.6g Hz   ", p->o->rate_Hz[r]); }
     printf("\n");
@@ -241,7 +238,7 @@ static void print_parts(const struct plan *p, const struct check *x, int n, int 
                 lost += !x[i].stable && linear(&x[i]);
             }
             snprintf(text, sizeof text, "%4.0f (+%d -%d)", within ? 100.0 * rest / within : 0, won,
-                     lost);
+                lost);
             printf(" %-14s", text);
         }
         printf("\n");
@@ -262,8 +259,8 @@ static int write_csv(const struct plan *p, const struct check *x, int n)
     fprintf(f, "table,start,switched_on,rate_hz,k_n_per_m,b_ns_per_m,rho,stable\n");
     for (int i = 0; i < n; i++) {
         fprintf(f, "%s,%s,%s,%.9g,%.9g,%.9g,%.6f,%d\n", x[i].agreement ? "agreement" : "parts",
-                x[i].start == LET_GO ? "let_go" : "dropped", variant[x[i].variant].name,
-                p->o->rate_Hz[x[i].rate_i], x[i].k_Npm, x[i].b_Nspm, x[i].rho, x[i].stable);
+            x[i].start == LET_GO ? "let_go" : "dropped", variant[x[i].variant].name,
+            p->o->rate_Hz[x[i].rate_i], x[i].k_Npm, x[i].b_Nspm, x[i].rho, x[i].stable);
     }
     bad = ferror(f);
     if (fclose(f) == 0 && !bad) { return 0; }

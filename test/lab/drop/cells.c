@@ -15,10 +15,7 @@
 static const char header[] =
     "rate_hz,k_n_per_m,b_ns_per_m,stable_falls,falls,stiffness_n_per_m,rho\n";
 
-int cell_stable(const struct cell *c)
-{
-    return 10 * c->stable_falls >= 9 * c->falls;
-}
+int cell_stable(const struct cell *c) { return 10 * c->stable_falls >= 9 * c->falls; }
 
 /* --- in memory --- */
 
@@ -76,10 +73,7 @@ int cells_add(struct cells *c, const struct cell *add)
     return 0;
 }
 
-static int compare_any(const void *a, const void *b)
-{
-    return compare(a, b);
-}
+static int compare_any(const void *a, const void *b) { return compare(a, b); }
 
 void cells_sort(struct cells *c)
 {
@@ -102,7 +96,7 @@ void cells_free(struct cells *c)
 static void format(char line[LINE_B], const struct cell *c)
 {
     int n = snprintf(line, LINE_B, "%.9g,%.9g,%.9g,%d,%d,", c->rate_Hz, c->k_Npm, c->b_Nspm,
-                     c->stable_falls, c->falls);
+        c->stable_falls, c->falls);
     if (c->stiffness_Npm > 0) {
         n += snprintf(line + n, LINE_B - (size_t)n, "%.6g", c->stiffness_Npm);
     }
@@ -158,8 +152,8 @@ static int other_settings(const char *path, const char *there, const char *here)
     there += start + (there[start] == ' ');
     here += start + (here[start] == ' ');
     cli_complain("%s: made with %.*s, not with %.*s: choose another --out, or remove the file",
-                 path, *there ? (int)strcspn(there, " ") : 15, *there ? there : "nothing further",
-                 *here ? (int)strcspn(here, " ") : 15, *here ? here : "nothing further");
+        path, *there ? (int)strcspn(there, " ") : 15, *there ? there : "nothing further",
+        *here ? (int)strcspn(here, " ") : 15, *here ? here : "nothing further");
     return 2;
 }
 
@@ -181,7 +175,7 @@ static int load(struct cells *c, FILE *f, const char *path)
         } else if (strcmp(line, header) != 0) {
             if (!parse(line, &cell)) {
                 cli_complain("%s:%d: %.40s: no cell: remove this line, it will be run again", path,
-                             number, line);
+                    number, line);
                 return 2;
             }
             if (cells_add(c, &cell)) { return 1; }

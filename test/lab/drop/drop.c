@@ -38,14 +38,14 @@ static void work(const void *ctx, int i, void *result)
         const int rate_i = j / (2 * (int)is.spread);
         const int run = j % (2 * (int)is.spread);
         const struct run_cfg c = drop_run_cfg(o, rate_i, run < is.spread ? 1 : 1.5,
-                                              (uint64_t)o->seed + 1 + (uint64_t)(run % is.spread));
+            (uint64_t)o->seed + 1 + (uint64_t)(run % is.spread));
         r = table2_measure_more(&c, NULL, TABLE2_SAME, o->more);
     }
     memcpy(result, &r, sizeof r);
 }
 
-static int write_spread(const char *dir, const struct table2_result *r,
-                        const struct table2_spread *s, int rows)
+static int write_spread(
+    const char *dir, const struct table2_result *r, const struct table2_spread *s, int rows)
 {
     FILE *f = outdir_create(dir, "spread.csv");
     if (f == NULL) { return 1; }
@@ -79,8 +79,8 @@ static int report(const struct drop_options *o, const struct table2_result *r)
 static int report_readings(const struct drop_options *o, const struct table2_result *r)
 {
     const int spread = (int)is.spread;
-    const struct table2_readings t = {r, o->rates, spread ? o->rates : 0, spread ? 2 * spread : 1,
-                                      spread ? spread : 1};
+    const struct table2_readings t = {
+        r, o->rates, spread ? o->rates : 0, spread ? 2 * spread : 1, spread ? spread : 1};
     char path[TABLE2_PATH_B];
     FILE *f;
     table2_readings_print(stdout, &t);
@@ -112,8 +112,8 @@ static int experiment(const struct drop_options *o)
     if (ran == 0 && is.readings) { err |= report_readings(o, r); }
     if (ran == JOBS_INTERRUPTED) {
         cli_complain("interrupted: %d of %d rates and %d of %d further runs were finished%s%s",
-                     drop_done(r, o->rates), o->rates, drop_done(r + o->rates, further), further,
-                     o->out ? ", what they wrote is kept in " : "", o->out ? o->out : "");
+            drop_done(r, o->rates), o->rates, drop_done(r + o->rates, further), further,
+            o->out ? ", what they wrote is kept in " : "", o->out ? o->out : "");
     }
     free(r);
     return ran ? ran : err;
@@ -133,10 +133,10 @@ static int beside_original(const struct drop_options *o)
 static int plane(const struct drop_options *o)
 {
     struct sweep_opt s = {.rate_Hz = o->rate_Hz,
-                          .rates = o->rates,
-                          .jobs = (int)o->jobs,
-                          .base = drop_run_cfg(o, 0, 1, (uint64_t)o->seed),
-                          .dir = o->out};
+        .rates = o->rates,
+        .jobs = (int)o->jobs,
+        .base = drop_run_cfg(o, 0, 1, (uint64_t)o->seed),
+        .dir = o->out};
     if (is.sweep + is.check + (is.friction > 0) > 1) {
         cli_complain("--sweep, --border-check, --friction: one at a time");
         return 2;
@@ -157,7 +157,7 @@ static int plane(const struct drop_options *o)
     if (assign_grid(is.grid    ? is.grid
                     : is.sweep ? "20x16"
                                : "16x16",
-                    &s.columns, &s.rows) ||
+            &s.columns, &s.rows) ||
         sweep_take_shard(is.shard ? is.shard : "1/1", &s.shard, &s.shards)) {
         return 2;
     }
@@ -177,8 +177,8 @@ static int refuse(struct drop_options *o)
     if (err) { return err; }
     if (is.preset &&
         (o->T.num != 0 || o->rates_given || o->k_Npm >= 0 || o->b_Nspm >= 0 || o->scale != 1 ||
-         o->further || o->pace || o->blackbox || o->gpio.given || o->params.load ||
-         o->params.save || is.readings || o->guarded || o->custom || o->plane)) {
+            o->further || o->pace || o->blackbox || o->gpio.given || o->params.load ||
+            o->params.save || is.readings || o->guarded || o->custom || o->plane)) {
         cli_complain("--preset: goes with --falls, --seed, --out, --set, --device, --calibration, "
                      "--cards and --let-go alone");
         return 2;
@@ -205,22 +205,23 @@ int lab_drop(int argc, char **argv)
     static struct drop_options o;
     static const struct cli_option option[] = {
         {"spread", CLI_INT, &is.spread, 0, 1000, "N",
-         "further runs, at 1 and 1.5 times both gains (0)"},
+            "further runs, at 1 and 1.5 times both gains (0)"},
         {"sweep", CLI_FLAG, &is.sweep, 0, 0, NULL,
-         "the stability border in the k-b plane, in DIR/stability.csv; stopped or killed, it goes "
-         "on from there"},
+            "the stability border in the k-b plane, in DIR/stability.csv; stopped or killed, it "
+            "goes "
+            "on from there"},
         {"grid", CLI_TEXT, &is.grid, 0, 0, "KxB",
-         "cells at each rate of --sweep (20x16), --border-check (16x16)"},
+            "cells at each rate of --sweep (20x16), --border-check (16x16)"},
         {"shard", CLI_TEXT, &is.shard, 0, 0, "I/N",
-         "the I-th of N parts of the sweep, in a file of its own; then without: one map of all"},
+            "the I-th of N parts of the sweep, in a file of its own; then without: one map of all"},
         {"border-check", CLI_FLAG, &is.check, 0, 0, NULL,
-         "the simulated border beside that of the linear test"},
+            "the simulated border beside that of the linear test"},
         {"friction", CLI_INT, &is.friction, 2, FRICTION_POINTS_MAX, "N",
-         "the border against N amounts of friction, 0..2 times"},
+            "the border against N amounts of friction, 0..2 times"},
         {"preset", CLI_TEXT, &is.preset, 0, 0, "NAME",
-         "original: the commercial system at 90 Hz, beside this box at 2 kHz"},
+            "original: the commercial system at 90 Hz, beside this box at 2 kHz"},
         {"readings", CLI_FLAG, &is.readings, 0, 0, NULL,
-         "the stiffness by every reading of the paper's analysis"},
+            "the stiffness by every reading of the paper's analysis"},
     };
     const struct drop_study study = {
         {option, (int)(sizeof option / sizeof option[0]), NULL}, refuse, run};

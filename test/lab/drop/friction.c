@@ -20,8 +20,8 @@
 
 enum kind { BOTH, DRY, VISCOUS, KINDS };
 static const char *const kind_name[] = {"all", "dry", "viscous"};
-static const char *const kind_text[] = {"all friction", "dry friction alone, viscous as it is",
-                                        "viscous friction alone, dry as it is"};
+static const char *const kind_text[] = {
+    "all friction", "dry friction alone, viscous as it is", "viscous friction alone, dry as it is"};
 
 struct ray {
     const struct sweep_opt *o;
@@ -131,7 +131,7 @@ static void print(const struct sweep_opt *o, const struct limit *x, int points)
     printf("\nThe border along the ray through the paper's point, in its gains, against friction\n"
            "(%d falls a cell; -: at rest at no gain from %.1f up; >=: at rest at the last gain "
            "tried)\n",
-           o->base.board.falls, GAIN_FIRST);
+        o->base.board.falls, GAIN_FIRST);
     for (int kind = 0; kind < KINDS; kind++) {
         printf("\n%-38s", kind_text[kind]);
         for (int r = 0; r < o->rates; r++) { printf(" %6.6g Hz", o->rate_Hz[r]); }
@@ -160,7 +160,7 @@ static int write_csv(FILE *f, const struct sweep_opt *o, const struct limit *x, 
         char unstable[24] = "";
         if (!x[i].open) { snprintf(unstable, sizeof unstable, "%.6g", x[i].unstable); }
         fprintf(f, "%s,%.9g,%.6g,%.6g,%s,%.6g\n", kind_name[x[i].kind], o->rate_Hz[x[i].rate_i],
-                x[i].scale, x[i].stable, unstable, x[i].linear);
+            x[i].scale, x[i].stable, unstable, x[i].linear);
     }
     return ferror(f);
 }

@@ -88,10 +88,7 @@ static double octave_k(double rate_Hz, int i)
     return octave(first, K_MAX_NPM, i);
 }
 
-static double octave_b(int j)
-{
-    return j == 0 ? 0 : octave(2, B_MAX_NSPM, j - 1);
-}
+static double octave_b(int j) { return j == 0 ? 0 : octave(2, B_MAX_NSPM, j - 1); }
 
 struct reach {
     double k_Npm, b_Nspm; /* a column and a row of octaves in which nothing is stable */
@@ -150,10 +147,7 @@ static const struct cell *at(struct wants *w, const struct line *l, double v)
     return l->is_row ? need(w, l->rate_Hz, v, l->fixed) : need(w, l->rate_Hz, l->fixed, v);
 }
 
-static double value(const struct line *l, int i)
-{
-    return l->first + l->step * i;
-}
+static double value(const struct line *l, int i) { return l->first + l->step * i; }
 
 /* k, or b, is raised on a line until it is unstable: the border is where the stable
  * cells from the first one on end. 1: known, *below the highest value still found stable
@@ -327,8 +321,8 @@ static int any_k(struct linear *x, double b)
     return 0;
 }
 
-static double halve(struct linear *x, int (*any)(struct linear *x, double v), double v,
-                    double above, double most)
+static double halve(
+    struct linear *x, int (*any)(struct linear *x, double v), double v, double above, double most)
 {
     for (int n = 0; n < 7 && above <= most; n++) {
         const double mid = (v + above) / 2;
@@ -384,8 +378,8 @@ static struct peak linear_peak(const struct sweep_opt *o, double rate_Hz)
 
 /* --- what a rate has --- */
 
-static struct found find(const struct cells *cells, const struct sweep_opt *o, double rate_Hz,
-                         FILE *f)
+static struct found find(
+    const struct cells *cells, const struct sweep_opt *o, double rate_Hz, FILE *f)
 {
     struct wants w = {cells, NULL, 0, 0, 0};
     struct found x;
@@ -412,7 +406,7 @@ static struct found find(const struct cells *cells, const struct sweep_opt *o, d
         raise_peak(&x.sim, &l, below, known == 2);
         if (known == 2) { continue; }
         fprintf(f, "%.9g,%s,%.9g,%.9g\n", rate_Hz, l.is_row ? "k" : "b",
-                l.is_row ? (below + above) / 2 : l.fixed, l.is_row ? l.fixed : (below + above) / 2);
+            l.is_row ? (below + above) / 2 : l.fixed, l.is_row ? l.fixed : (below + above) / 2);
     }
     free(w.at);
     return x;
@@ -435,8 +429,7 @@ static void write_rho(FILE *f, const struct sweep_opt *o, const struct found *x)
 
 static void write_picture(FILE *f, const struct found *x, int n)
 {
-    fprintf(
-        f,
+    fprintf(f,
         "# Made by exhand drop --sweep. Inside this directory, PLOTS the way to "
         "ports/posix/plot:\n#   gnuplot -c sweep.gp PLOTS\nplots=ARG1\n"
         "out='stability.png'; cells='stability.csv'; border='border.csv'; rho='rho.csv'\nrates='");
@@ -491,7 +484,7 @@ static void print(const struct found *x, int n, int falls)
            "    Hz |             N/m   Ns/m |            Ns/m    N/m |       N/m    Ns/m |         "
            "    N/m "
            "|     k    b\n",
-           falls);
+        falls);
     for (int i = 0; i < n; i++) {
         const struct table2_row *row = table2_at(x[i].rate_Hz);
         char paper[40] = "-", stiffest[24] = "-", k[40], b[40];
@@ -500,9 +493,9 @@ static void print(const struct found *x, int n, int falls)
             snprintf(stiffest, sizeof stiffest, "%.0f", x[i].stiffness_Npm);
         }
         printf("%6.6g |%s |%s | %9.5g %7.4g | %15s | %s\n", x[i].rate_Hz,
-               peak_text(k, x[i].sim.k_Npm, x[i].sim.k_at_b, x[i].sim.k_open),
-               peak_text(b, x[i].sim.b_Nspm, x[i].sim.b_at_k, x[i].sim.b_open), x[i].linear.k_Npm,
-               x[i].linear.b_Nspm, stiffest, paper);
+            peak_text(k, x[i].sim.k_Npm, x[i].sim.k_at_b, x[i].sim.k_open),
+            peak_text(b, x[i].sim.b_Nspm, x[i].sim.b_at_k, x[i].sim.b_open), x[i].linear.k_Npm,
+            x[i].linear.b_Nspm, stiffest, paper);
         any_open |= x[i].sim.k_open | x[i].sim.b_open;
         if (x[i].rate_Hz == 90) { slow = &x[i]; }
         if (x[i].rate_Hz == 2000) { fast = &x[i]; }
@@ -511,11 +504,10 @@ static void print(const struct found *x, int n, int falls)
     if (!slow || !fast) { return; }
     printf("\nFrom 90 to 2000 Hz                              times\n");
     ratio("largest stable k", slow->sim.k_open ? 0 : slow->sim.k_Npm,
-          fast->sim.k_open ? 0 : fast->sim.k_Npm,
-          "paper: nearly 20 in its text, 13.3 in its table");
+        fast->sim.k_open ? 0 : fast->sim.k_Npm, "paper: nearly 20 in its text, 13.3 in its table");
     ratio("largest stable b", slow->sim.b_open ? 0 : slow->sim.b_Nspm,
-          fast->sim.b_open ? 0 : fast->sim.b_Nspm,
-          "paper: nearly 20 in its text; its table starts at 0");
+        fast->sim.b_open ? 0 : fast->sim.b_Nspm,
+        "paper: nearly 20 in its text; its table starts at 0");
     ratio("stiffest stable cell", slow->stiffness_Npm, fast->stiffness_Npm, "paper: 36");
     ratio("largest k with rho < 1", slow->linear.k_Npm, fast->linear.k_Npm, "");
     ratio("largest b with rho < 1", slow->linear.b_Nspm, fast->linear.b_Nspm, "");
@@ -544,13 +536,12 @@ static int write_stiffness(const struct sweep_opt *o, const struct found *x)
 {
     FILE *f = create(o, "stiffness.csv");
     if (f == NULL) { return 1; }
-    fprintf(
-        f,
+    fprintf(f,
         "rate_hz,k_n_per_m,at_b_ns_per_m,open,linear_k_n_per_m,stiffest_n_per_m,paper_k_n_per_m\n");
     for (int i = 0; i < o->rates; i++) {
         const struct table2_row *row = table2_at(x[i].rate_Hz);
         fprintf(f, "%.9g,%.9g,%.9g,%d,%.9g,%.9g,", x[i].rate_Hz, x[i].sim.k_Npm, x[i].sim.k_at_b,
-                x[i].sim.k_open, x[i].linear.k_Npm, x[i].stiffness_Npm);
+            x[i].sim.k_open, x[i].linear.k_Npm, x[i].stiffness_Npm);
         if (row) { fprintf(f, "%.9g", row->k_Npm); }
         fputc('\n', f);
     }

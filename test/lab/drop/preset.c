@@ -16,7 +16,7 @@ int original_take(const char *text)
     if (strcmp(text, ORIGINAL_NAME) == 0) { return 0; }
     cli_complain("--preset: %s: no such preset (" ORIGINAL_NAME
                  "): the commercial system beside this box",
-                 text);
+        text);
     return 2;
 }
 
@@ -123,12 +123,12 @@ static void write_trace(FILE *f, const void *ctx)
         const double t_s = t->s[i].t_s - from_s;
         if (t_s < -BEFORE_S || t_s > SHOWN_S) { continue; }
         fprintf(f, "%.9g,%.9g,%.9g,%.9g\n", t_s, t->s[i].q_m - t->wall_m, t->s[i].f_des_N,
-                t->s[i].f_mon_N);
+            t->s[i].f_mon_N);
     }
 }
 
-int original_trace(const char *dir, int n_th, const struct fall_sample *s, size_t n, size_t contact,
-                   double wall_m)
+int original_trace(
+    const char *dir, int n_th, const struct fall_sample *s, size_t n, size_t contact, double wall_m)
 {
     const struct trace t = {s, n, contact, wall_m};
     char name[32];

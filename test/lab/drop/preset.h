@@ -42,7 +42,7 @@ int original_out(const char *dir, const struct original_table *t, const char *co
 /* DIR/original_N.csv: a contact from 10 ms before its first sample on: seconds since, metres past
  * wall_m, newtons. */
 int original_trace(const char *dir, int n_th, const struct fall_sample *s, size_t n, size_t contact,
-                   double wall_m);
+    double wall_m);
 
 /* What samples in contact say together. */
 struct original_contact {

@@ -30,7 +30,7 @@ int reading_find(const char *name)
 
 /* fall_stiffness() without the interval and the lists. */
 static enum fall_status line(const struct fall_log *log, const struct fall_contacts *contacts,
-                             const struct fall_opt *o, struct fall_fit *out)
+    const struct fall_opt *o, struct fall_fit *out)
 {
     struct fall_pairs raw = {NULL, 0}, band = {NULL, 0}, averaged = {NULL, 0};
     enum fall_status status = fall_pool(log, contacts, o->lag, &raw);
@@ -43,8 +43,8 @@ static enum fall_status line(const struct fall_log *log, const struct fall_conta
     return status;
 }
 
-enum fall_status reading_all(const struct fall_log *log, double step_m,
-                             double stiffness_Npm[READINGS])
+enum fall_status reading_all(
+    const struct fall_log *log, double step_m, double stiffness_Npm[READINGS])
 {
     struct fall_fit fit[FALL_SCOPES][LAGS];
     struct fall_opt opt = fall_opt_default;

@@ -28,7 +28,7 @@ extern const struct reading reading_table[READINGS];
 int reading_find(const char *name);
 
 /* The stiffness of a log by every reading, N/m; 0 where there is none. */
-enum fall_status reading_all(const struct fall_log *log, double step_m,
-                             double stiffness_Npm[READINGS]);
+enum fall_status reading_all(
+    const struct fall_log *log, double step_m, double stiffness_Npm[READINGS]);
 
 #endif

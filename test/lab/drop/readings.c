@@ -25,8 +25,7 @@ static const struct table2_row *compared(const struct table2_result *r)
 
 void table2_readings_print(FILE *f, const struct table2_readings *t)
 {
-    fprintf(
-        f,
+    fprintf(f,
         "\nStiffness by every reading of the analysis, N/m (%s%d run%s a rate)\n"
         "  a, b: force over position; position over force, inverted. same, aligned: F_mon(n) with\n"
         "  q(n); with q(n-1), which it answers. all contacts; the first of each fall; while the\n"
@@ -68,7 +67,7 @@ void table2_readings_csv(FILE *f, const struct table2_readings *t)
         for (int i = 0; i < READINGS; i++) {
             const double v = median(t, row, i);
             fprintf(f, "%.9g,%.9g,%.9g,%s,%d,", r->rate_Hz, r->k_Npm, r->b_Nspm,
-                    reading_table[i].name, t->runs);
+                reading_table[i].name, t->runs);
             if (v > 0) { fprintf(f, "%.6g", v); }
             fputc(',', f);
             if (paper != NULL) { fprintf(f, "%.6g", paper->stiffness_Npm); }

@@ -13,10 +13,7 @@ struct values {
     int n;
 };
 
-static void add(struct values *v, double value)
-{
-    v->at[v->n++] = value;
-}
+static void add(struct values *v, double value) { v->at[v->n++] = value; }
 
 /* What was not seen to come to rest has not come to rest, nor was it seen to
  * oscillate: incomplete falls count against us on either side. */
@@ -31,8 +28,8 @@ static double share_of(const struct table2_result *r, int runs, int with_incompl
     return falls ? (double)oscillating / falls : -1;
 }
 
-struct table2_spread table2_spread(const struct table2_result *at_1,
-                                   const struct table2_result *at_15, int runs)
+struct table2_spread table2_spread(
+    const struct table2_result *at_1, const struct table2_result *at_15, int runs)
 {
     static struct values b, a, b_same, a_same;
     const int n = runs < RUNS_MAX ? runs : RUNS_MAX;
@@ -90,8 +87,8 @@ void table2_spread_csv_header(FILE *f)
 
 void table2_spread_csv_line(FILE *f, const struct table2_result *r, const struct table2_spread *s)
 {
-    const double value[] = {s->b_Npm, s->b_low_Npm,  s->b_high_Npm,
-                            s->a_Npm, s->b_same_Npm, s->a_same_Npm};
+    const double value[] = {
+        s->b_Npm, s->b_low_Npm, s->b_high_Npm, s->a_Npm, s->b_same_Npm, s->a_same_Npm};
     fprintf(f, "%.9g,%.9g,%.9g,%d", r->rate_Hz, r->k_Npm, r->b_Nspm, s->runs);
     for (size_t i = 0; i < sizeof value / sizeof value[0]; i++) { positive(f, value[i]); }
     share(f, s->rest >= 0, s->rest);
@@ -140,31 +137,30 @@ static void print_spread_row(FILE *f, const struct table2_result *r, const struc
     const int line = s->b_Npm > 0;
     struct text b, interval, per_k, a, b_same, a_same, rest, oscillates;
     fprintf(f, "%6.6g %10s %18s %5s |%9s %13s %13s |%8s %19s\n", r->rate_Hz,
-            text(&b, line, 0, s->b_Npm), range(&interval, s->b_low_Npm, s->b_high_Npm),
-            text(&per_k, line && r->k_Npm > 0, 2, s->b_Npm / r->k_Npm), text(&a, line, 0, s->a_Npm),
-            text(&b_same, s->b_same_Npm > 0, 0, s->b_same_Npm),
-            text(&a_same, s->a_same_Npm > 0, 0, s->a_same_Npm), percent(&rest, s->rest),
-            percent(&oscillates, s->oscillates));
+        text(&b, line, 0, s->b_Npm), range(&interval, s->b_low_Npm, s->b_high_Npm),
+        text(&per_k, line && r->k_Npm > 0, 2, s->b_Npm / r->k_Npm), text(&a, line, 0, s->a_Npm),
+        text(&b_same, s->b_same_Npm > 0, 0, s->b_same_Npm),
+        text(&a_same, s->a_same_Npm > 0, 0, s->a_same_Npm), percent(&rest, s->rest),
+        percent(&oscillates, s->oscillates));
 }
 
-void table2_spread_print(FILE *f, const struct table2_result *r, const struct table2_spread *s,
-                         int rows)
+void table2_spread_print(
+    FILE *f, const struct table2_result *r, const struct table2_spread *s, int rows)
 {
     int runs = 0;
     for (int i = 0; i < rows; i++) { runs = s[i].runs > runs ? s[i].runs : runs; }
     if (runs == 0) { return; }
     fprintf(f,
-            "\n%d further runs a rate: one run is one draw of this\n\n"
-            "  rate   median B  5 %%..95 %% of runs  B/k | median A   B same tick   A same tick |"
-            " at rest   1.5x gains oscillate\n",
-            runs);
+        "\n%d further runs a rate: one run is one draw of this\n\n"
+        "  rate   median B  5 %%..95 %% of runs  B/k | median A   B same tick   A same tick |"
+        " at rest   1.5x gains oscillate\n",
+        runs);
     for (int i = 0; i < rows; i++) {
         if (s[i].runs > 0) { print_spread_row(f, &r[i], &s[i]); }
     }
     for (int i = 0; i < rows; i++) {
         if (s[i].runs > 0 && (s[i].lines < runs || s[i].lines_same < runs)) {
-            fprintf(
-                f,
+            fprintf(f,
                 "%6.6g Hz: of %d runs %d gave a line, %d at the same tick: medians are of these, "
                 "if they are most.\n",
                 r[i].rate_Hz, s[i].runs, s[i].lines, s[i].lines_same);

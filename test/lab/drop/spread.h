@@ -16,14 +16,14 @@ struct table2_spread {
     double rest;       /* share of falls that come to rest; < 0: no fall */
     double oscillates; /* share of falls that do not, at 1.5 times both gains */
 };
-struct table2_spread table2_spread(const struct table2_result *at_1,
-                                   const struct table2_result *at_15, int runs);
+struct table2_spread table2_spread(
+    const struct table2_result *at_1, const struct table2_result *at_15, int runs);
 
 /* spread.csv: header and a line; empty fields where there is none. For people: a table. */
 void table2_spread_csv_header(FILE *f);
 void table2_spread_csv_line(FILE *f, const struct table2_result *r, const struct table2_spread *s);
-void table2_spread_print(FILE *f, const struct table2_result *r, const struct table2_spread *s,
-                         int rows);
+void table2_spread_print(
+    FILE *f, const struct table2_result *r, const struct table2_spread *s, int rows);
 
 /* Every reading of the analysis: the median of `runs` runs of each row, those of row i
  * from r[first + i * stride] on. The CSV has a line a row and reading. */
@@ -35,7 +35,7 @@ void table2_readings_print(FILE *f, const struct table2_readings *t);
 void table2_readings_csv(FILE *f, const struct table2_readings *t);
 
 /* A table2_judge: the stiffness in every way of reading.h. */
-void readings_judge(const struct fall_log *log, const struct sim_device *d,
-                    struct table2_result *r);
+void readings_judge(
+    const struct fall_log *log, const struct sim_device *d, struct table2_result *r);
 
 #endif

@@ -38,8 +38,8 @@ int sweep_window(const struct run_cfg *base)
     return 1 << (int)(p + 0.5);
 }
 
-struct cell sweep_cell(const struct run_cfg *base, double rate_Hz, double k_Npm, double b_Nspm,
-                       int *error)
+struct cell sweep_cell(
+    const struct run_cfg *base, double rate_Hz, double k_Npm, double b_Nspm, int *error)
 {
     struct run_cfg c = *base;
     struct table2_result r;

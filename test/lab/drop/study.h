@@ -20,8 +20,8 @@ struct sweep_opt {
 int sweep_take_shard(const char *text, int *shard, int *shards);
 
 /* Falls at one cell, judged. *error: 0, 1 after a line on stderr, -1 interrupted. */
-struct cell sweep_cell(const struct run_cfg *base, double rate_Hz, double k_Npm, double b_Nspm,
-                       int *error);
+struct cell sweep_cell(
+    const struct run_cfg *base, double rate_Hz, double k_Npm, double b_Nspm, int *error);
 
 /* Ticks of the scene's velocity window under these settings. */
 int sweep_window(const struct run_cfg *base);

@@ -173,8 +173,8 @@ static int sweep(const struct sweep_opt *o, struct cells *cells, const char *pat
     give_signals_back(was);
     close(b.fd);
     if (err == JOBS_INTERRUPTED) {
-        cli_complain("interrupted: %d cells are kept in %s: the same command goes on", cells->n,
-                     path);
+        cli_complain(
+            "interrupted: %d cells are kept in %s: the same command goes on", cells->n, path);
         return err;
     }
     return err ? err : cells_save(cells, path);

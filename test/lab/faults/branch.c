@@ -58,10 +58,7 @@ static int flows(double more_A)
     return cur_A > more_A || cur_A < -more_A;
 }
 
-static int current_flows(void)
-{
-    return flows(SMALL_A);
-}
+static int current_flows(void) { return flows(SMALL_A); }
 
 /* A zero of the D/A that is damaged is believed: a drive that codes nothing pulls by it until it is
  * disabled, by the guard. What tracking does not tolerate it must have told before. */
@@ -75,10 +72,7 @@ static double believed_s(double due_s)
     return until_s > due_s ? until_s : due_s;
 }
 
-static double more(double a, double b)
-{
-    return b < 0 ? (-b > a ? -b : a) : b > a ? b : a;
-}
+static double more(double a, double b) { return b < 0 ? (-b > a ? -b : a) : b > a ? b : a; }
 
 /* Speed and jerk of finger or mass, from tick to tick. */
 static void watch_back(void)
@@ -132,10 +126,7 @@ static int64_t all_of(const int32_t *v)
 }
 
 /* A force may rise in it. */
-static int is_open(const struct faults_view *v)
-{
-    return v->open && v->state != EXH_STATE_RELEASE;
-}
+static int is_open(const struct faults_view *v) { return v->open && v->state != EXH_STATE_RELEASE; }
 
 /* Which causes are told for the first time. */
 static void see_causes(const struct faults_view *v)
@@ -235,9 +226,9 @@ static void write_trace(const struct faults_view *v)
     const unsigned f = faults_finger(in.base->scene);
     if (in.c->trace == NULL) { return; }
     fprintf(in.c->trace, "%.9f,%.9g,%.9g,%.9g,%d\n",
-            posix_time_s() - in.from_s - (1.0 + in.c->what[0].after_ticks) / in.base->rate_Hz,
-            (double)v->force_N_q20[f] / (1 << EXH_Q_FORCE),
-            (double)v->coded_A_q26[f] / (1 << EXH_Q_CUR), device()->cur_A, v->state);
+        posix_time_s() - in.from_s - (1.0 + in.c->what[0].after_ticks) / in.base->rate_Hz,
+        (double)v->force_N_q20[f] / (1 << EXH_Q_FORCE),
+        (double)v->coded_A_q26[f] / (1 << EXH_Q_CUR), device()->cur_A, v->state);
 }
 
 int faults_after(uint32_t tick, const struct faults_view *v, const struct exh_drive_out *out)
@@ -292,7 +283,7 @@ void faults_ended(void)
 /* --- parent and child --- */
 
 static void become(const struct faults_base *b, const struct faults_case *c, uint32_t tick,
-                   const struct faults_view *v, struct faults_seen *seen, int to)
+    const struct faults_view *v, struct faults_seen *seen, int to)
 {
     close(2); /* what is wrong is not said to people */
     memset(&in, 0, sizeof in);
@@ -313,7 +304,7 @@ static void become(const struct faults_base *b, const struct faults_case *c, uin
 }
 
 int faults_branch(const struct faults_base *b, const struct faults_case *c, uint32_t tick,
-                  const struct faults_view *v, struct faults_seen *seen)
+    const struct faults_view *v, struct faults_seen *seen)
 {
     static struct faults_seen s; /* the child's, when its caller's is gone */
     int status, fd[2];

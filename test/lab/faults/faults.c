@@ -13,25 +13,21 @@ int cli_faults(int argc, char **argv)
     int err;
     const struct cli_option option[] = {
         {"times", CLI_INT, &times, 1, 1e7, "N",
-         "so many random faults at random times, instead of the table"},
+            "so many random faults at random times, instead of the table"},
         {"rate", CLI_INT, &rate_Hz, 20, 20000, "HZ", "the table at this rate (90, 1000 and 2000)"},
         {"seed", CLI_INT, &seed, 0, 1e9, "N", "of these (1)"},
         {"run", CLI_INT, &run, 0, 1e6, "N", "of these the times of one run, as WRONG names it"},
         {"states", CLI_FLAG, &states, 0, 0, NULL,
-         "the state machine as the library has it, and every name in it"},
+            "the state machine as the library has it, and every name in it"},
         {"out", CLI_TEXT, (void *)&out, 0, 0, "DIR",
-         "write what the picture needs there, instead of the table"},
+            "write what the picture needs there, instead of the table"},
         {"jobs", CLI_INT, &parallel, 1, 1024, "N", "processes at a time (one a core)"},
     };
-    const struct cli_command c = {
-        "faults",
-        "[options]",
+    const struct cli_command c = {"faults", "[options]",
         "Every fault in every state of the box, from its source, and how it ends: the table of\n"
         "docs/FAULTS.md. Or random faults at random times in closed loop. Status 1: something\n"
         "did not end as it must.",
-        option,
-        (int)(sizeof option / sizeof option[0]),
-        0};
+        option, (int)(sizeof option / sizeof option[0]), 0};
     err = cli_parse(&c, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }
     if (states) { return faults_states(stdout); }

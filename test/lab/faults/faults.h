@@ -210,7 +210,7 @@ struct faults_seen {
 /* To be called in faults_at, where it returns twice, as fork does: in the branch with 1, and
  * faults_at is not called any more. */
 int faults_branch(const struct faults_base *b, const struct faults_case *c, uint32_t tick,
-                  const struct faults_view *v, struct faults_seen *seen);
+    const struct faults_view *v, struct faults_seen *seen);
 void faults_ended(void); /* behind the run: does not return in a branch */
 
 /* Of the loop: the commands, and 1 in a branch. */
@@ -223,8 +223,8 @@ void faults_wires_out(struct exh_drive_out *out);
 uint32_t faults_late(uint64_t tick);
 
 /* In a branch, at the end of each tick, before what that does can be seen in the next one. */
-void faults_source_start(const struct faults_base *b, const struct faults_what what[2],
-                         uint32_t tick);
+void faults_source_start(
+    const struct faults_base *b, const struct faults_what what[2], uint32_t tick);
 void faults_source_step(uint32_t tick);
 /* From damage with the guard FAULTS_AHEAD to the tick that sees it. */
 uint32_t faults_source_ahead(unsigned scene, unsigned source, uint32_t how);

@@ -46,22 +46,15 @@ struct plan {
 /* --- when --- */
 
 /* A tick in OFF, nobody has commanded anything; the link is up. */
-static uint32_t early(const struct plan *p)
-{
-    return 2 + p->base.rate_Hz * 3 / 100;
-}
+static uint32_t early(const struct plan *p) { return 2 + p->base.rate_Hz * 3 / 100; }
 
 /* Ticks in the state until then: what is left of the impact. */
-static uint32_t pressed_for(const struct plan *p)
-{
-    return 5 + p->base.rate_Hz / 16;
-}
+static uint32_t pressed_for(const struct plan *p) { return 5 + p->base.rate_Hz / 16; }
 
 static int state_of(unsigned in)
 {
-    static const int state[FAULTS_INS] = {EXH_STATE_OFF,     EXH_STATE_OFF,  EXH_STATE_ARM,
-                                          EXH_STATE_ARM,     EXH_STATE_RUN,  EXH_STATE_LIMIT,
-                                          EXH_STATE_RELEASE, EXH_STATE_FAULT};
+    static const int state[FAULTS_INS] = {EXH_STATE_OFF, EXH_STATE_OFF, EXH_STATE_ARM,
+        EXH_STATE_ARM, EXH_STATE_RUN, EXH_STATE_LIMIT, EXH_STATE_RELEASE, EXH_STATE_FAULT};
     return state[in];
 }
 
@@ -98,10 +91,7 @@ static int when_arming(const struct plan *p, unsigned in, uint32_t tick, struct 
     return tick == early(p);
 }
 
-static uint32_t how_of(unsigned source)
-{
-    return source == FAULTS_PAR ? 8u * 4u * 40u + 3u : 0;
-}
+static uint32_t how_of(unsigned source) { return source == FAULTS_PAR ? 8u * 4u * 40u + 3u : 0; }
 
 /* RELEASE and FAULT are come to on the way. */
 static void come_to(const struct plan *p, unsigned in, struct faults_case *c)
@@ -268,9 +258,8 @@ static void work(const void *ctx, int i, void *result)
 
 /* --- the table --- */
 
-static const char *const title[FAULTS_INS] = {
-    "OFF",  "OFF, RUN asked for", "ARM, gate closed", "ARM, ramp", "RUN", "LIMIT", "RELEASE",
-    "FAULT"};
+static const char *const title[FAULTS_INS] = {"OFF", "OFF, RUN asked for", "ARM, gate closed",
+    "ARM, ramp", "RUN", "LIMIT", "RELEASE", "FAULT"};
 
 /* "3/15/30", or one number where they are the same. */
 static void print_ticks(FILE *f, const int32_t n[RATES_MAX])
@@ -284,8 +273,7 @@ static void print_ticks(FILE *f, const int32_t n[RATES_MAX])
 
 static void print_wrong(FILE *f, const struct cell *c, uint32_t rate)
 {
-    fprintf(
-        f,
+    fprintf(f,
         "**WRONG** at %" PRIu32 ": tried %d, before %d, then %d, end %d, bad %#x, latched %#" PRIx32
         ", refused %#x, seen %" PRId32 " ",
         rate, c->tried, c->before, c->state, c->end, c->bad, c->latched, c->refused, c->seen_ticks);
@@ -318,9 +306,9 @@ static int print_cell(FILE *f, const struct row *row, unsigned source, unsigned 
         fprintf(f, "off");
     } else if (wrong == 0) {
         fprintf(f, "%s",
-                in == FAULTS_IN_FAULT                 ? "stays"
-                : cuts || c->state == EXH_STATE_FAULT ? "**cut**"
-                                                      : "release");
+            in == FAULTS_IN_FAULT                 ? "stays"
+            : cuts || c->state == EXH_STATE_FAULT ? "**cut**"
+                                                  : "release");
         if (in >= FAULTS_IN_RAMP && in < FAULTS_IN_FAULT) {
             fprintf(f, " ");
             print_ticks(f, zero);
@@ -332,14 +320,12 @@ static int print_cell(FILE *f, const struct row *row, unsigned source, unsigned 
 
 static void print_head(FILE *f)
 {
-    fprintf(
-        f,
+    fprintf(f,
         "A finger presses against a wall in the full box, through drivers and emulated cards, at");
     for (size_t r = 0; r < rates; r++) {
         fprintf(f, "%s %" PRIu32, r ? r + 1 == rates ? " and" : "," : "", rate_Hz[r]);
     }
-    fprintf(
-        f,
+    fprintf(f,
         " Hz. Each fault begins at\nits source so that it is seen in the state of the column. "
         "Numbers are ticks, "
         "at the three rates where they differ.\n\n"
@@ -397,6 +383,6 @@ int faults_matrix(FILE *f, uint32_t at_Hz, int parallel)
         fprintf(f, "\n");
     }
     fprintf(f, "\n%d cells, each at %d rate%s: %d wrong.\n", SOURCES * FAULTS_INS, (int)rates,
-            rates > 1 ? "s" : "", wrong);
+        rates > 1 ? "s" : "", wrong);
     return wrong ? 1 : 0;
 }

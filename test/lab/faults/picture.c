@@ -34,12 +34,12 @@ static FILE *open_trace(const struct take *t, const char *how)
 }
 
 /* 1 in the branch. */
-static int branch(struct take *t, uint8_t source, const char *how, uint32_t tick,
-                  const struct faults_view *v)
+static int branch(
+    struct take *t, uint8_t source, const char *how, uint32_t tick, const struct faults_view *v)
 {
     const uint32_t before = (uint32_t)(BEFORE_S * t->base.rate_Hz) + 1;
     struct faults_case c = {.what = {{source, before, 0, 0, 0}},
-                            .follow_ticks = before + (uint32_t)(AFTER_S * t->base.rate_Hz) + 1};
+        .follow_ticks = before + (uint32_t)(AFTER_S * t->base.rate_Hz) + 1};
     struct faults_seen s;
     c.trace = open_trace(t, how);
     if (c.trace == NULL) {

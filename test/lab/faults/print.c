@@ -31,8 +31,8 @@ void faults_print_wrong(FILE *f, const struct faults_random *r, int n)
         for (int k = 0; k < r[i].bad && k < FAULTS_WRONGS; k++) {
             const struct faults_wrong *w = &r[i].wrong[k];
             fprintf(f, "WRONG at %" PRIu32 " Hz, %s, --run %" PRIu32 ", tick %" PRIu32 "%s%s",
-                    r[i].rate_Hz, scene_name[r[i].scene], w->run, w->tick,
-                    w->cards ? ", cards" : "", w->eager ? ", eager" : "");
+                r[i].rate_Hz, scene_name[r[i].scene], w->run, w->tick, w->cards ? ", cards" : "",
+                w->eager ? ", eager" : "");
             print_what(f, w, 0);
             print_what(f, w, 1);
             fprintf(f, ": bad %#" PRIx32 "\n", w->bad);
@@ -53,18 +53,15 @@ static void print_kinds(FILE *f, const struct faults_random *r, int n)
             c.bad += r[i].by[s].bad;
         }
         fprintf(f, "| %s | %s | %" PRId32 " | %" PRId32 " | %" PRId32 " |\n",
-                faults_spec_of(s)->name, faults_spec_of(s)->what, c.n, c.seen, c.bad);
+            faults_spec_of(s)->name, faults_spec_of(s)->what, c.n, c.seen, c.bad);
     }
 }
 
 static void print_rules(FILE *f, const struct faults_random *r, int n)
 {
-    static const char *const rule[FAULTS_BADS] = {
-        "force rose",       "fell too fast",
-        "not zero in time", "not cut",
-        "still enabled",    "opened again",
-        "code too far",     "current in the motor",
-        "branch lost",      "not the same from its bytes"};
+    static const char *const rule[FAULTS_BADS] = {"force rose", "fell too fast", "not zero in time",
+        "not cut", "still enabled", "opened again", "code too far", "current in the motor",
+        "branch lost", "not the same from its bytes"};
     int32_t late = 0;
     for (int k = 0; k < FAULTS_BADS; k++) {
         int32_t sum = 0;
@@ -78,13 +75,11 @@ static void print_rules(FILE *f, const struct faults_random *r, int n)
 static void print_rate(FILE *f, const struct faults_random *x)
 {
     fprintf(f,
-            "| %" PRIu32 " Hz | %s | %" PRId32 " | %" PRId32 " | %" PRId32 " | %" PRId32
-            " | %.1f ms ",
-            x->rate_Hz, scene_name[x->scene], x->n, x->open, x->released, x->zero_ticks,
-            1e3 * x->zero_s);
+        "| %" PRIu32 " Hz | %s | %" PRId32 " | %" PRId32 " | %" PRId32 " | %" PRId32 " | %.1f ms ",
+        x->rate_Hz, scene_name[x->scene], x->n, x->open, x->released, x->zero_ticks,
+        1e3 * x->zero_s);
     fprintf(f, "| %.1f N | %.4f | %.2f m/s, %.0f m/s³ | %.2f m/s, %.0f m/s³ | %" PRId32 " |\n",
-            x->force_N, x->slope, x->back_mps, x->jerk_mps3, x->cut_back_mps, x->cut_jerk_mps3,
-            x->bad);
+        x->force_N, x->slope, x->back_mps, x->jerk_mps3, x->cut_back_mps, x->cut_jerk_mps3, x->bad);
 }
 
 int faults_print_random(FILE *f, const struct faults_random *r, int n)
@@ -92,14 +87,14 @@ int faults_print_random(FILE *f, const struct faults_random *r, int n)
     int32_t all = 0, bad = 0;
     int err = 0;
     fprintf(f,
-            "Worst of each rate and scene. Zero: the tick without force, that which saw the cause "
-            "being 1; current\n"
-            "in the motor from that tick on; the steepest fall of a tick over the law's force/R; "
-            "speed and jerk of finger\n"
-            "or mass in the 50 ms behind it, from tick to tick.\n\n"
-            "| rate | scene | times | gate open | released | zero in | none in the motor after | "
-            "held | fall over the law's | released | cut | wrong |\n"
-            "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+        "Worst of each rate and scene. Zero: the tick without force, that which saw the cause "
+        "being 1; current\n"
+        "in the motor from that tick on; the steepest fall of a tick over the law's force/R; "
+        "speed and jerk of finger\n"
+        "or mass in the 50 ms behind it, from tick to tick.\n\n"
+        "| rate | scene | times | gate open | released | zero in | none in the motor after | "
+        "held | fall over the law's | released | cut | wrong |\n"
+        "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (int i = 0; i < n; i++) {
         if (r[i].rate_Hz) { print_rate(f, &r[i]); } /* one run is of one */
         all += r[i].n;
@@ -112,7 +107,7 @@ int faults_print_random(FILE *f, const struct faults_random *r, int n)
     for (int i = 0; i < n; i++) {
         if (r[i].err) {
             fprintf(f, "WRONG at %" PRIu32 " Hz, %s: %s\n", r[i].rate_Hz, scene_name[r[i].scene],
-                    exh_error_text(r[i].err));
+                exh_error_text(r[i].err));
         }
     }
     return bad || err || all == 0 ? 1 : 0;

@@ -94,9 +94,9 @@ static void plan_of(struct plan *p, const struct asked *a, int job)
         if (i % CONTROL && sim_random_u64(&r) & 1) {
             do {
                 o->c.what[1] = some(&r, p->base.scene);
-            } while (faults_is_memory(o->c.what[0].source) &&
-                     o->c.what[1].source ==
-                         o->c.what[0].source); /* one bit, which may be the same */
+            } while (
+                faults_is_memory(o->c.what[0].source) &&
+                o->c.what[1].source == o->c.what[0].source); /* one bit, which may be the same */
             o->c.what[1].after_ticks = 1 + (uint32_t)(sim_random_unit(&r) * 0.03 * p->base.rate_Hz);
         }
         o->c.eager = sim_random_u64(&r) % 4 == 0;
@@ -139,8 +139,8 @@ static int unseen(const struct plan *p, const struct one *o, const struct faults
     return !s->ended;
 }
 
-static void note(struct faults_wrong *w, const struct plan *p, const struct one *o,
-                 const struct faults_seen *s)
+static void note(
+    struct faults_wrong *w, const struct plan *p, const struct one *o, const struct faults_seen *s)
 {
     memset(w, 0, sizeof *w);
     w->run = p->run;

@@ -139,11 +139,11 @@ static void print_row(FILE *f, const struct row *w, const struct refused *r, int
     for (int k = 0; k < rates; k++) {
         if (r[k].err || !r[k].right) {
             fprintf(f,
-                    " **WRONG**: err %" PRId32
-                    ", tried %d, end %d, named %#x, opened %d, released %d, bad %#" PRIx32
-                    ", latched %#" PRIx32,
-                    r[k].err, r[k].tried, r[k].end, r[k].named, r[k].opened, r[k].released,
-                    r[k].bad, r[k].faults);
+                " **WRONG**: err %" PRId32
+                ", tried %d, end %d, named %#x, opened %d, released %d, bad %#" PRIx32
+                ", latched %#" PRIx32,
+                r[k].err, r[k].tried, r[k].end, r[k].named, r[k].opened, r[k].released, r[k].bad,
+                r[k].faults);
         }
     }
     fprintf(f, "\n");
@@ -172,6 +172,6 @@ int faults_refusals(FILE *f, uint32_t at_Hz, int parallel)
         for (int k = 0; k < a.rates; k++) { wrong += at_rates[k].err || !at_rates[k].right; }
     }
     fprintf(f, "\n%d refusals, each at %d rate%s: %d wrong.\n", (int)ROWS, a.rates,
-            a.rates > 1 ? "s" : "", wrong);
+        a.rates > 1 ? "s" : "", wrong);
     return wrong ? 1 : 0;
 }

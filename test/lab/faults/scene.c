@@ -24,10 +24,7 @@ static struct {
     uint32_t run_tick;
 } own;
 
-unsigned faults_finger(uint8_t scene)
-{
-    return scene == FAULTS_BILATERAL ? FAULTS_FINGER : 0;
-}
+unsigned faults_finger(uint8_t scene) { return scene == FAULTS_BILATERAL ? FAULTS_FINGER : 0; }
 
 /* --- what the box says --- */
 
@@ -163,10 +160,7 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     own.at(own.ctx, tick, &v);
 }
 
-uint32_t faults_run_tick(void)
-{
-    return own.run_tick;
-}
+uint32_t faults_run_tick(void) { return own.run_tick; }
 
 static const struct exh_loop_hooks hooks = {start, before, after};
 
@@ -192,12 +186,9 @@ static int run_finger(const struct faults_base *b)
     struct sim_random rng = {b->seed};
     const double hard = sim_random_unit(&rng);
     const struct run_setting set[] = {{"mat_f_max", b->gentle ? 40 : 3},
-                                      {"stuck_time", b->stuck_ms ? b->stuck_ms : 2000},
-                                      {"glove_time", 150},
-                                      {"link_time", 200},
-                                      {"supply_min", 18},
-                                      {"uncalibrated", !b->not_waived},
-                                      {"glove_fc", b->rate_Hz < 500 ? 0.2 * b->rate_Hz : 200}};
+        {"stuck_time", b->stuck_ms ? b->stuck_ms : 2000}, {"glove_time", 150}, {"link_time", 200},
+        {"supply_min", 18}, {"uncalibrated", !b->not_waived},
+        {"glove_fc", b->rate_Hz < 500 ? 0.2 * b->rate_Hz : 200}};
     struct bilateral_run_cfg c;
     struct bilateral_run r;
     struct sim_path_par *path;
@@ -232,8 +223,8 @@ static int run_finger(const struct faults_base *b)
 
 static int run_mass(const struct faults_base *b)
 {
-    const struct run_setting set[] = {{"f_max", b->gentle ? 40 : 6},
-                                      {"uncalibrated", !b->not_waived}};
+    const struct run_setting set[] = {
+        {"f_max", b->gentle ? 40 : 6}, {"uncalibrated", !b->not_waived}};
     struct run_cfg c;
     struct run r;
     int err;

@@ -35,10 +35,7 @@ static struct {
     struct exh_drive_out out; /* and what it was given */
 } src;
 
-static double period_s(void)
-{
-    return 1.0 / src.base->rate_Hz;
-}
+static double period_s(void) { return 1.0 / src.base->rate_Hz; }
 
 /* Of the how of a fault, 0 <= u < 1, its n-th; how 0: the middle. */
 static double chance(const struct on *o, int n)
@@ -50,10 +47,7 @@ static double chance(const struct on *o, int n)
     return u;
 }
 
-static int way(const struct on *o)
-{
-    return o->what.how & 1 ? -1 : 1;
-}
+static int way(const struct on *o) { return o->what.how & 1 ? -1 : 1; }
 
 static int is_on(const struct on *o)
 {
@@ -199,10 +193,7 @@ static void lose_card(const struct on *o)
 
 #define AHEAD_TICKS 8u /* until it comes to the parameter */
 
-static uint32_t bit_at(uint32_t size_B, uint32_t how)
-{
-    return (how >> 3) % size_B;
-}
+static uint32_t bit_at(uint32_t size_B, uint32_t how) { return (how >> 3) % size_B; }
 
 static uint32_t offset_in_area(const struct faults_memory *m, uint32_t how)
 {
@@ -288,8 +279,8 @@ static void do_once(struct on *o)
 
 /* --- the branch's --- */
 
-void faults_source_start(const struct faults_base *b, const struct faults_what what[2],
-                         uint32_t tick)
+void faults_source_start(
+    const struct faults_base *b, const struct faults_what what[2], uint32_t tick)
 {
     src.base = b;
     src.device = sim_device_default();

@@ -16,15 +16,14 @@ static const struct faults_spec spec[FAULTS_SOURCES] = {
     [FAULTS_DRIVE] = {"drive", "ready contact opens", EXH_FAULT_DRIVE, 1, ALL, 0, 0, 0, 0},
     [FAULTS_LATE] = {"overrun", "one tick misses three", EXH_FAULT_OVERRUN, 0, ALL, 0, 0, 0, 0},
     [FAULTS_SLOW] = {"overrun", "every tick takes 1.5 periods", EXH_FAULT_OVERRUN, 0, ALL, 3, 0, 0,
-                     0},
+        0},
     [FAULTS_JUMP] = {"encoder", "jumps", EXH_FAULT_ENCODER, 0, ALL, 0, 0, 0, 0},
     [FAULTS_STILL] = {"encoder", "stands still", EXH_FAULT_STUCK, 0,
-                      1u << FAULTS_IN_RUN | 1u << FAULTS_IN_LIMIT | 1u << FAULTS_IN_RELEASE, 2,
-                      1000, 1, 0},
+        1u << FAULTS_IN_RUN | 1u << FAULTS_IN_LIMIT | 1u << FAULTS_IN_RELEASE, 2, 1000, 1, 0},
     [FAULTS_MONITOR] = {"current", "monitor is off by 1 A", EXH_FAULT_TRACKING, 1, ALL, 5, 20, 1,
-                        0},
+        0},
     [FAULTS_DA] = {"current", "D/A stands: told once the code has left it", EXH_FAULT_TRACKING, 1,
-                   1u << FAULTS_IN_RUN, 8, 800, 1, 0},
+        1u << FAULTS_IN_RUN, 8, 800, 1, 0},
     [FAULTS_SPEED] = {"speed", "string runs at 6 m/s", EXH_FAULT_SPEED, 0, ALL, 18, 20, 1, 0},
     [FAULTS_GLOVE] = {"glove", "a wire breaks", EXH_FAULT_GLOVE, 0, ALL, 8, 170, 0, 0},
     [FAULTS_GLOVE_OLD] = {"glove", "no frame comes", EXH_FAULT_GLOVE, 0, ALL, 8, 170, 0, 0},
@@ -33,9 +32,9 @@ static const struct faults_spec spec[FAULTS_SOURCES] = {
     [FAULTS_SUPPLY_LOW] = {"supply", "falls to half", EXH_FAULT_SUPPLY, 0, ALL, 8, 20, 0, 0},
     [FAULTS_SUPPLY_HIGH] = {"supply", "rises by half", EXH_FAULT_SUPPLY, 0, ALL, 8, 20, 0, 0},
     [FAULTS_WATCHDOG] = {"watchdog", "contact says it fired", EXH_FAULT_WATCHDOG, 1, ALL, 0, 0, 0,
-                         0},
+        0},
     [FAULTS_DEAD_LOOP] = {"watchdog", "no tick comes for 16 periods", EXH_FAULT_WATCHDOG, 1, ALL, 0,
-                          0, 0, EXH_FAULT_OVERRUN},
+        0, 0, EXH_FAULT_OVERRUN},
     [FAULTS_PAR] = {"memory", "a bit of a parameter", EXH_FAULT_CONFIG, 1, ALL, 0, 0, 0, 0},
     [FAULTS_CAL] = {"memory", "a bit of a calibration", EXH_FAULT_CONFIG, 1, ALL, 0, 0, 0, 0},
     [FAULTS_STATE] = {"memory", "the state is none", EXH_FAULT_LOGIC, 1, ALL, 0, 0, 0, 0},
@@ -53,15 +52,9 @@ static const uint32_t without[FAULTS_SCENES] = {
     [FAULTS_DROP] = BIT(GLOVE) | BIT(GLOVE_OLD) | BIT(LINK) | BIT(SUPPLY_LOW) | BIT(SUPPLY_HIGH),
 };
 
-int faults_has(unsigned scene, unsigned source)
-{
-    return !(without[scene] >> source & 1);
-}
+int faults_has(unsigned scene, unsigned source) { return !(without[scene] >> source & 1); }
 
-int faults_is_memory(unsigned source)
-{
-    return source == FAULTS_PAR || source == FAULTS_CAL;
-}
+int faults_is_memory(unsigned source) { return source == FAULTS_PAR || source == FAULTS_CAL; }
 
 /* A round, and for the area another, as its sum is known at the end and it may just have passed. */
 static uint32_t rounds_of(unsigned scene, unsigned source)
@@ -94,10 +87,7 @@ uint32_t faults_release_ticks(uint32_t rate_Hz)
     return n < 3 ? 3 : rate_Hz < 500 && n > 4 ? 4 : n;
 }
 
-uint32_t faults_zero_ticks(uint32_t rate_Hz)
-{
-    return rate_Hz < 500 ? 4 : rate_Hz * 20 / 1000;
-}
+uint32_t faults_zero_ticks(uint32_t rate_Hz) { return rate_Hz < 500 ? 4 : rate_Hz * 20 / 1000; }
 
 /* The state in the tick that sees it, by the state before. */
 int faults_next(unsigned source, int state, int open)

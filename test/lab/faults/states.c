@@ -43,9 +43,8 @@ static int trigger_of(const struct found *f, const struct exh_safety_cfg *cfg)
     static const uint32_t limits[4] = {0, EXH_LIMIT_PULL, EXH_LIMIT_FORCE, EXH_LIMIT_SLEW};
     static const uint32_t raised[3] = {0, EXH_FAULT_LINK, EXH_FAULT_CONFIG};
     static const int32_t share[3] = {0, 1, INT32_C(1) << 30};
-    struct exh_safety_in in = {UINT32_MAX, raised[f->raised],
-                               0,          (uint8_t)f->command,
-                               1,          (uint8_t)(f->ready ? EXH_ARM_ALL : 0u)};
+    struct exh_safety_in in = {UINT32_MAX, raised[f->raised], 0, (uint8_t)f->command, 1,
+        (uint8_t)(f->ready ? EXH_ARM_ALL : 0u)};
     struct exh_safety s;
     memset(&s, 0, sizeof s);
     s.state = (uint8_t)f->state;
@@ -113,7 +112,7 @@ int faults_states(FILE *f)
     fprintf(f, "\n| fault | ends by | means |\n|--|--|--|\n");
     for (unsigned k = 0; k < EXH_FAULTS; k++) {
         fprintf(f, "| %s | %s | %s |\n", exh_fault_name(k),
-                EXH_FAULT_CUT >> k & 1u ? "cut" : "release", names_says(&names_fault, k));
+            EXH_FAULT_CUT >> k & 1u ? "cut" : "release", names_says(&names_fault, k));
     }
     print_names(f, &names_limit);
     print_names(f, &names_arm);

@@ -53,7 +53,7 @@ static void work(const void *ctx, int i, void *to)
 
 /* Takes from the journal what it holds of these, else runs them. 0, or as jobs_run(). */
 static int evaluate(const struct fit_options *o, struct journal *j, const struct score_plan *plan,
-                    const struct plant_point *p, int n, struct score *s)
+    const struct plant_point *p, int n, struct score *s)
 {
     const struct batch b = {p, plan, search_bound(&o->search)};
     const struct jobs jobs = {n, (int)o->jobs, sizeof *s, s, work, &b, NULL, posix_interrupt};
@@ -103,11 +103,11 @@ static void settings_text(const struct fit_options *o, char *to, size_t size)
 {
     int n =
         snprintf(to, size, "budget %ld, seed %ld, wall %s, by %s", (long)o->budget, (long)o->seed,
-                 o->search.fixed_wall ? "fixed" : "anywhere", o->only ? o->only : "all readings");
+            o->search.fixed_wall ? "fixed" : "anywhere", o->only ? o->only : "all readings");
     for (int i = 0; i < SPACE_ROWS && n > 0 && (size_t)n < size; i++) {
         if (!o->search.pinned[i]) { continue; }
         n += snprintf(to + n, size - (size_t)n, ", %s %.9g", space_row[i].name,
-                      space_value(i, o->search.start.u[i]));
+            space_value(i, o->search.start.u[i]));
     }
 }
 
@@ -164,7 +164,7 @@ static void progress_line(FILE *f, const struct search *s, int64_t at)
 }
 
 static int offer_all(const struct fit_options *o, struct search *s, struct journal *j,
-                     const struct score_plan *plan, const struct plant_point *p, int n)
+    const struct score_plan *plan, const struct plant_point *p, int n)
 {
     static struct score score[SEARCH_STARTS];
     const int err = evaluate(o, j, plan, p, n, score);
@@ -173,7 +173,7 @@ static int offer_all(const struct fit_options *o, struct search *s, struct journ
 }
 
 static int rounds(const struct fit_options *o, struct search *s, struct journal *j,
-                  const struct score_plan *plan, int64_t until, FILE *progress)
+    const struct score_plan *plan, int64_t until, FILE *progress)
 {
     struct plant_point child[READINGS];
     int err = 0;
@@ -239,11 +239,11 @@ static void print_space(void)
     for (int i = 0; i < SPACE_ROWS; i++) {
         const struct space_row *r = &space_row[i];
         printf("  %-11s %10.4g  %8.4g .. %-8.4g %-4s %s\n", r->name, r->start, r->lo,
-               r->scale == SPACE_WHOLE ? r->hi - 1 : r->hi,
-               r->scale == SPACE_LOG     ? "log"
-               : r->scale == SPACE_WHOLE ? "int"
-                                         : "lin",
-               r->why);
+            r->scale == SPACE_WHOLE ? r->hi - 1 : r->hi,
+            r->scale == SPACE_LOG     ? "log"
+            : r->scale == SPACE_WHOLE ? "int"
+                                      : "lin",
+            r->why);
     }
     printf("\nReadings: DIRECTION-PAIRS-PART\n"
            "  a, b                     fits force over position; position over force, inverted\n"
@@ -283,7 +283,7 @@ int cli_fit(int argc, char **argv)
         {"variant", CLI_TEXT, &o.only, 0, 0, "NAME", "only this reading makes plants (all)"},
         {"pin", CLI_CALL, &pin, 0, 0, "NAME=VALUE", "keep a value instead of searching it"},
         {"fixed-wall", CLI_FLAG, &o.search.fixed_wall, 0, 0, NULL,
-         "the wall where q_lim and step put it between two counts, not anywhere"},
+            "the wall where q_lim and step put it between two counts, not anywhere"},
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of the search (1)"},
         {"runs", CLI_INT, &o.runs, 1, 200, "N", "the winners are judged by, a row (20)"},
         {"further", CLI_INT, &o.further, 0, 200, "N", "runs at gains not in the table (8)"},
@@ -291,14 +291,10 @@ int cli_fit(int argc, char **argv)
         {"out", CLI_TEXT, &o.out, 0, 0, "DIR", "state and results; continues what is there (fit)"},
         {"space", CLI_FLAG, &list, 0, 0, NULL, "list what is searched, and the readings"},
     };
-    const struct cli_command c = {
-        "fit",
-        "[options]",
+    const struct cli_command c = {"fit", "[options]",
         "Searches for a plant that rests at the paper's six points, not at 1.5 times both gains,\n"
         "and gives its Table II; once for each reading of its analysis, all with equal effort.",
-        option,
-        (int)(sizeof option / sizeof option[0]),
-        0};
+        option, (int)(sizeof option / sizeof option[0]), 0};
 
     search_init(&o.search, 0);
     o.budget = 6000;
@@ -317,8 +313,8 @@ int cli_fit(int argc, char **argv)
     if (o.only != NULL) {
         const int x = reading_find(o.only);
         if (x < 0) {
-            cli_complain("--variant: %s: no such reading: `exhand-lab fit --space` lists them",
-                         o.only);
+            cli_complain(
+                "--variant: %s: no such reading: `exhand-lab fit --space` lists them", o.only);
             return 2;
         }
         for (int i = 0; i < READINGS; i++) { o.search.used[i] = x == i; }

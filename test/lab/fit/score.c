@@ -27,7 +27,7 @@ static double observe_s(const struct score_plan *plan, int row)
 }
 
 int score_run(const struct plant_point *p, const struct score_plan *plan, struct score_gains at,
-              struct run *r)
+    struct run *r)
 {
     struct run_setting setting[SPACE_ROWS + 1];
     struct sim_random wall = {at.seed ^ 0x77616C6C}; /* not the run's own chance */
@@ -63,8 +63,8 @@ static double shortfall(const struct fall_rest *f, int wanted_oscillating)
     return w > 1.3 ? 0 : w > 1 ? 0.3 * (1.3 - w) / 0.3 : 1 + 0.2 * (1 - w);
 }
 
-int score_oscillating(const struct run *r, double step_m, double observe_s, int wanted,
-                      double *soft)
+int score_oscillating(
+    const struct run *r, double step_m, double observe_s, int wanted, double *soft)
 {
     struct fall_rest_opt opt = fall_rest_opt_default;
     struct fall_rest rest[FALLS];
@@ -90,8 +90,8 @@ static struct score_gains gains(int row, double scale, int falls, uint64_t seed)
 }
 
 /* The runs at the gains; 0, or -1 when one failed. */
-static int at_the_gains(const struct plant_point *p, const struct score_plan *plan, int row,
-                        struct score *s)
+static int at_the_gains(
+    const struct plant_point *p, const struct score_plan *plan, int row, struct score *s)
 {
     double sum[READINGS] = {0}, unrest = 0, soft = 0;
     int oscillating = 0, none[READINGS] = {0};
@@ -123,8 +123,8 @@ static int at_the_gains(const struct plant_point *p, const struct score_plan *pl
     return 0;
 }
 
-static int at_15(const struct plant_point *p, const struct score_plan *plan, int row,
-                 struct score *s)
+static int at_15(
+    const struct plant_point *p, const struct score_plan *plan, int row, struct score *s)
 {
     double soft = 0;
     struct run r;

@@ -42,11 +42,11 @@ struct score_gains {
     uint64_t seed;
 };
 int score_run(const struct plant_point *p, const struct score_plan *plan, struct score_gains at,
-              struct run *r);
+    struct run *r);
 double score_step_m(const struct plant_point *p);
 
 /* Falls of the run that oscillate; *soft is their sum judged by how far. */
-int score_oscillating(const struct run *r, double step_m, double observe_s, int wanted,
-                      double *soft);
+int score_oscillating(
+    const struct run *r, double step_m, double observe_s, int wanted, double *soft);
 
 #endif

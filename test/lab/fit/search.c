@@ -16,10 +16,7 @@ void search_init(struct search *s, uint64_t seed)
 }
 
 /* Normal enough: deviation 1, within +-3.5. */
-static double bell(struct sim_random *r)
-{
-    return 6.9 * sim_random_bell(r);
-}
+static double bell(struct sim_random *r) { return 6.9 * sim_random_bell(r); }
 
 static double mirrored(double u)
 {
@@ -47,10 +44,7 @@ struct plant_point search_first(struct search *s, int i)
     return p;
 }
 
-static int pick(struct sim_random *r, int n)
-{
-    return (int)(sim_random_unit(r) * n);
-}
+static int pick(struct sim_random *r, int n) { return (int)(sim_random_unit(r) * n); }
 
 static struct plant_point evolve(struct search *s, const struct search_population *of, int best)
 {
@@ -127,15 +121,15 @@ static void insert(struct search_population *of, int kept, const struct search_m
         if (!near(&of->member[i].p, &m->p)) { continue; }
         if (of->member[i].cost <= m->cost) { return; }
         memmove(&of->member[i], &of->member[i + 1],
-                (size_t)(of->members - 1 - i) * sizeof of->member[0]);
+            (size_t)(of->members - 1 - i) * sizeof of->member[0]);
         of->members--;
         i--;
     }
     for (at = of->members; at > 0 && m->cost < of->member[at - 1].cost; at--) {}
     if (at >= kept) { return; }
     if (of->members == kept) { of->members--; }
-    memmove(&of->member[at + 1], &of->member[at],
-            (size_t)(of->members - at) * sizeof of->member[0]);
+    memmove(
+        &of->member[at + 1], &of->member[at], (size_t)(of->members - at) * sizeof of->member[0]);
     of->member[at] = *m;
     of->members++;
 }

@@ -52,13 +52,13 @@ static double of_lines(const double *v, int n, double share)
 /* Share of falls that oscillate in `runs` runs, -1 if none ran; stiffness by all readings if S is
  * there. */
 static double oscillating(const struct score_plan *plan, const struct plant_point *p, int row,
-                          double scale, int runs, double S[READINGS][RUNS_MAX], int *failed)
+    double scale, int runs, double S[READINGS][RUNS_MAX], int *failed)
 {
     const struct table2_row *t = &table2_paper[row];
     int n = 0, seen = 0;
     for (int i = 0; i < runs; i++) {
-        const struct score_gains at = {row, t->k_Npm * scale, t->b_Nspm * scale, FALLS,
-                                       SEED + (uint64_t)i};
+        const struct score_gains at = {
+            row, t->k_Npm * scale, t->b_Nspm * scale, FALLS, SEED + (uint64_t)i};
         double soft, one[READINGS];
         struct run r;
         int k = score_run(p, plan, at, &r) < 0
@@ -79,16 +79,13 @@ static double oscillating(const struct score_plan *plan, const struct plant_poin
     return seen ? (double)n / seen : -1;
 }
 
-static double at_rest(double oscillate)
-{
-    return oscillate < 0 ? -1 : 1 - oscillate;
-}
+static double at_rest(double oscillate) { return oscillate < 0 ? -1 : 1 - oscillate; }
 
 /* Largest b of the ladder up to which all rest (at least 9 of 10 falls). */
 static double largest_b(const struct score_plan *plan, const struct plant_point *p, int row)
 {
-    static const double b[] = {1,  2,  3,  4,  5,  6,  8,   10,  12,  15, 20,
-                               25, 30, 40, 50, 60, 80, 100, 120, 150, 200};
+    static const double b[] = {
+        1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 40, 50, 60, 80, 100, 120, 150, 200};
     double best = 0;
     for (size_t i = 0; i < sizeof b / sizeof b[0]; i++) {
         const struct score_gains at = {row, table2_paper[row].k_Npm / 2, b[i], FALLS, SEED};
@@ -160,7 +157,7 @@ static void print(const struct trial *t, const struct verdict *v, FILE *csv, FIL
            "                     off the paper, 90 .. 2000 Hz    within    at rest               "
            " oscillates at 1.5x      largest b\n"
            "  reading                                             25 10\n",
-           t->runs, t->runs, t->s->fixed_wall ? "at one place" : "anywhere");
+        t->runs, t->runs, t->s->fixed_wall ? "at one place" : "anywhere");
     for (int i = 0; i < t->readings; i++, v += TABLE2_ROWS) {
         const int x = t->reading[i];
         const struct plant_point *p = &search_best(t->s, x)->p;
@@ -180,9 +177,9 @@ static void print(const struct trial *t, const struct verdict *v, FILE *csv, FIL
         for (int row = 0; row < TABLE2_ROWS; row++) {
             const struct table2_row *paper = &table2_paper[row];
             fprintf(csv, "%s,%.9g,%.9g,%.9g,%.9g", reading_table[x].name, paper->rate_Hz,
-                    paper->k_Npm, paper->b_Nspm, paper->stiffness_Npm);
+                paper->k_Npm, paper->b_Nspm, paper->stiffness_Npm);
             fprintf(csv, ",%.9g,%.9g,%.9g,%.4f,%.4f", v[row].median[x], v[row].low, v[row].high,
-                    v[row].rest, v[row].swing);
+                v[row].rest, v[row].swing);
             for (int k = 0; k < FURTHER; k++) {
                 fprintf(csv, ",%.4f,%.4f", v[row].over_k[k], v[row].rest_at[k]);
             }
@@ -210,7 +207,7 @@ static void print_further(const struct trial *t, const struct verdict *v)
         printf("  %-16s", reading_table[x].name);
         for (int row = 2; row < TABLE2_ROWS; row++) {
             printf("  %5.2f %5.2f [%5.2f] %5.2f", v[row].over_k[0], v[row].over_k[1],
-                   v[row].median[x] / table2_paper[row].k_Npm, v[row].over_k[2]);
+                v[row].median[x] / table2_paper[row].k_Npm, v[row].over_k[2]);
         }
         printf("\n");
     }
@@ -238,8 +235,8 @@ static int write_all(const struct trial *t, const struct verdict *v, const char 
     int err = csv == NULL || plants == NULL;
     if (err == 0) {
         fprintf(csv,
-                "reading,rate_hz,k_n_per_m,b_ns_per_m,paper_n_per_m,median_n_per_m,low_n_per_m,"
-                "high_n_per_m,rest_share,oscillating_share_at_1_5x");
+            "reading,rate_hz,k_n_per_m,b_ns_per_m,paper_n_per_m,median_n_per_m,low_n_per_m,"
+            "high_n_per_m,rest_share,oscillating_share_at_1_5x");
         for (int k = 0; k < FURTHER; k++) {
             fprintf(csv, ",over_k_at_%g,rest_share_at_%g", further_scale[k], further_scale[k]);
         }
@@ -270,8 +267,8 @@ int winners_judge(const struct search *s, int runs, int further, int jobs, const
         free(v);
         return 1;
     }
-    const struct jobs all = {t.readings * TABLE2_ROWS, jobs, sizeof *v, v, judge, &t, "rows",
-                             posix_interrupt};
+    const struct jobs all = {
+        t.readings * TABLE2_ROWS, jobs, sizeof *v, v, judge, &t, "rows", posix_interrupt};
     err = jobs_run(&all);
     for (int i = 0; i < all.n; i++) { failed += v[i].failed; }
     if (err == 0) { err = write_all(&t, v, out); }

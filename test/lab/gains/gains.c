@@ -56,9 +56,9 @@ int lab_advise(int argc, char **argv)
 {
     static const struct cli_option option[] = {
         {"judge", CLI_TEXT, &is.judge, 0, 0, "FILE",
-         "against a stability.csv of exhand-lab drop --sweep"},
+            "against a stability.csv of exhand-lab drop --sweep"},
         {"out", CLI_TEXT, &is.out, 0, 0, "DIR",
-         "CSVs and what gnuplot needs for the picture there"},
+            "CSVs and what gnuplot needs for the picture there"},
     };
     static const struct gains_study study = {
         {option, (int)(sizeof option / sizeof option[0]), NULL}, begin, rate, end};

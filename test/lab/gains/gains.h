@@ -27,13 +27,13 @@ struct gains_map {
 int gains_map(struct gains_map *m, const char *path);
 
 /* The cells of the region's rate. */
-struct gains_share gains_judge(struct region *r, const struct exh_gains_par *rule,
-                               const struct gains_map *m);
+struct gains_share gains_judge(
+    struct region *r, const struct exh_gains_par *rule, const struct gains_map *m);
 void gains_judge_print(const struct gains_share *s, int n);
 
 /* DIR/gains.csv (nodes), allowed.csv, rule.csv, gains.gp and with a map map.csv, judge.csv. 0, or 1
  * after a line on stderr. */
 int gains_write(const char *dir, struct gains_rate *r, const struct gains_share *s, int n,
-                const struct gains_map *map);
+    const struct gains_map *map);
 
 #endif

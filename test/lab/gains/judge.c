@@ -16,7 +16,7 @@ static int parse(const char *line, struct cell *c)
 {
     memset(c, 0, sizeof *c);
     return sscanf(line, "%lf,%lf,%lf,%d,%d,", &c->rate_Hz, &c->k_Npm, &c->b_Nspm, &c->stable_falls,
-                  &c->falls) == 5 &&
+               &c->falls) == 5 &&
            c->rate_Hz >= 1 && c->k_Npm > 0 && c->b_Nspm >= 0 && c->falls > 0 &&
            c->stable_falls >= 0 && c->stable_falls <= c->falls;
 }
@@ -56,7 +56,7 @@ int gains_map(struct gains_map *m, const char *path)
     memset(m, 0, sizeof *m);
     if (f == NULL) {
         cli_complain("--judge: %s: %s: give the stability.csv of exhand-lab drop --sweep", path,
-                     strerror(errno));
+            strerror(errno));
         return 3;
     }
     err = read_all(f, m);
@@ -69,10 +69,7 @@ int gains_map(struct gains_map *m, const char *path)
     return err ? 1 : 2;
 }
 
-static int same(double a, double b)
-{
-    return a - b <= 1e-6 * a && b - a <= 1e-6 * a;
-}
+static int same(double a, double b) { return a - b <= 1e-6 * a && b - a <= 1e-6 * a; }
 
 /* 1 for each cell of the grid of a rate, what counts as area: a sweep also has octaves and what
  * bisection asked for. A row of the grid has a cell in each column, a column one in each such row.
@@ -105,7 +102,7 @@ static int rule_allows(const struct exh_gains_par *rule, const struct cell *c)
 }
 
 static void count_grid(struct gains_share *s, struct region *r, const struct exh_gains_par *rule,
-                       const struct cell *c, int allowed)
+    const struct cell *c, int allowed)
 {
     const int stable = cell_stable(c), rests = c->stable_falls == c->falls;
     const double rho =
@@ -123,8 +120,8 @@ static void count_grid(struct gains_share *s, struct region *r, const struct exh
     s->rule_stable += stable && rule_allows(rule, c);
 }
 
-struct gains_share gains_judge(struct region *r, const struct exh_gains_par *rule,
-                               const struct gains_map *m)
+struct gains_share gains_judge(
+    struct region *r, const struct exh_gains_par *rule, const struct gains_map *m)
 {
     char *grid = calloc((size_t)m->n, 1);
     struct gains_share s;
@@ -147,10 +144,7 @@ struct gains_share gains_judge(struct region *r, const struct exh_gains_par *rul
     return s;
 }
 
-static double percent(int part, int whole)
-{
-    return whole > 0 ? 100.0 * part / whole : 0;
-}
+static double percent(int part, int whole) { return whole > 0 ? 100.0 * part / whole : 0; }
 
 void gains_judge_print(const struct gains_share *s, int n)
 {
@@ -168,10 +162,10 @@ void gains_judge_print(const struct gains_share *s, int n)
         printf("%6.6g | %6d %6d | %5.1f %%  %5.1f %% | %5.1f %% | %5.1f %% %10d | %5.1f %% %10d | "
                "%7d %8d | %6ld "
                "%12ld\n",
-               s->rate_Hz, s->stable, s->at_rest, percent(s->allowed_stable, s->stable),
-               percent(s->allowed_at_rest, s->at_rest), percent(s->rule_stable, s->stable),
-               percent(s->linear_stable, s->stable), s->linear_unstable,
-               percent(s->energy_stable, s->stable), s->energy_unstable, s->inside, s->unstable,
-               s->falls, s->restless);
+            s->rate_Hz, s->stable, s->at_rest, percent(s->allowed_stable, s->stable),
+            percent(s->allowed_at_rest, s->at_rest), percent(s->rule_stable, s->stable),
+            percent(s->linear_stable, s->stable), s->linear_unstable,
+            percent(s->energy_stable, s->stable), s->energy_unstable, s->inside, s->unstable,
+            s->falls, s->restless);
     }
 }

@@ -7,10 +7,7 @@
 #include <errno.h>
 #include <string.h>
 
-static double si(int32_t raw, int frac)
-{
-    return (double)raw / (double)(INT32_C(1) << frac);
-}
+static double si(int32_t raw, int frac) { return (double)raw / (double)(INT32_C(1) << frac); }
 
 static void nodes(FILE *f, struct gains_rate *r, int n, const struct gains_map *map)
 {
@@ -21,7 +18,7 @@ static void nodes(FILE *f, struct gains_rate *r, int n, const struct gains_map *
         for (int j = 0; j <= g->o.rows; j++) {
             for (int i = 0; i <= g->o.columns; i++) {
                 fprintf(f, "%.9g,%.9g,%.9g,%d\n", r->rate_Hz, region_k(g, i), region_b(g, j),
-                        g->node[j * (g->o.columns + 1) + i]);
+                    g->node[j * (g->o.columns + 1) + i]);
             }
         }
     }
@@ -41,7 +38,7 @@ static void allowed(FILE *f, struct gains_rate *r, int n, const struct gains_map
                 if (is && from < 0) { from = i; }
                 if (!is && from >= 0) {
                     fprintf(f, "%.9g,%.9g,%.9g,%.9g,%.9g\n", r->rate_Hz, region_b(g, j),
-                            region_b(g, j + 1), region_k(g, from), region_k(g, i));
+                        region_b(g, j + 1), region_k(g, from), region_k(g, i));
                     from = -1;
                 }
             }
@@ -56,8 +53,8 @@ static void rules(FILE *f, struct gains_rate *r, int n, const struct gains_map *
     for (; n > 0; n--, r++) {
         for (int i = 0; r->has_rule && i < r->rule.knots; i++) {
             fprintf(f, "%.9g,%d,%.9g,%.9g,%.9g\n", r->rate_Hz, i,
-                    si(r->rule.b_Nspm_q20[i], EXH_Q_B), si(r->rule.k_Npm_q10[i], EXH_Q_K),
-                    si(r->rule.k_min_Npm_q10, EXH_Q_K));
+                si(r->rule.b_Nspm_q20[i], EXH_Q_B), si(r->rule.k_Npm_q10[i], EXH_Q_K),
+                si(r->rule.k_min_Npm_q10, EXH_Q_K));
         }
     }
 }
@@ -65,13 +62,13 @@ static void rules(FILE *f, struct gains_rate *r, int n, const struct gains_map *
 static void judged(FILE *f, const struct gains_share *s, int n)
 {
     fprintf(f,
-            "rate_hz,cells,stable,at_rest,allowed_stable,allowed_at_rest,rule_stable,linear_stable,"
-            "linear_unstable,energy_stable,energy_unstable,inside,unstable,falls,restless\n");
+        "rate_hz,cells,stable,at_rest,allowed_stable,allowed_at_rest,rule_stable,linear_stable,"
+        "linear_unstable,energy_stable,energy_unstable,inside,unstable,falls,restless\n");
     for (; n > 0; n--, s++) {
         fprintf(f, "%.9g,%d,%d,%d,%d,%d,%d,%d,%d,%d,%d,%d,%d,%ld,%ld\n", s->rate_Hz, s->cells,
-                s->stable, s->at_rest, s->allowed_stable, s->allowed_at_rest, s->rule_stable,
-                s->linear_stable, s->linear_unstable, s->energy_stable, s->energy_unstable,
-                s->inside, s->unstable, s->falls, s->restless);
+            s->stable, s->at_rest, s->allowed_stable, s->allowed_at_rest, s->rule_stable,
+            s->linear_stable, s->linear_unstable, s->energy_stable, s->energy_unstable, s->inside,
+            s->unstable, s->falls, s->restless);
     }
 }
 
@@ -83,17 +80,17 @@ static void cells(FILE *f, struct gains_rate *r, int n, const struct gains_map *
     for (int i = 0; map != NULL && i < map->n; i++) {
         const struct cell *c = &map->at[i];
         fprintf(f, "%.9g,%.9g,%.9g,%d,%d\n", c->rate_Hz, c->k_Npm, c->b_Nspm, c->stable_falls,
-                c->falls);
+            c->falls);
     }
 }
 
 static void picture(FILE *f, struct gains_rate *r, int n, const struct gains_map *map)
 {
     fprintf(f,
-            "# Made by exhand advise gains. Inside this directory, PLOTS the way to "
-            "ports/posix/plot:\n#   gnuplot -c gains.gp PLOTS\nplots=ARG1\n"
-            "out='gains.png'; has_map=%d\nrates='",
-            map != NULL);
+        "# Made by exhand advise gains. Inside this directory, PLOTS the way to "
+        "ports/posix/plot:\n#   gnuplot -c gains.gp PLOTS\nplots=ARG1\n"
+        "out='gains.png'; has_map=%d\nrates='",
+        map != NULL);
     for (int i = 0; i < n; i++) { fprintf(f, "%s%.6g", i ? " " : "", r[i].rate_Hz); }
     fprintf(f, "'; k_tops='");
     for (int i = 0; i < n; i++) { fprintf(f, "%s%.6g", i ? " " : "", r[i].region.k_top_Npm); }
@@ -113,13 +110,13 @@ static void picture(FILE *f, struct gains_rate *r, int n, const struct gains_map
 }
 
 int gains_write(const char *dir, struct gains_rate *r, const struct gains_share *s, int n,
-                const struct gains_map *map)
+    const struct gains_map *map)
 {
     static const struct {
         const char *name;
         int of_map;
-    } file[] = {{"gains.csv", 0}, {"allowed.csv", 0}, {"rule.csv", 0},
-                {"gains.gp", 0},  {"map.csv", 1},     {"judge.csv", 1}};
+    } file[] = {{"gains.csv", 0}, {"allowed.csv", 0}, {"rule.csv", 0}, {"gains.gp", 0},
+        {"map.csv", 1}, {"judge.csv", 1}};
     for (size_t i = 0; i < sizeof file / sizeof file[0]; i++) {
         char path[TABLE2_PATH_B];
         FILE *f;

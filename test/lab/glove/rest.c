@@ -34,8 +34,8 @@ static int settle_rate(struct glove_rest *r)
 {
     const long n = r->frames.n;
     if (n < FRAMES_MIN) {
-        cli_complain("%ld frames: too few to measure noise by (%d): give more --seconds", n,
-                     FRAMES_MIN);
+        cli_complain(
+            "%ld frames: too few to measure noise by (%d): give more --seconds", n, FRAMES_MIN);
         return 2;
     }
     r->frames.T.num *= (uint32_t)((r->ticks + n / 2) / n);
@@ -144,7 +144,7 @@ int glove_rest_cut(struct glove_frames *f, const struct rest_options *o)
     if (to > f->n) { to = f->n; }
     if (from >= to) {
         cli_complain("--from, --to: %.6g..%.6g s: nothing is recorded there: it ends at %.6g s",
-                     o->from_s, o->to_s, (double)f->n * T_s);
+            o->from_s, o->to_s, (double)f->n * T_s);
         return 2;
     }
     f->n = to - from;

@@ -24,8 +24,8 @@ struct errors {
 
 /* Fingertips of 22 angles by the library, whose own error is 0.01 um. Binary angles, so the
  * A/D's codes are not in it. */
-static struct tips tips_of(const struct exh_hand_finger finger[EXH_FINGERS],
-                           const double rad[SENSORS])
+static struct tips tips_of(
+    const struct exh_hand_finger finger[EXH_FINGERS], const double rad[SENSORS])
 {
     int32_t turn[SENSORS], joint[EXH_HAND_JOINTS];
     struct tips t;
@@ -64,8 +64,8 @@ static void add(struct errors *e, const struct tips *a, const struct tips *b)
 
 /* All 22 angles at t_s, or channel i earlier[i] before it. The hand has been moved up to t_s
  * at most: curves before a movement's start are gone, but it starts at rest. */
-static void angles_at(const struct sim_glove *g, double t_s, double first_s, double step_s,
-                      double rad[SENSORS])
+static void angles_at(
+    const struct sim_glove *g, double t_s, double first_s, double step_s, double rad[SENSORS])
 {
     for (int i = 0; i < SENSORS; i++) {
         const double at_s = t_s - first_s + i * step_s;
@@ -76,7 +76,7 @@ static void angles_at(const struct sim_glove *g, double t_s, double first_s, dou
 
 /* From flat to fist and back; errors against all channels at the tick, and in the scan's middle. */
 static double grasp(const struct glove_options *o, const struct exh_hand_finger *finger,
-                    double move_s, double interval_s, struct errors *at_tick, struct errors *mid)
+    double move_s, double interval_s, struct errors *at_tick, struct errors *mid)
 {
     struct sim_operator_par hand = sim_operator_default();
     struct sim_operator op;
@@ -105,8 +105,8 @@ int glove_skew(const struct glove_options *o)
 {
     static const double interval_us[] = {4, 5, 10, 15, 20};
     static const double move_s[] = {0.5, 0.2};
-    static const struct exh_hand_par par = {EXH_Q(20, 1000, 30), EXH_Q(16, 1000, 30),
-                                            EXH_Q(12, 1000, 30), 0};
+    static const struct exh_hand_par par = {
+        EXH_Q(20, 1000, 30), EXH_Q(16, 1000, 30), EXH_Q(12, 1000, 30), 0};
     struct exh_hand_finger finger[EXH_FINGERS];
     for (unsigned f = 0; f < EXH_FINGERS; f++) {
         const int err = exh_hand_setup(&finger[f], &exh_hit2_bones[f], &par);
@@ -118,7 +118,7 @@ int glove_skew(const struct glove_options *o)
     printf("Fingertips from 22 channels converted one after the other, against all 22 at once:\n"
            "at the tick the scan ends at, and in the middle of the scan (skew without delay).\n"
            "Hand from flat to fist and back, minimum jerk; A/D and noise left out; %d Hz.\n\n",
-           RATE_HZ);
+        RATE_HZ);
     printf("  one way  fastest  interval   scan   against the tick     against the middle\n"
            "                                       largest     rms      largest     rms\n"
            "        s    deg/s        us     us         um      um           um      um\n");
@@ -127,9 +127,9 @@ int glove_skew(const struct glove_options *o)
             struct errors tick = {0, 0, 0}, mid = {0, 0, 0};
             const double fastest = grasp(o, finger, move_s[m], interval_us[k] * 1e-6, &tick, &mid);
             printf("%9.1f %8.0f %9.0f %6.0f %10.1f %7.1f %12.2f %7.2f\n", move_s[m], fastest,
-                   interval_us[k], SENSORS * interval_us[k], tick.most_m * 1e6,
-                   root(tick.squares_m2 / (double)tick.n) * 1e6, mid.most_m * 1e6,
-                   root(mid.squares_m2 / (double)mid.n) * 1e6);
+                interval_us[k], SENSORS * interval_us[k], tick.most_m * 1e6,
+                root(tick.squares_m2 / (double)tick.n) * 1e6, mid.most_m * 1e6,
+                root(mid.squares_m2 / (double)mid.n) * 1e6);
         }
     }
     return 0;

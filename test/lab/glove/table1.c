@@ -63,8 +63,8 @@ static double joint_pp(const struct glove_frames *f, int *worst)
 }
 
 /* By the library, from counter values, m. */
-static int position_pp(const struct glove_rest *r, const struct sim_device *d, double *pp_m,
-                       double *step_m)
+static int position_pp(
+    const struct glove_rest *r, const struct sim_device *d, double *pp_m, double *step_m)
 {
     const struct exh_quad_par par = {
         (int32_t)(d->step_m / d->decode * (double)(INT64_C(1) << EXH_Q_STEP) + 0.5),
@@ -98,11 +98,11 @@ static double current_pp(const struct glove_rest *r, const struct sim_device *d)
 
 /* --- the table --- */
 
-static int row(const char *name, const char *noise, const char *span, int bits, const char *paper,
-               int want)
+static int row(
+    const char *name, const char *noise, const char *span, int bits, const char *paper, int want)
 {
     printf("  %-15s %-28s %-26s %4d   %-15s %4d%s\n", name, noise, span, bits, paper, want,
-           bits < want ? "   falls short" : "");
+        bits < want ? "   falls short" : "");
     return bits < want;
 }
 
@@ -123,7 +123,7 @@ static int motor_rows(const struct glove_options *o, const struct glove_rest *r)
     if (err) { return err; }
     snprintf(noise, sizeof noise, "%.2f um (steps: %.3g)", pp_m * 1e6, pp_m / step_m);
     snprintf(span, sizeof span, "%.4g mm (steps: %ld)", is->travel_m * 1e3,
-             (long)(is->travel_m / step_m));
+        (long)(is->travel_m / step_m));
     fails =
         row("motor position", noise, span, stable_bits(is->travel_m, pp_m), "1 encoder step", 9);
     pp_A = current_pp(r, &o->device);
@@ -156,7 +156,7 @@ struct behind {
 };
 
 static void widths(const struct glove_frames *f, const struct exh_filter_cfg *cfg, long settle,
-                   struct behind *b, const struct exh_quantizer_cfg q[2])
+    struct behind *b, const struct exh_quantizer_cfg q[2])
 {
     static struct exh_filter s[SENSORS];
     static struct exh_quantizer keep[2][SENSORS];
@@ -217,7 +217,7 @@ static int behind_filter(const struct glove_frames *f, double fc_Hz)
         printf("      none");
     }
     printf(" %13.3f mV %6d %8.2f ms %11ld %12ld\n", b.pp_raw * 20e3 / CODES, b.bits, delay_s * 1e3,
-           b.flips[1], b.flips[0]);
+        b.flips[1], b.flips[0]);
     return b.flips[0] > 0;
 }
 
@@ -281,10 +281,7 @@ static int module_line(const struct glove_options *o, const struct glove_frames 
     return (faults_line(faults) || beyond > 0) && at_rest;
 }
 
-static int worse(int a, int b)
-{
-    return a > b ? a : b;
-}
+static int worse(int a, int b) { return a > b ? a : b; }
 
 static int report(const struct glove_options *o, const struct glove_rest *r, const char *source)
 {
@@ -295,8 +292,8 @@ static int report(const struct glove_options *o, const struct glove_rest *r, con
     printf("Stable bits = floor(log2(span / peak-to-peak noise)), %s\n"
            "%ld frames of 22 channels at %.6g Hz, %.4g s; joint angle: the worst channel, %s\n\n"
            "  %-15s %-28s %-26s %4s   %-15s %4s\n",
-           source, f->n, rate_Hz, (double)f->n / rate_Hz, exh_glove_sensor_text((unsigned)worst),
-           "signal", "peak to peak", "span", "bits", "paper", "bits");
+        source, f->n, rate_Hz, (double)f->n / rate_Hz, exh_glove_sensor_text((unsigned)worst),
+        "signal", "peak to peak", "span", "bits", "paper", "bits");
     fails = joint_row(pp);
     if (r->enc != NULL) { fails = worse(fails, motor_rows(o, r)); }
     fails = worse(fails, behind_table(f));

@@ -17,10 +17,8 @@
 static const struct frozen {
     const struct side *side;
     struct exh_scene_board board;
-} frozen[] = {{&side_90, {{1, 90}, 24}},
-              {&side_1000, {{1, 1000}, 24}},
-              {&side_20000, {{1, 20000}, 24}},
-              {&side_1193_1193182, {{1193, 1193182}, 24}}};
+} frozen[] = {{&side_90, {{1, 90}, 24}}, {&side_1000, {{1, 1000}, 24}},
+    {&side_20000, {{1, 20000}, 24}}, {&side_1193_1193182, {{1193, 1193182}, 24}}};
 
 TEST(constants_are_those_of_set_up)
 {
@@ -39,19 +37,12 @@ TEST(another_board_is_refused)
     static const struct {
         struct exh_scene_board board;
         int err;
-    } row[] = {{{{1, 1000}, 24}, 0},
-               {{{25000, 25000000}, 24}, 0}, /* the same, as a timer has it */
-               {{{1, 999}, 24}, -EXH_E_RATE},
-               {{{1, 1001}, 24}, -EXH_E_RATE},
-               {{{1193, 1193182}, 24}, -EXH_E_RATE},
-               {{{1, 1000000}, 24}, -EXH_E_RATE},
-               {{{1u << 31, 1000u << 21}, 24}, -EXH_E_RATE},
-               {{{0, 1000}, 24}, -EXH_E_RATE},
-               {{{1, 0}, 24}, -EXH_E_RATE},
-               {{{0, 0}, 24}, -EXH_E_RATE},
-               {{{1, 1000}, 23}, -EXH_E_RANGE},
-               {{{1, 1000}, 32}, -EXH_E_RANGE},
-               {{{1, 1000}, 0}, -EXH_E_RANGE}};
+    } row[] = {{{{1, 1000}, 24}, 0}, {{{25000, 25000000}, 24}, 0}, /* the same, as a timer has it */
+        {{{1, 999}, 24}, -EXH_E_RATE}, {{{1, 1001}, 24}, -EXH_E_RATE},
+        {{{1193, 1193182}, 24}, -EXH_E_RATE}, {{{1, 1000000}, 24}, -EXH_E_RATE},
+        {{{1u << 31, 1000u << 21}, 24}, -EXH_E_RATE}, {{{0, 1000}, 24}, -EXH_E_RATE},
+        {{{1, 0}, 24}, -EXH_E_RATE}, {{{0, 0}, 24}, -EXH_E_RATE}, {{{1, 1000}, 23}, -EXH_E_RANGE},
+        {{{1, 1000}, 32}, -EXH_E_RANGE}, {{{1, 1000}, 0}, -EXH_E_RANGE}};
     for (size_t k = 0; k < LEN(row); k++) {
         const int err = side_1000.scene->setup(row[k].board);
         CHECK(err == row[k].err, "row %d: %d", (int)k, err);
@@ -86,10 +77,10 @@ static void same_ticks(const struct frozen *f, uint32_t *states, uint32_t *fault
         f->side->scene->tick(&in, &got);
         CHECK(memcmp(want.dac_raw, got.dac_raw, sizeof want.dac_raw) == 0 &&
                   want.enable == got.enable && want.alive == got.alive,
-              "tick %" PRIu32 ": dac %d, want %d", k, got.dac_raw[0], want.dac_raw[0]);
+            "tick %" PRIu32 ": dac %d, want %d", k, got.dac_raw[0], want.dac_raw[0]);
         len = state_of(&side_live, a, sizeof a);
         CHECK(state_of(f->side, b, sizeof b) == len && memcmp(a, b, len) == 0,
-              "tick %" PRIu32 ": state", k);
+            "tick %" PRIu32 ": state", k);
         *states |= 1u << side_live.scene->safety->state;
         *faults |= side_live.scene->safety->faults;
         *pulled += want.dac_raw[0] != 32768;
@@ -123,12 +114,10 @@ TEST(the_program_takes_what_it_says)
     static const struct {
         const char *words;
         int status;
-    } row[] = {{"--help", 0},   {"1000 24", 0},       {"25000/25000000 32", 0},
-               {"", 2},         {"1000", 2},          {"0 24", 2},
-               {"20030 24", 2}, {"2/1 24", 2},        {"1/ 24", 2},
-               {"1000x 24", 2}, {"4294967297 24", 2}, {"1000 15", 2},
-               {"1000 33", 2},  {"1000 -1", 2},       {"1000 24 1", 2},
-               {"1 16", 1}}; /* at 1 Hz 10 m/s are more than 16 bits tell */
+    } row[] = {{"--help", 0}, {"1000 24", 0}, {"25000/25000000 32", 0}, {"", 2}, {"1000", 2},
+        {"0 24", 2}, {"20030 24", 2}, {"2/1 24", 2}, {"1/ 24", 2}, {"1000x 24", 2},
+        {"4294967297 24", 2}, {"1000 15", 2}, {"1000 33", 2}, {"1000 -1", 2}, {"1000 24 1", 2},
+        {"1 16", 1}}; /* at 1 Hz 10 m/s are more than 16 bits tell */
     for (size_t k = 0; k < LEN(row); k++) {
         const int is = status(FREEZE, row[k].words);
         CHECK(is == row[k].status, "freeze %s: %d, want %d", row[k].words, is, row[k].status);
@@ -141,4 +130,4 @@ TEST(a_field_that_is_not_written_down_is_refused)
 }
 
 TEST_MAIN("frozen", constants_are_those_of_set_up, another_board_is_refused, ticks_are_the_same,
-          the_program_takes_what_it_says, a_field_that_is_not_written_down_is_refused);
+    the_program_takes_what_it_says, a_field_that_is_not_written_down_is_refused);

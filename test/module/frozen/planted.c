@@ -16,5 +16,5 @@ static int planted(struct exh_scene_board board)
 
 static const struct exh_scene scene = {.name = "minimal", .setup = planted};
 const struct exh_scene *const freeze_scene = &scene;
-const struct freeze freeze_list[] = {{&freeze_velocity_window, "vel_cfg", &vel_cfg, 1, {0}},
-                                     {0, 0, 0, 0, {0}}};
+const struct freeze freeze_list[] = {
+    {&freeze_velocity_window, "vel_cfg", &vel_cfg, 1, {0}}, {0, 0, 0, 0, {0}}};

@@ -54,7 +54,7 @@ static inline void ride_event(const struct ride *r, struct exh_scene_in *in)
 /* The inputs of the next tick, from the outputs of the last. 1: a new round begins with it, set the
  * scene up. */
 static inline int ride(struct ride *r, const struct exh_scene *sc, const struct exh_drive_out *out,
-                       struct exh_scene_in *in)
+    struct exh_scene_in *in)
 {
     const uint32_t at = r->ran % (2 * RIDE_CNT), along = at < RIDE_CNT ? at : 2 * RIDE_CNT - at;
     const int codes = out->dac_raw[0] - 32768;

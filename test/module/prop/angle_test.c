@@ -36,11 +36,11 @@ TEST(oracle_is_sine_and_cosine)
         const int32_t y = check_i32_in(INT32_MIN / 2, INT32_MAX / 2);
         const struct turn a = turn_of(x), b = turn_of(y), sum = turn_of(x + y);
         CHECK(sum_is(a.sin_q60, a.sin_q60, a.cos_q60, a.cos_q60, INT64_C(1) << 60),
-              "circle at %" PRId32, x);
+            "circle at %" PRId32, x);
         CHECK(sum_is(a.sin_q60, b.cos_q60, a.cos_q60, b.sin_q60, sum.sin_q60),
-              "sine of %" PRId32 " + %" PRId32, x, y);
+            "sine of %" PRId32 " + %" PRId32, x, y);
         CHECK(sum_is(a.cos_q60, b.cos_q60, -a.sin_q60, b.sin_q60, sum.cos_q60),
-              "cosine of %" PRId32 " + %" PRId32, x, y);
+            "cosine of %" PRId32 " + %" PRId32, x, y);
     }
 }
 
@@ -58,10 +58,10 @@ static void angle_case(int32_t x)
     struct exh_sincos y;
     exh_sincos(x, &y);
     CHECK(near_q60(y.sin_q30, want.sin_q60) && near_q60(y.cos_q30, want.cos_q60),
-          "%" PRId32 ": sine %" PRId32 ", cosine %" PRId32, x, y.sin_q30, y.cos_q30);
+        "%" PRId32 ": sine %" PRId32 ", cosine %" PRId32, x, y.sin_q30, y.cos_q30);
     CHECK(y.sin_q30 <= ONE_Q30 && y.sin_q30 >= -ONE_Q30 && y.cos_q30 <= ONE_Q30 &&
               y.cos_q30 >= -ONE_Q30,
-          "%" PRId32 ": beyond 1", x);
+        "%" PRId32 ": beyond 1", x);
 }
 
 /* 2^20 angles, one in each 4096, and both sides of every eighth of the turn. */
@@ -88,9 +88,9 @@ TEST(symmetries_are_exact)
         exh_sincos(exh_from_u32(x + (1u << 30)), &quarter);
         CHECK(minus.sin_q30 == -y.sin_q30 && minus.cos_q30 == y.cos_q30, "-%" PRIu32, x);
         CHECK(quarter.sin_q30 == y.cos_q30 && quarter.cos_q30 == -y.sin_q30,
-              "%" PRIu32 " and a quarter", x);
+            "%" PRIu32 " and a quarter", x);
     }
 }
 
-TEST_MAIN("prop/angle", oracle_is_sine_and_cosine, every_angle_is_within_its_bound,
-          symmetries_are_exact);
+TEST_MAIN(
+    "prop/angle", oracle_is_sine_and_cosine, every_angle_is_within_its_bound, symmetries_are_exact);

@@ -25,10 +25,7 @@ static int64_t nearest(int64_t num, int64_t den)
     return (2 * num + den) / (2 * den); /* num >= 0 */
 }
 
-static int64_t quantised(int64_t v, int64_t lsb)
-{
-    return nearest(v, lsb) * lsb;
-}
+static int64_t quantised(int64_t v, int64_t lsb) { return nearest(v, lsb) * lsb; }
 
 /* n points on the line at least 50 mA apart, seen through codes of that many LSB. 0:
  * too many of them for the drive. */
@@ -41,17 +38,17 @@ static int measure(struct known *k, int64_t dac_lsb, int64_t mon_lsb)
     memset(k, 0, sizeof *k);
     k->kf_q20 = check_i32_in(EXH_Q(1, 2, EXH_Q_FORCE), EXH_Q(50, 1, EXH_Q_FORCE));
     k->c = (struct exh_calib){.dac_rawpA_q16 = 1,
-                              .mon_A_q40 = 1,
-                              .point = k->point,
-                              .points = (uint8_t)n,
-                              .cap = EXH_CALIB_POINTS_MAX};
+        .mon_A_q40 = 1,
+        .point = k->point,
+        .points = (uint8_t)n,
+        .cap = EXH_CALIB_POINTS_MAX};
     for (unsigned i = 0; i < n; i++) {
         int64_t cur;
         force += ((apart * k->kf_q20) >> EXH_Q_CUR) + 1 + check_i32_in(0, 3 << EXH_Q_FORCE);
         cur = nearest(force << EXH_Q_CUR, k->kf_q20);
         if (force > EXH_Q(100, 1, EXH_Q_FORCE) || cur > EXH_Q(65, 10, EXH_Q_CUR)) { return 0; }
-        k->point[i] = (struct exh_calib_point){(int32_t)force, (int32_t)quantised(cur, dac_lsb),
-                                               (int32_t)quantised(cur, mon_lsb), 0};
+        k->point[i] = (struct exh_calib_point){
+            (int32_t)force, (int32_t)quantised(cur, dac_lsb), (int32_t)quantised(cur, mon_lsb), 0};
     }
     if (check_u64() % 2) { k->c.end_A_q26 = EXH_Q(66, 10, EXH_Q_CUR); }
     err = exh_calib_force_table(&k->c, k->to_cur, EXH_CALIB_POINTS_MAX + 2, NULL);
@@ -74,12 +71,12 @@ static void compare(const struct known *k, int64_t cur_lsb, int64_t mon_lsb)
     const int64_t f_off =
         ((int64_t)exh_table_at(k->force, m) * (1 << EXH_Q_CUR)) - (int64_t)m * k->kf_q20;
     CHECK(i_off <= cur_lsb * k->kf_q20 && i_off >= -cur_lsb * k->kf_q20,
-          "kf %" PRId64 ": %" PRId32 " N q20 gives a current off by %" PRId64, k->kf_q20, f,
-          i_off / k->kf_q20);
+        "kf %" PRId64 ": %" PRId32 " N q20 gives a current off by %" PRId64, k->kf_q20, f,
+        i_off / k->kf_q20);
     CHECK(f_off <= mon_lsb * k->kf_q20 + (INT64_C(3) << (EXH_Q_CUR - 1)) &&
               f_off >= -mon_lsb * k->kf_q20 - (INT64_C(3) << (EXH_Q_CUR - 1)),
-          "kf %" PRId64 ": monitor %" PRId32 " gives a force off by %" PRId64, k->kf_q20, m,
-          f_off >> EXH_Q_CUR);
+        "kf %" PRId64 ": monitor %" PRId32 " gives a force off by %" PRId64, k->kf_q20, m,
+        f_off >> EXH_Q_CUR);
 }
 
 /* Noise-free: within 2 LSB of the current's format (30 nA: half one of the point, 1.5 of
@@ -99,7 +96,7 @@ TEST(a_straight_table_is_recovered_to_the_lsb)
         off = fit.kf_NpA_q20 - k.kf_q20;
         off = off < 0 ? -off : off;
         CHECK(2 * k.point[0].cur_A_q26 * (off - 1) <= k.kf_q20 + fit.kf_NpA_q20 / 1024,
-              "kf %" PRId64 " found as %" PRId32, k.kf_q20, fit.kf_NpA_q20);
+            "kf %" PRId64 " found as %" PRId32, k.kf_q20, fit.kf_NpA_q20);
         for (unsigned i = 0; i < k.c.points; i++) { /* on the line: no residual */
             const int64_t r = exh_calib_residual_N_q20(&fit, &k.point[i], EXH_CALIB_CURRENT);
             const int64_t most = 2 + (k.kf_q20 >> EXH_Q_CUR) +
@@ -183,7 +180,7 @@ TEST(mean_is_the_nearest)
         }
         off = 2 * ((int64_t)exh_mean_value(&m) * n - sum);
         CHECK(off <= n && off > -n, "sum %" PRId64 " of %" PRId32 ": %" PRId32, sum, n,
-              exh_mean_value(&m));
+            exh_mean_value(&m));
     }
 }
 
@@ -219,7 +216,7 @@ TEST(anything_is_saved_and_loaded_or_refused)
         if (len < 0) {
             CHECK(len == -EXH_E_RANGE ||
                       (len == -EXH_E_MONOTONE && bad.what == EXH_CALIB_MONITOR_TABLE),
-                  "refused: %" PRId32, len);
+                "refused: %" PRId32, len);
             continue;
         }
         saved++;
@@ -233,5 +230,5 @@ TEST(anything_is_saved_and_loaded_or_refused)
 }
 
 TEST_MAIN("prop/calibrate", a_straight_table_is_recovered_to_the_lsb,
-          a_quantised_table_is_recovered_to_the_code, a_bent_table_is_recovered_to_the_lsb,
-          mean_is_the_nearest, anything_is_saved_and_loaded_or_refused);
+    a_quantised_table_is_recovered_to_the_code, a_bent_table_is_recovered_to_the_lsb,
+    mean_is_the_nearest, anything_is_saved_and_loaded_or_refused);

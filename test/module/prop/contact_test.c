@@ -14,8 +14,8 @@ static int32_t in_row(unsigned r)
 }
 
 /* b*v in q47, k*pen in q40, F0 in q20: all brought to q47. */
-static struct wide exact_N_q47(const struct exh_contact_par *par, struct exh_contact_in in,
-                               int touching, int inward)
+static struct wide exact_N_q47(
+    const struct exh_contact_par *par, struct exh_contact_in in, int touching, int inward)
 {
     const int64_t past = (int64_t)in.pos_m_q30 - in.lim_m_q30;
     const int32_t pen = wide_sat32(wide_of(past)); /* documented: saturates at +-2 m */
@@ -25,8 +25,8 @@ static struct wide exact_N_q47(const struct exh_contact_par *par, struct exh_con
     return touching ? wide_add(f0, wide_add(spring, damper)) : f0;
 }
 
-static void law_case(const struct exh_contact_par *par, struct exh_contact s,
-                     struct exh_contact_in in)
+static void law_case(
+    const struct exh_contact_par *par, struct exh_contact s, struct exh_contact_in in)
 {
     const struct exh_contact old = s;
     const int64_t past = (int64_t)in.pos_m_q30 - in.lim_m_q30;
@@ -37,18 +37,18 @@ static void law_case(const struct exh_contact_par *par, struct exh_contact s,
     const struct wide err =
         wide_sub(wide_shl(wide_of(sum), 27), exact_N_q47(par, in, touching, s.inward));
     CHECK(wide_within(err, wide_of(INT64_C(1) << 27)),
-          "k %" PRId32 " b %" PRId32 " q %" PRId32 " lim %" PRId32 " v %" PRId32 ": off by more "
-          "than 1 LSB",
-          par->k_Npm_q10, par->b_Nspm_q20, in.pos_m_q30, in.lim_m_q30, in.vel_mps_q27);
+        "k %" PRId32 " b %" PRId32 " q %" PRId32 " lim %" PRId32 " v %" PRId32 ": off by more "
+        "than 1 LSB",
+        par->k_Npm_q10, par->b_Nspm_q20, in.pos_m_q30, in.lim_m_q30, in.vel_mps_q27);
     CHECK(touching == (past >= 0 || (old.touching && past >= -(int64_t)par->hyst_m_q30)),
-          "past %" PRId64 " hyst %" PRId32 ": touching %d", past, par->hyst_m_q30, touching);
+        "past %" PRId64 " hyst %" PRId32 ": touching %d", past, par->hyst_m_q30, touching);
     CHECK((past > INT32_MAX || past < INT32_MIN) == (check_saturations != before) || !touching,
-          "past %" PRId64 ": audit", past);
-    CHECK(f.pullback_N_q20 == (s.inward ? par->f0_N_q20 : 0), "pull-back %" PRId64,
-          f.pullback_N_q20);
+        "past %" PRId64 ": audit", past);
+    CHECK(
+        f.pullback_N_q20 == (s.inward ? par->f0_N_q20 : 0), "pull-back %" PRId64, f.pullback_N_q20);
     CHECK(touching || (f.spring_N_q20 == 0 && f.damper_N_q20 == 0), "force without contact");
     CHECK(f.passivity_N_q20 == 0 && f.clamp_N_q20 == 0 && f.slew_N_q20 == 0 && f.force_N_q20 == 0,
-          "the rest of the ledger");
+        "the rest of the ledger");
 }
 
 TEST(law_at_all_corners)
@@ -61,11 +61,11 @@ TEST(law_at_all_corners)
             ends & 4 ? exh_contact_rows[2].max : exh_contact_rows[2].min,
             ends & 8 ? exh_contact_rows[3].max : exh_contact_rows[3].min,
             ends & 16 ? exh_contact_rows[4].max : exh_contact_rows[4].min};
-        const struct exh_contact_in in = {check_corner[i & 7], check_corner[i >> 3 & 7],
-                                          check_corner[i >> 6 & 7]};
+        const struct exh_contact_in in = {
+            check_corner[i & 7], check_corner[i >> 3 & 7], check_corner[i >> 6 & 7]};
         for (uint8_t state = 0; state < 8; state++) {
-            const struct exh_contact s = {check_corner[(i + state) & 7], state & 1, state >> 1 & 1,
-                                          state >> 2 & 1};
+            const struct exh_contact s = {
+                check_corner[(i + state) & 7], state & 1, state >> 1 & 1, state >> 2 & 1};
             law_case(&par, s, in);
         }
     }
@@ -88,8 +88,8 @@ TEST(law_at_random)
 TEST(law_with_unchecked_parameters)
 {
     while (check_case(2)) {
-        const struct exh_contact_par par = {check_i32(), check_i32(), check_i32(), check_i32(),
-                                            check_i32()};
+        const struct exh_contact_par par = {
+            check_i32(), check_i32(), check_i32(), check_i32(), check_i32()};
         const struct exh_contact s = {check_i32(), check_u64() & 1, check_u64() & 1, 1};
         const struct exh_contact_in in = {check_i32(), check_i32(), check_i32()};
         law_case(&par, s, in);
@@ -121,4 +121,4 @@ TEST(pullback_against_the_whole_history)
 }
 
 TEST_MAIN("prop/contact", law_at_all_corners, law_at_random, law_with_unchecked_parameters,
-          pullback_against_the_whole_history);
+    pullback_against_the_whole_history);

@@ -56,9 +56,9 @@ TEST(table_is_near_its_lines_and_monotone)
         x = check_u64() % 2 ? check_i32() : check_i32_in(k[0].x, k[n - 1].x);
         y = exh_table_at(t, x);
         CHECK(on_table(k, n, x, y),
-              "x %" PRId32 " y %" PRId32 " of %u knots from %" PRId32 ",%" PRId32 " to %" PRId32
-              ",%" PRId32,
-              x, y, n, k[0].x, k[0].y, k[n - 1].x, k[n - 1].y);
+            "x %" PRId32 " y %" PRId32 " of %u knots from %" PRId32 ",%" PRId32 " to %" PRId32
+            ",%" PRId32,
+            x, y, n, k[0].x, k[0].y, k[n - 1].x, k[n - 1].y);
         if (x < INT32_MAX) { CHECK(exh_table_at(t, x + 1) >= y, "falls after %" PRId32, x); }
         x = k[check_u64() % n].x;
         CHECK(on_table(k, n, x, exh_table_at(t, x)), "knot at %" PRId32, x);
@@ -80,9 +80,9 @@ TEST(table_set_follows_its_contract)
         fits = (int64_t)k[2].x - k[0].x <= INT32_MAX && (int64_t)k[2].y - k[0].y <= INT32_MAX;
         err = exh_table_setup(k, 3);
         CHECK((err == 0) == (rises && fits),
-              "error %d, rises %d, fits %d: y %" PRId32 " %" PRId32 " %" PRId32 " at x %" PRId32
-              " %" PRId32 " %" PRId32,
-              err, rises, fits, k[0].y, k[1].y, k[2].y, k[0].x, k[1].x, k[2].x);
+            "error %d, rises %d, fits %d: y %" PRId32 " %" PRId32 " %" PRId32 " at x %" PRId32
+            " %" PRId32 " %" PRId32,
+            err, rises, fits, k[0].y, k[1].y, k[2].y, k[0].x, k[1].x, k[2].x);
         CHECK(err == 0 || (err == -EXH_E_MONOTONE ? !rises : err == -EXH_E_RANGE), "error %d", err);
     }
 }
@@ -188,18 +188,18 @@ TEST(force_ledger_sums_and_limits_hold)
         run = check_u64() % 8 != 0;
         bits = exh_drive_force_step(&s, &a.cfg, run ? &open_permit : &closed, &f);
         CHECK(f.force_N_q20 == asked + f.clamp_N_q20 + f.slew_N_q20, "ledger: %" PRId32,
-              f.force_N_q20);
+            f.force_N_q20);
         CHECK(s.force_N_q20 == f.force_N_q20, "state");
         CHECK(f.force_N_q20 >= 0 && f.force_N_q20 <= most, "force %" PRId32, f.force_N_q20);
         if (!run) {
             CHECK(f.force_N_q20 == 0 && f.slew_N_q20 == 0, "force %" PRId32 " outside RUN",
-                  f.force_N_q20);
+                f.force_N_q20);
             CHECK(((bits & EXH_LIMIT_GATE) != 0) == (asked > 0), "gate bit");
             continue;
         }
         slew = f.force_N_q20 >= last ? a.par.slew_up_Nps : a.par.slew_down_Nps;
         CHECK(within_slew(&a, (int64_t)f.force_N_q20 - last, slew), "from %" PRId32 " to %" PRId32,
-              last, f.force_N_q20);
+            last, f.force_N_q20);
         CHECK(((bits & EXH_LIMIT_PULL) != 0) == (asked < 0), "pull bit, asked %" PRId64, asked);
         CHECK(((bits & EXH_LIMIT_FORCE) != 0) == (asked > most), "force bit");
         CHECK(((bits & EXH_LIMIT_SLEW) != 0) == (f.slew_N_q20 != 0), "slew bit");
@@ -249,22 +249,22 @@ TEST(current_ledger_sums_and_limits_hold)
         CHECK(peaked == exh_clamp(i.table_A_q26, -a.par.i_peak_A_q26, a.par.i_peak_A_q26), "peak");
         CHECK(sum >= -a.par.i_peak_A_q26 && sum <= a.par.i_peak_A_q26, "beyond the peak");
         CHECK(i.i2t_A_q26 == 0 || sum >= a.par.i_cont_A_q26 || sum <= -a.par.i_cont_A_q26,
-              "below continuous: %" PRId64, sum);
+            "below continuous: %" PRId64, sum);
         CHECK((sum ^ peaked) >= 0 || sum == 0, "I2t turned the sign");
         CHECK(i.i2t_A_q26 == 0 || heat >= a.cfg.i2t_budget_q32 / 4 * 3,
-              "limited at heat %" PRId64 " of %" PRId64, heat, a.cfg.i2t_budget_q32);
+            "limited at heat %" PRId64 " of %" PRId64, heat, a.cfg.i2t_budget_q32);
         CHECK(i.gate_A_q26 == 0 && i.dac_A_q26 == 0 && i.coded_A_q26 == 0, "rest of the ledger");
         CHECK(((bits & EXH_LIMIT_PEAK) != 0) == (i.peak_A_q26 != 0), "peak bit");
         CHECK(((bits & EXH_LIMIT_I2T) != 0) == (i.i2t_A_q26 != 0), "I2t bit");
         CHECK((bits & ~(uint32_t)(EXH_LIMIT_PEAK | EXH_LIMIT_I2T)) == 0, "foreign bits");
         /* one tick at 6.6 A may overshoot: 43.6 A^2 in q32 is below 44 * 2^32 */
         CHECK(s.i2t_q32 >= 0 && s.i2t_q32 <= a.cfg.i2t_budget_q32 + 44 * (INT64_C(1) << 32),
-              "heat %" PRId64, s.i2t_q32);
+            "heat %" PRId64, s.i2t_q32);
         s.i2t_q32 = a.cfg.i2t_budget_q32 - (a.cfg.i2t_budget_q32 - heat) / 2;
         (void)exh_drive_current_step(&s, &a.cfg, &f, &hotter);
         CHECK(hotter.i2t_A_q26 <= 0 ? hotter.i2t_A_q26 <= i.i2t_A_q26 || i.i2t_A_q26 > 0
                                     : hotter.i2t_A_q26 >= i.i2t_A_q26,
-              "hotter allows more");
+            "hotter allows more");
     }
 }
 
@@ -289,7 +289,7 @@ TEST(heat_is_what_was_spent)
         gained = s.i2t_q32 - a.cfg.i2t_budget_q32 / 2;
         /* 6.6 A is 432538 in q16; each of two squares is off by less than 2*432538 + 1 */
         CHECK(s.i2t_q32 == 0 || (gained - spent < 1730154 && spent - gained < 1730154),
-              "heat %" PRId64 ", spent %" PRId64, gained, spent);
+            "heat %" PRId64 ", spent %" PRId64, gained, spent);
     }
 }
 
@@ -300,12 +300,12 @@ static void monitor_case(const struct axis *a, int16_t raw)
     const int32_t got = exh_drive_monitor_A_q26(&a->cfg, raw);
     const struct wide exact = wide_mul((int64_t)raw - a->par.mon_zero_raw, a->par.mon_A_q40);
     CHECK(got == wide_sat32(wide_shr_half_up(exact, 14)),
-          "code %d zero %" PRId32 " scale %" PRId32 ": %" PRId32, raw, a->par.mon_zero_raw,
-          a->par.mon_A_q40, got);
+        "code %d zero %" PRId32 " scale %" PRId32 ": %" PRId32, raw, a->par.mon_zero_raw,
+        a->par.mon_A_q40, got);
     if (a->cfg.cur_to_force.n != 0) {
         CHECK(on_table(a->knot, 4, got,
-                       exh_drive_monitor_N_q20(&a->cfg, exh_drive_monitor_A_q26(&a->cfg, raw))),
-              "force of code %d", raw);
+                  exh_drive_monitor_N_q20(&a->cfg, exh_drive_monitor_A_q26(&a->cfg, raw))),
+            "force of code %d", raw);
     }
 }
 
@@ -321,6 +321,5 @@ TEST(monitor_is_within_half_an_lsb)
 }
 
 TEST_MAIN("prop/drive", table_is_near_its_lines_and_monotone, table_set_follows_its_contract,
-          inverse_round_trip, force_ledger_sums_and_limits_hold,
-          force_above_a_lowered_limit_comes_down, current_ledger_sums_and_limits_hold,
-          heat_is_what_was_spent, monitor_is_within_half_an_lsb);
+    inverse_round_trip, force_ledger_sums_and_limits_hold, force_above_a_lowered_limit_comes_down,
+    current_ledger_sums_and_limits_hold, heat_is_what_was_spent, monitor_is_within_half_an_lsb);

@@ -8,10 +8,7 @@
 #include "check.h"
 #include "wide.h"
 
-static struct wide shl(int64_t v, unsigned n)
-{
-    return wide_shl(wide_of(v), n);
-}
+static struct wide shl(int64_t v, unsigned n) { return wide_shl(wide_of(v), n); }
 
 static int64_t floor_shr(int64_t v, unsigned n)
 {
@@ -119,15 +116,15 @@ TEST(step_is_its_definition)
             exh_filter_step(&s, &cfg, &x, &y, 1);
             CHECK(y == y_want, "kind %d: %" PRId32 ", want %" PRId32, cfg.kind, y, y_want);
             CHECK(s.pos == want.pos && s.vel == want.vel && s.wide == want.wide, "kind %d: state",
-                  cfg.kind);
+                cfg.kind);
         }
     }
 }
 
 /* --- settling --- */
 
-static int32_t move(struct exh_filter *s, const struct exh_filter_cfg *cfg, int32_t x,
-                    int32_t ticks)
+static int32_t move(
+    struct exh_filter *s, const struct exh_filter_cfg *cfg, int32_t x, int32_t ticks)
 {
     int32_t y = 0;
     for (int32_t t = 0; t < ticks; t++) { exh_filter_step(s, cfg, &x, &y, 1); }
@@ -153,8 +150,8 @@ TEST(a_constant_input_is_reached_exactly)
         for (int t = 0; t < 100; t++) {
             const int32_t y = move(&s, &cfg, level, 1);
             CHECK(y == level,
-                  "order %" PRId32 ", T fc = %" PRIu32 "/%" PRIu32 ": %" PRId32 " at %" PRId32,
-                  par.order, T.num, T.den, y, level);
+                "order %" PRId32 ", T fc = %" PRIu32 "/%" PRIu32 ": %" PRId32 " at %" PRId32,
+                par.order, T.num, T.den, y, level);
         }
     }
 }
@@ -176,8 +173,8 @@ TEST(no_cycle_around_rest)
             (void)move(&s, &cfg, level, 600);
             for (int t = 0; t < 30; t++) {
                 const int32_t y = move(&s, &cfg, level, 1);
-                CHECK(y == level, "fc %" PRId32 ": %" PRId32 " at %" PRId32, par.fc_Hz_q16, y,
-                      level);
+                CHECK(
+                    y == level, "fc %" PRId32 ": %" PRId32 " at %" PRId32, par.fc_Hz_q16, y, level);
             }
         }
     }
@@ -207,11 +204,11 @@ TEST(a_change_of_cut_off_does_not_bump)
             exh_filter_step(&s, &now, &x, &y, 1);
             moved = (int64_t)y - before;
             CHECK(moved <= (int64_t)was.c + now.c && -moved <= (int64_t)was.c + now.c,
-                  "moved %" PRId64 " at c %" PRId32 ", %" PRId32, moved, was.c, now.c);
+                "moved %" PRId64 " at c %" PRId32 ", %" PRId32, moved, was.c, now.c);
             before = y;
         }
     }
 }
 
 TEST_MAIN("prop/filter", step_is_its_definition, a_constant_input_is_reached_exactly,
-          no_cycle_around_rest, a_change_of_cut_off_does_not_bump);
+    no_cycle_around_rest, a_change_of_cut_off_does_not_bump);

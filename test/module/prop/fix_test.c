@@ -51,7 +51,7 @@ TEST(clamp_is_the_median)
         const int32_t got = exh_clamp(v, lo, hi);
         CHECK(got >= lo && got <= hi, "%" PRId64 ": %" PRId32, v, got);
         CHECK(got == v || (got == lo && v < lo) || (got == hi && v > hi), "%" PRId64 ": %" PRId32,
-              v, got);
+            v, got);
     }
 }
 
@@ -61,13 +61,13 @@ static void shr_case(int64_t v, unsigned n)
 {
     const int64_t want = wide_sat64(wide_shr_half_up(wide_of(v), n));
     CHECK(exh_shr_round(v, n) == want, "%" PRId64 " >> %u: %" PRId64 ", want %" PRId64, v, n,
-          exh_shr_round(v, n), want);
+        exh_shr_round(v, n), want);
 }
 
 TEST(shr_round_is_exact)
 {
-    static const int64_t corner[] = {INT64_MIN, INT64_MIN + 1, INT32_MIN,     -65536,   -1, 0, 1,
-                                     65535,     INT32_MAX,     INT64_MAX - 1, INT64_MAX};
+    static const int64_t corner[] = {INT64_MIN, INT64_MIN + 1, INT32_MIN, -65536, -1, 0, 1, 65535,
+        INT32_MAX, INT64_MAX - 1, INT64_MAX};
     for (size_t i = 0; i < sizeof corner / sizeof corner[0]; i++) {
         for (unsigned n = 1; n <= 63; n++) { shr_case(corner[i], n); }
     }
@@ -81,7 +81,7 @@ static void mul_case(int32_t a, int32_t b, unsigned n)
 {
     const int64_t want = wide_sat64(wide_shr_half_up(wide_mul(a, b), n));
     CHECK(exh_mul_shr(a, b, n) == want, "%" PRId32 " * %" PRId32 " >> %u: %" PRId64, a, b, n,
-          exh_mul_shr(a, b, n));
+        exh_mul_shr(a, b, n));
 }
 
 TEST(mul_shr_is_exact)
@@ -104,7 +104,7 @@ TEST(mul64_q31_is_exact)
         const int32_t b = check_i32_in(0, INT32_MAX);
         const int64_t want = wide_sat64(wide_shr_half_up(wide_mul(a, b), 31));
         CHECK(exh_mul64_q31(a, b) == want, "%" PRId64 " * %" PRId32 ": %" PRId64, a, b,
-              exh_mul64_q31(a, b));
+            exh_mul64_q31(a, b));
     }
 }
 
@@ -142,7 +142,7 @@ TEST(udiv64_is_exact)
         const struct wide rest = {0, rem}, whole = {0, num};
         CHECK(rem < den, "%" PRIu64 " / %" PRIu64, num, den);
         CHECK(wide_cmp(wide_add(wide_mulu(quot, den), rest), whole) == 0,
-              "%" PRIu64 " / %" PRIu64 " = %" PRIu64 " rest %" PRIu64, num, den, quot, rem);
+            "%" PRIu64 " / %" PRIu64 " = %" PRIu64 " rest %" PRIu64, num, den, quot, rem);
     }
 }
 
@@ -164,9 +164,9 @@ static void gain_case(uint64_t num, uint64_t den)
         const struct wide exact = wide_shl(n, g.shift);
         const struct wide off = wide_sub(wide_mulu((uint64_t)g.mant, den), exact);
         CHECK(g.mant >= 1 << 30 && g.shift <= 62, "%" PRIu64 " / %" PRIu64 ": %" PRId32 " >> %d",
-              num, den, g.mant, g.shift);
+            num, den, g.mant, g.shift);
         CHECK(wide_cmp(wide_abs(off), wide_shr_floor(exact, 31)) <= 0,
-              "%" PRIu64 " / %" PRIu64 ": %" PRId32 " >> %d", num, den, g.mant, g.shift);
+            "%" PRIu64 " / %" PRIu64 ": %" PRId32 " >> %d", num, den, g.mant, g.shift);
     }
 }
 
@@ -195,5 +195,5 @@ TEST(gain_mul_is_rounded_once)
 }
 
 TEST_MAIN("prop/fix", sat32_limits_and_reports, clamp_is_the_median, shr_round_is_exact,
-          mul_shr_is_exact, mul64_q31_is_exact, counters_wrap_modulo_2_32, udiv64_is_exact,
-          gain_error_is_bounded, gain_mul_is_rounded_once);
+    mul_shr_is_exact, mul64_q31_is_exact, counters_wrap_modulo_2_32, udiv64_is_exact,
+    gain_error_is_bounded, gain_mul_is_rounded_once);

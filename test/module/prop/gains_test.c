@@ -97,12 +97,12 @@ TEST(every_rate_has_its_rule)
         const struct exh_period exact = {1, rate}, pit = {ticks, 1193182};
         r.rate_Hz_q8 = (int32_t)(rate * 256);
         CHECK(exh_gains_setup(&r, exact) == 0 && exh_gains_setup(&r, pit) == 0, "%" PRIu32 " Hz",
-              rate);
+            rate);
         for (uint32_t other = 1; other <= 2000; other += 7) {
             const struct exh_period T = {1, other};
             const int near = 100 * (other > rate ? other - rate : rate - other) <= rate;
             CHECK(exh_gains_setup(&r, T) == (near ? 0 : -EXH_E_RATE), "%" PRIu32 " for %" PRIu32,
-                  rate, other);
+                rate, other);
         }
     }
 }
@@ -183,8 +183,8 @@ TEST(inside_in_every_tick)
             CHECK(!exh_params_verify(&params), "told in tick %d", t);
             for (int w = 0; w < WALLS; w++) {
                 CHECK(want(&r, active[w].k_Npm_q10, active[w].b_Nspm_q20),
-                      "tick %d k %" PRId32 " b %" PRId32, t, active[w].k_Npm_q10,
-                      active[w].b_Nspm_q20);
+                    "tick %d k %" PRId32 " b %" PRId32, t, active[w].k_Npm_q10,
+                    active[w].b_Nspm_q20);
             }
         }
     }
@@ -210,13 +210,13 @@ TEST(the_way_ends)
             exh_gains_step(&params, &r);
             CHECK(was, "tick %d", (int)n);
             CHECK(!rising || active[0].k_Npm_q10 >= k || staged[0].k_Npm_q10 <= k,
-                  "shift %u tick %d: k %" PRId32 " to %" PRId32 ", wanted %" PRId32, shift, (int)n,
-                  k, active[0].k_Npm_q10, staged[0].k_Npm_q10);
+                "shift %u tick %d: k %" PRId32 " to %" PRId32 ", wanted %" PRId32, shift, (int)n, k,
+                active[0].k_Npm_q10, staged[0].k_Npm_q10);
             rising = active[0].k_Npm_q10 > k;
         }
         CHECK(active[0].k_Npm_q10 == staged[0].k_Npm_q10 &&
                   active[0].b_Nspm_q20 == staged[0].b_Nspm_q20 && n <= 3 * one + 2,
-              "shift %u: %" PRId64 " ticks, at most %" PRId64, shift, n, 3 * one + 2);
+            "shift %u: %" PRId64 " ticks, at most %" PRId64, shift, n, 3 * one + 2);
     }
 }
 
@@ -235,10 +235,10 @@ TEST(inside_from_anywhere)
             (void)exh_params_apply(&params);
             exh_gains_step(&params, &r);
             CHECK(want(&r, active[0].k_Npm_q10, active[0].b_Nspm_q20),
-                  "tick %d k %" PRId32 " b %" PRId32, t, active[0].k_Npm_q10, active[0].b_Nspm_q20);
+                "tick %d k %" PRId32 " b %" PRId32, t, active[0].k_Npm_q10, active[0].b_Nspm_q20);
         }
     }
 }
 
 TEST_MAIN("gains", inside_as_in_exact_arithmetic, less_stiff_is_inside_too, every_rate_has_its_rule,
-          inside_in_every_tick, the_way_ends, inside_from_anywhere);
+    inside_in_every_tick, the_way_ends, inside_from_anywhere);

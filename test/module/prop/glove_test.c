@@ -72,12 +72,12 @@ TEST(angle_is_within_half_an_lsb)
             for (unsigned k = 0; k < 2; k++) {
                 const struct exh_glove_sensor *c = &cal.sensor[i];
                 if (c->of[k] == EXH_GLOVE_NONE) { continue; }
-                sum = wide_add(sum, wide_shr_half_up(
-                                        wide_mul(wide_sat32(own[c->of[k]]), c->cross_q30[k]), 30));
+                sum = wide_add(sum,
+                    wide_shr_half_up(wide_mul(wide_sat32(own[c->of[k]]), c->cross_q30[k]), 30));
             }
             CHECK(angle[i] == wide_sat32(sum),
-                  "sensor %u code %d zero %" PRId32 " gain %" PRId32 ": %" PRId32, i, in.raw[i],
-                  cal.sensor[i].zero_raw_q15, cal.sensor[i].gain_turnpraw_q38, angle[i]);
+                "sensor %u code %d zero %" PRId32 " gain %" PRId32 ": %" PRId32, i, in.raw[i],
+                cal.sensor[i].zero_raw_q15, cal.sensor[i].gain_turnpraw_q38, angle[i]);
         }
     }
 }
@@ -126,10 +126,10 @@ TEST(faults_as_the_header_tells)
             CHECK(told == (uint32_t)faulty << at, "frame %d: %" PRIx32, k, told);
             CHECK(s.faults[at] == faults, "frame %d: %d faults", k, s.faults[at]);
             CHECK(!bad || !faulty ||
-                      s.cause[at] == (raw <= -30000  ? EXH_GLOVE_SHORT
-                                      : raw >= 30000 ? EXH_GLOVE_OPEN
-                                                     : EXH_GLOVE_OUTSIDE),
-                  "frame %d code %d: %s", k, raw, exh_glove_cause_text(s.cause[at]));
+                      s.cause[at] == (raw <= -30000     ? EXH_GLOVE_SHORT
+                                         : raw >= 30000 ? EXH_GLOVE_OPEN
+                                                        : EXH_GLOVE_OUTSIDE),
+                "frame %d code %d: %s", k, raw, exh_glove_cause_text(s.cause[at]));
         }
     }
 }
@@ -174,14 +174,14 @@ TEST(the_fit_finds_the_truth)
         cal.sensor[10].of[1] = 7;
         for (unsigned p = 0; p < 8; p++) {
             const int32_t mdeg[3] = {(p & 1 ? 60000 : 0) + check_i32_in(0, 20000),
-                                     (p & 2 ? 60000 : 0) + check_i32_in(0, 20000),
-                                     (p & 4 ? 25000 : 0) + check_i32_in(0, 10000)};
+                (p & 2 ? 60000 : 0) + check_i32_in(0, 20000),
+                (p & 4 ? 25000 : 0) + check_i32_in(0, 10000)};
             pose[p].known = cal.present;
             for (unsigned k = 0; k < 3; k++) {
                 int64_t own = mdeg[k];
                 if (k == 2) {
                     own -= ((int64_t)t[k].cross_q16[0] * mdeg[0] +
-                            (int64_t)t[k].cross_q16[1] * mdeg[1]) /
+                               (int64_t)t[k].cross_q16[1] * mdeg[1]) /
                            65536;
                 }
                 pose[p].angle_turn_q32[id[k]] = MDEG(mdeg[k]);
@@ -189,7 +189,7 @@ TEST(the_fit_finds_the_truth)
             }
         }
         CHECK(exh_glove_cal_fit(&cal, fit, pose, 8, &exh_glove_fit_default, &bad) == 0, "%s of %s",
-              exh_glove_error_text(bad.what), exh_glove_sensor_text(bad.at));
+            exh_glove_error_text(bad.what), exh_glove_sensor_text(bad.at));
         for (unsigned k = 0; k < 3; k++) {
             const struct exh_glove_sensor *s = &cal.sensor[id[k]];
             const int64_t gain = (INT64_C(1) << 54) / ((int64_t)360 * t[k].deg_raw_q16);
@@ -197,7 +197,7 @@ TEST(the_fit_finds_the_truth)
             const int64_t zero = s->zero_raw_q15 * INT64_C(2) - t[k].zero_q16;
             const int32_t left = fit[id[k]].residual_turn_q32;
             CHECK((off < 0 ? -off : off) <= size / 8192, "%u: gain %" PRId32 ", %" PRId64, id[k],
-                  s->gain_turnpraw_q38, gain);
+                s->gain_turnpraw_q38, gain);
             CHECK(zero < 3 * 65536 && zero > -3 * 65536, "%u: zero off by %" PRId64, id[k], zero);
             CHECK(left < MDEG(5) && left > -MDEG(5), "%u: residual %" PRId32, id[k], left);
         }
@@ -232,7 +232,7 @@ TEST(any_poses_end_in_a_word)
         CHECK(err == 0 || err == -EXH_E_RANGE, "%d", err);
         CHECK(err == 0 ? exh_glove_cal_validate(&cal, NULL) == 0
                        : cal.present == 0 && bad.what < EXH_GLOVE_ERRORS,
-              "%d", bad.what);
+            "%d", bad.what);
     }
 }
 
@@ -263,14 +263,14 @@ TEST(what_moves_together_is_refused)
             at->angle_turn_q32[1] = at->mean_raw_q16[1];
             at->angle_turn_q32[10] = check_i32();
         }
-        CHECK_EQ_I64(exh_glove_cal_fit(&cal, fit, pose, EXH_GLOVE_POSES_MAX, &par, NULL),
-                     -EXH_E_RANGE);
+        CHECK_EQ_I64(
+            exh_glove_cal_fit(&cal, fit, pose, EXH_GLOVE_POSES_MAX, &par, NULL), -EXH_E_RANGE);
         CHECK(fit[0].what == EXH_GLOVE_ERRORS && fit[1].what == EXH_GLOVE_ERRORS &&
                   fit[10].what == EXH_GLOVE_POSES,
-              "%s, %s, %s", exh_glove_error_text(fit[0].what), exh_glove_error_text(fit[1].what),
-              exh_glove_error_text(fit[10].what));
+            "%s, %s, %s", exh_glove_error_text(fit[0].what), exh_glove_error_text(fit[1].what),
+            exh_glove_error_text(fit[10].what));
     }
 }
 
 TEST_MAIN("prop/glove", angle_is_within_half_an_lsb, faults_as_the_header_tells,
-          the_fit_finds_the_truth, any_poses_end_in_a_word, what_moves_together_is_refused);
+    the_fit_finds_the_truth, any_poses_end_in_a_word, what_moves_together_is_refused);

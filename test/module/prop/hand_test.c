@@ -21,15 +21,9 @@
 /* --- what is exact --- */
 
 /* A length of q34 times a sine or cosine of q60. */
-static struct wide bone(int32_t len_m_q34, int64_t dir_q60)
-{
-    return wide_mul(len_m_q34, dir_q60);
-}
+static struct wide bone(int32_t len_m_q34, int64_t dir_q60) { return wide_mul(len_m_q34, dir_q60); }
 
-static int64_t q60_of(struct wide q94)
-{
-    return wide_sat64(wide_shr_half_up(q94, 34));
-}
+static int64_t q60_of(struct wide q94) { return wide_sat64(wide_shr_half_up(q94, 34)); }
 
 /* In the plane the finger bends in, m, q60: the tip, and the tip as seen from q2 with the
  * last bone twice as long, for q3 = q2. */
@@ -44,21 +38,21 @@ static struct plane plane_of(const int32_t len[3], const int32_t q[3])
     const struct wide out2 = wide_add(bone(len[1], b.cos_q60), bone(len[2], c.cos_q60));
     const struct wide up2 = wide_add(bone(len[1], b.sin_q60), bone(len[2], c.sin_q60));
     const struct plane p = {q60_of(wide_add(bone(len[0], a.cos_q60), out2)),
-                            q60_of(wide_add(bone(len[0], a.sin_q60), up2)),
-                            q60_of(wide_add(out2, bone(len[2], c.cos_q60))),
-                            q60_of(wide_add(up2, bone(len[2], c.sin_q60)))};
+        q60_of(wide_add(bone(len[0], a.sin_q60), up2)),
+        q60_of(wide_add(out2, bone(len[2], c.cos_q60))),
+        q60_of(wide_add(up2, bone(len[2], c.sin_q60)))};
     return p;
 }
 
 /* (out, up) turned by q0 and into the palm: row i, 30 bits finer than they are. */
-static struct wide palm(const struct exh_hand_bones *b, unsigned i, int32_t q0, int64_t out,
-                        int64_t up)
+static struct wide palm(
+    const struct exh_hand_bones *b, unsigned i, int32_t q0, int64_t out, int64_t up)
 {
     const struct turn side = turn_of(q0);
     const int64_t x = wide_sat64(wide_shr_half_up(wide_mul(side.cos_q60, out), 60));
     const int64_t y = wide_sat64(wide_shr_half_up(wide_mul(side.sin_q60, out), 60));
     return wide_add(wide_add(wide_mul(b->rot_q30[i][0], x), wide_mul(b->rot_q30[i][1], y)),
-                    wide_mul(b->rot_q30[i][2], up));
+        wide_mul(b->rot_q30[i][2], up));
 }
 
 /* |got * 2^n - want| <= bound/100 * 2^n. */
@@ -66,7 +60,7 @@ static int within(int32_t got, struct wide want, unsigned n, int64_t bound)
 {
     const struct wide off = wide_sub(wide_shl(wide_of(got), n), want);
     return wide_cmp(wide_mulu((uint64_t)wide_sat64(wide_shr_floor(wide_abs(off), n - 40)), 100),
-                    wide_shl(wide_of(bound), 40)) <= 0;
+               wide_shl(wide_of(bound), 40)) <= 0;
 }
 
 static int32_t of_vec(const struct exh_vec3 *v, unsigned i)
@@ -96,7 +90,7 @@ static struct exh_hand_par any_arms(void)
 {
     const int32_t most = EXH_Q(50, 1000, EXH_Q_POS);
     const struct exh_hand_par par = {check_i32_in(0, most), check_i32_in(0, most),
-                                     check_i32_in(0, most), check_i32_in(0, most / 2)};
+        check_i32_in(0, most), check_i32_in(0, most / 2)};
     return par;
 }
 
@@ -104,8 +98,8 @@ static struct exh_hand_par any_arms(void)
 static int any_finger(struct exh_hand_finger *f, struct exh_hand_bones *own)
 {
     const unsigned id = (unsigned)(check_u64() % EXH_FINGERS);
-    struct exh_hand_par par = {exh_hand_rows[0].dflt, exh_hand_rows[1].dflt, exh_hand_rows[2].dflt,
-                               exh_hand_rows[3].dflt};
+    struct exh_hand_par par = {
+        exh_hand_rows[0].dflt, exh_hand_rows[1].dflt, exh_hand_rows[2].dflt, exh_hand_rows[3].dflt};
     const int any = (int)(check_u64() & 1);
     *own = exh_hit2_bones[id];
     if (any) {
@@ -155,11 +149,11 @@ TEST(tip_and_slope_are_within_their_bounds)
             const struct wide place = wide_shl(wide_of(b.base_m_q32[i]), 58);
             const struct wide at = wide_add(palm(&b, i, q[0], p.out, p.up), place);
             CHECK(within(of_vec(&tip, i), at, 60, which == 1 ? TIP_LSB : LONG_LSB),
-                  "tip %u of %" PRId32 " %" PRId32 " %" PRId32 ": %" PRId32, i, q[0], q[1], q[2],
-                  of_vec(&tip, i));
+                "tip %u of %" PRId32 " %" PRId32 " %" PRId32 ": %" PRId32, i, q[0], q[1], q[2],
+                of_vec(&tip, i));
             CHECK(within(of_vec(&slope, i), palm(&b, i, q[0], out_q56, up_q56), 62, bound),
-                  "slope %u of %" PRId32 " %" PRId32 " %" PRId32 ": %" PRId32, i, q[0], q[1], q[2],
-                  of_vec(&slope, i));
+                "slope %u of %" PRId32 " %" PRId32 " %" PRId32 ": %" PRId32, i, q[0], q[1], q[2],
+                of_vec(&slope, i));
         }
     }
 }
@@ -174,8 +168,8 @@ static int32_t turned_by_string(int32_t pull_radpm_q20)
  * Curvature adds (0.1 mm w)^2 / 6, 4e-6 of a slope below 7, the two tips' errors 2.1e-5. */
 TEST(slope_is_what_tips_differ_by)
 {
-    const struct exh_hand_par par = {exh_hand_rows[0].dflt, exh_hand_rows[1].dflt,
-                                     exh_hand_rows[2].dflt, exh_hand_rows[3].dflt};
+    const struct exh_hand_par par = {
+        exh_hand_rows[0].dflt, exh_hand_rows[1].dflt, exh_hand_rows[2].dflt, exh_hand_rows[3].dflt};
     struct exh_hand_finger finger[EXH_FINGERS];
     for (unsigned i = 0; i < EXH_FINGERS; i++) {
         CHECK_EQ_I64(exh_hand_setup(&finger[i], &exh_hit2_bones[i], &par), 0);
@@ -199,8 +193,8 @@ TEST(slope_is_what_tips_differ_by)
             const int64_t rate = ((int64_t)of_vec(&far, i) - of_vec(&near, i)) * 5000 / 64;
             const int64_t off = rate - of_vec(&slope, i);
             CHECK(off <= 1200 && off >= -1200,
-                  "slope %u of %" PRId32 " %" PRId32 " %" PRId32 ": %" PRId32 ", tips %" PRId64, i,
-                  q[0], q[1], q[2], of_vec(&slope, i), rate);
+                "slope %u of %" PRId32 " %" PRId32 " %" PRId32 ": %" PRId32 ", tips %" PRId64, i,
+                q[0], q[1], q[2], of_vec(&slope, i), rate);
         }
     }
 }
@@ -221,7 +215,7 @@ TEST(pull_pays_out_a_metre)
             const struct wide got = wide_mul(f.pull_radpm_q20[i], square);
             const struct wide off = wide_sub(got, wide_shl(wide_of(arm[i]), 50));
             CHECK(wide_within(wide_shl(off, 2), wide_mul(3, square)), "w%u = %" PRId32, i + 1,
-                  f.pull_radpm_q20[i]);
+                f.pull_radpm_q20[i]);
         }
     }
 }
@@ -257,14 +251,14 @@ TEST(joints_are_rounded_once_and_limited)
             }
             exact = wide_sat64(wide_shr_half_up(sum, 24));
             CHECK((limited >> i & 1) == (exact < j->lo_turn_q32 || exact > j->hi_turn_q32),
-                  "joint %u: %" PRId64, i, exact);
-            CHECK(q[i] == (exact < j->lo_turn_q32   ? j->lo_turn_q32
-                           : exact > j->hi_turn_q32 ? j->hi_turn_q32
-                                                    : exact),
-                  "joint %u: %" PRId32 ", exact %" PRId64, i, q[i], exact);
+                "joint %u: %" PRId64, i, exact);
+            CHECK(q[i] == (exact < j->lo_turn_q32      ? j->lo_turn_q32
+                              : exact > j->hi_turn_q32 ? j->hi_turn_q32
+                                                       : exact),
+                "joint %u: %" PRId32 ", exact %" PRId64, i, q[i], exact);
         }
     }
 }
 
 TEST_MAIN("prop/hand", tip_and_slope_are_within_their_bounds, slope_is_what_tips_differ_by,
-          pull_pays_out_a_metre, joints_are_rounded_once_and_limited);
+    pull_pays_out_a_metre, joints_are_rounded_once_and_limited);

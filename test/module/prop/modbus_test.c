@@ -47,7 +47,7 @@ static void nearest(uint32_t bits, int32_t raw, unsigned frac)
     }
     if (to <= 0) { /* 24 bits hold it: exact */
         CHECK(to > -32 && compare(got, scaled(exact, -to)) == 0, "%" PRId32 " of %u: %" PRIx32, raw,
-              frac, bits);
+            frac, bits);
         return;
     }
     got = scaled(got, to);
@@ -55,7 +55,7 @@ static void nearest(uint32_t bits, int32_t raw, unsigned frac)
     {
         const int far = compare(wide_abs(wide_sub(got, exact)), half);
         CHECK(far < 0 || (far == 0 && (bits & 1u) == 0), "%" PRId32 " of %u: %" PRIx32, raw, frac,
-              bits);
+            bits);
     }
 }
 
@@ -116,10 +116,10 @@ static void agrees(uint32_t bits, unsigned frac)
     const int err = exh_float_to_raw(bits, frac, &got);
     if (good) {
         CHECK(err == 0 && got == want, "%" PRIx32 " of %u: %d, %" PRId32 ", want %" PRId64, bits,
-              frac, err, got, want);
+            frac, err, got, want);
     } else {
         CHECK(err == -EXH_E_RANGE && got == 0x5A5A5A5A, "%" PRIx32 " of %u: %d, %" PRId32, bits,
-              frac, err, got);
+            frac, err, got);
     }
 }
 
@@ -127,8 +127,8 @@ TEST(float_to_raw_is_the_nearest)
 {
     for (unsigned frac = 0; frac <= 126; frac++) {
         for (uint32_t field = 0; field < 256; field++) {
-            static const uint32_t mant[] = {0,        1,        2,        3,       0x3FFFFF,
-                                            0x400000, 0x400001, 0x7FFFFE, 0x7FFFFF};
+            static const uint32_t mant[] = {
+                0, 1, 2, 3, 0x3FFFFF, 0x400000, 0x400001, 0x7FFFFE, 0x7FFFFF};
             for (unsigned i = 0; i < sizeof mant / sizeof mant[0]; i++) {
                 agrees(field << 23 | mant[i], frac);
                 agrees(UINT32_C(1) << 31 | field << 23 | mant[i], frac);
@@ -151,7 +151,7 @@ TEST(short_values_come_back)
         const int32_t raw = check_i32_in(-(1 << 24), 1 << 24);
         int32_t back = 1;
         CHECK(exh_float_to_raw(exh_float_from_raw(raw, frac), frac, &back) == 0 && back == raw,
-              "%" PRId32 " of %u: %" PRId32, raw, frac, back);
+            "%" PRId32 " of %u: %" PRId32, raw, frac, back);
     }
 }
 
@@ -203,15 +203,15 @@ static void sound(const char *when)
         const struct exh_signal *s = exh_signal_at(&table, i, NULL);
         if (g.touched[i >> 5] >> (i & 31u) & 1u) {
             CHECK(g.staged[i] >= s->min && g.staged[i] <= s->max,
-                  "%s: value %" PRIu32 " staged %" PRId32, when, i, g.staged[i]);
+                "%s: value %" PRIu32 " staged %" PRId32, when, i, g.staged[i]);
             CHECK(g.staged[i] != g.wanted[i], "%s: value %" PRIu32 " staged as it is", when, i);
             CHECK(!g.r.locked || s->when != EXH_WHEN_SETUP,
-                  "%s: value %" PRIu32 " is of the set-up", when, i);
+                "%s: value %" PRIu32 " is of the set-up", when, i);
         }
     }
     CHECK(g.wanted[VALUES] == 0x5A5A && g.staged[VALUES] == 0x5A5A &&
               g.touched[EXH_REGS_WORDS(VALUES)] == 0x5A5A && g.touched[0] >> VALUES == 0,
-          "%s: outside", when);
+        "%s: outside", when);
 }
 
 static uint32_t word32(const uint8_t *p)
@@ -269,7 +269,7 @@ TEST(the_mirror_written_back_changes_nothing)
             }
             for (uint32_t i = 0; m == 1 && i < VALUES; i++) {
                 CHECK_EQ_I64(word32(&all[4 * i]),
-                             exh_float_from_raw(g.wanted[i], exh_signal_at(&table, i, NULL)->frac));
+                    exh_float_from_raw(g.wanted[i], exh_signal_at(&table, i, NULL)->frac));
             }
         }
     }
@@ -292,7 +292,7 @@ TEST(a_block_is_its_registers)
             for (uint32_t i = 0; i < n; i++) {
                 CHECK_EQ_I64(exh_regs_read(&g.r, EXH_REGS_HOLDING, (uint16_t)(at + i), 1, one), 0);
                 CHECK(one[0] == in[2 * i] && one[1] == in[2 * i + 1], "register %" PRIu32 " of %u",
-                      i, n);
+                    i, n);
                 if (check_i32_in(0, 7) == 0) { in[2 * i] = (uint8_t)(in[2 * i] ^ check_u64()); }
             }
             err = exh_regs_write(&g.r, at, n, in);
@@ -303,7 +303,7 @@ TEST(a_block_is_its_registers)
             }
             for (uint32_t w = 0; err != 0 && w < EXH_REGS_WORDS(VALUES); w++) {
                 CHECK(g.touched[w] == was.touched[w], "refused by %d, and word %" PRIu32 " changed",
-                      err, w);
+                    err, w);
             }
             for (uint32_t i = 0; err != 0 && i < VALUES; i++) {
                 CHECK(g.staged[i] == was.staged[i], "value %" PRIu32, i);
@@ -313,5 +313,5 @@ TEST(a_block_is_its_registers)
 }
 
 TEST_MAIN("modbus", raw_to_float_is_the_nearest, float_to_raw_is_the_nearest,
-          short_values_come_back, a_value_is_taken_if_it_may_be,
-          the_mirror_written_back_changes_nothing, a_block_is_its_registers);
+    short_values_come_back, a_value_is_taken_if_it_may_be, the_mirror_written_back_changes_nothing,
+    a_block_is_its_registers);

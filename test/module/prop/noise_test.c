@@ -79,7 +79,7 @@ static void check_codes(unsigned n, int open)
         const int32_t off = (int32_t)out.dac_raw[k] - zero;
         const int32_t span = k < n && open ? par[k].dac_span_raw : 0;
         CHECK(off >= -span && off <= span, "finger %u of %u: %" PRId32 " codes of %" PRId32, k, n,
-              off, span);
+            off, span);
     }
     CHECK(out.enable == (open ? (1u << n) - 1u : 0u), "enable %x of %u", out.enable, n);
 }
@@ -110,7 +110,7 @@ TEST(gate_before_noise)
         cases++;
     }
     CHECK(cases < 100 || (shut > cases / 10 && shut < cases / 10 * 9), "%d of %d shut", (int)shut,
-          (int)cases);
+        (int)cases);
 }
 
 /* The state of a drive from noise, as it comes out of a log. */
@@ -137,8 +137,8 @@ static int64_t slew_step(const struct exh_drive_cfg *c, int32_t slew_Nps)
     return step > 1 ? step : 1;
 }
 
-static void check_force(unsigned k, const struct exh_permit *p, int32_t before, int32_t fall,
-                        const struct exh_drive *s)
+static void check_force(
+    unsigned k, const struct exh_permit *p, int32_t before, int32_t fall, const struct exh_drive *s)
 {
     const int64_t change = (int64_t)f[k].force_N_q20 - before;
     const int64_t top =
@@ -174,8 +174,8 @@ static void feel(unsigned k, const struct exh_permit *permit)
     check_force(k, permit, before, fall, &s);
     limits[k] |= exh_drive_current_step(&s, &cfg[k], &f[k], &i[k]);
     asked = i[k].table_A_q26 + i[k].peak_A_q26 + i[k].i2t_A_q26;
-    CHECK(asked <= par[k].i_peak_A_q26 && asked >= -par[k].i_peak_A_q26, "%" PRId64 " A q26",
-          asked);
+    CHECK(
+        asked <= par[k].i_peak_A_q26 && asked >= -par[k].i_peak_A_q26, "%" PRId64 " A q26", asked);
     CHECK(s.i2t_q32 >= 0, "heat %" PRId64, s.i2t_q32);
 }
 
@@ -201,15 +201,15 @@ TEST(state_force_current_and_gate_before_noise)
         permit = exh_safety_step(&box, &safety, in);
         CHECK(permit.mode <= EXH_PERMIT_RELEASE && box.state < EXH_STATES, "mode %d", permit.mode);
         CHECK(permit.mode == EXH_PERMIT_CLOSED || !(box.present & EXH_FAULT_CUT),
-              "open with %" PRIx32, box.present);
+            "open with %" PRIx32, box.present);
         for (unsigned k = 0; k < n; k++) { feel(k, &permit); }
         exh_gate_step(&box, cfg, n, i, limits, &out);
         check_codes(n, permit.mode != EXH_PERMIT_CLOSED);
         modes[permit.mode]++;
     }
     CHECK(modes[0] + modes[1] + modes[2] < 1000 || (modes[0] && modes[1] && modes[2]),
-          "%" PRIu32 " closed, %" PRIu32 " open, %" PRIu32 " releasing", modes[0], modes[1],
-          modes[2]);
+        "%" PRIu32 " closed, %" PRIu32 " open, %" PRIu32 " releasing", modes[0], modes[1],
+        modes[2]);
 }
 
 TEST_MAIN("prop/noise", gate_before_noise, state_force_current_and_gate_before_noise);

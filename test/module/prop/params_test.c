@@ -8,10 +8,7 @@
 
 #include "check.h"
 
-static int64_t distance(int32_t a, int32_t b)
-{
-    return a < b ? (int64_t)b - a : (int64_t)a - b;
-}
+static int64_t distance(int32_t a, int32_t b) { return a < b ? (int64_t)b - a : (int64_t)a - b; }
 
 /* Against division with the sign taken off. */
 static void check_step(int32_t now, int32_t goal, unsigned shift)
@@ -21,7 +18,7 @@ static void check_step(int32_t now, int32_t goal, unsigned shift)
     const int32_t next = exh_params_slew_step(now, goal, shift);
     const int64_t want = goal < now ? now - part : now + part;
     CHECK(next == want, "%" PRId32 " to %" PRId32 " by 2^-%u: %" PRId32 ", want %" PRId64, now,
-          goal, shift, next, want);
+        goal, shift, next, want);
     CHECK(distance(next, goal) == d - part && (d == 0 || part > 0), "rest");
 }
 
@@ -35,8 +32,8 @@ TEST(a_step_is_the_share_rounded_up)
     while (check_case(1)) {
         const int32_t a = check_i32(), b = check_i32();
         check_step(a, b, (unsigned)check_i32_in(0, 31));
-        check_step(a, exh_sat32((int64_t)a + check_i32_in(-70000, 70000)),
-                   (unsigned)check_i32_in(0, 31));
+        check_step(
+            a, exh_sat32((int64_t)a + check_i32_in(-70000, 70000)), (unsigned)check_i32_in(0, 31));
     }
 }
 
@@ -51,7 +48,7 @@ TEST(it_ends_in_time)
         int64_t n = 0;
         for (; now != goal && n <= most; n++) { now = exh_params_slew_step(now, goal, shift); }
         CHECK(now == goal && n <= most, "shift %u: %" PRId64 " ticks, at most %" PRId64, shift, n,
-              most);
+            most);
     }
     for (unsigned shift = 0; shift <= EXH_TUNE_SHIFT_MAX; shift++) {
         const int64_t most = ((INT64_C(1) << shift) * (10 + 7 * (32 - (int64_t)shift)) + 10) / 10;
@@ -63,7 +60,7 @@ TEST(it_ends_in_time)
         CHECK(n <= most, "shift %u: %" PRId64 " ticks, at most %" PRId64, shift, n, most);
         if (shift == 6 || shift == EXH_TUNE_SHIFT_MAX) {
             check_note("over the whole range at shift %u: %" PRId64 " ticks, at most %" PRId64,
-                       shift, n, most);
+                shift, n, most);
         }
     }
 }
@@ -99,5 +96,5 @@ TEST(legal_changes_are_never_told)
     }
 }
 
-TEST_MAIN("prop/params", a_step_is_the_share_rounded_up, it_ends_in_time,
-          legal_changes_are_never_told);
+TEST_MAIN(
+    "prop/params", a_step_is_the_share_rounded_up, it_ends_in_time, legal_changes_are_never_told);

@@ -77,9 +77,9 @@ static int any_rig(int32_t on)
     scale.T = (struct exh_period){1, 1u + (uint32_t)check_i32_in(0, 19999)};
     if (exh_table_setup(rig.to_cur, 4) < 0 || exh_table_invert(rig.held, rig.to_cur, 4) < 0 ||
         exh_drive_setup(&rig.drive, &rig.drive_par, scale.T, (struct exh_table){rig.to_cur, 4},
-                        (struct exh_table){NULL, 0}) < 0 ||
+            (struct exh_table){NULL, 0}) < 0 ||
         exh_passivity_setup(&rig.cfg, &rig.par, &rig.drive, (struct exh_table){rig.held, 4}, scale,
-                            check_i32_in(EXH_Q(1, 10, EXH_Q_VEL), EXH_Q(10, 1, EXH_Q_VEL))) < 0) {
+            check_i32_in(EXH_Q(1, 10, EXH_Q_VEL), EXH_Q(10, 1, EXH_Q_VEL))) < 0) {
         return 0;
     }
     rig.bound = rig.cfg.way_cnt * (most() + half_a_code());
@@ -93,7 +93,7 @@ static int32_t tick(int32_t cnt, int touching, int64_t spring, int64_t damper, i
         .spring_N_q20 = spring, .damper_N_q20 = damper, .pullback_N_q20 = pull};
     const uint32_t bit = exh_passivity_step(&rig.s, &rig.cfg, cnt, touching, &f);
     CHECK((bit == EXH_LIMIT_PASSIVITY) == (f.passivity_N_q20 < 0) && f.passivity_N_q20 <= 0,
-          "%" PRId64, f.passivity_N_q20);
+        "%" PRId64, f.passivity_N_q20);
     f.force_N_q20 = exh_clamp(spring + damper + pull + f.passivity_N_q20, 0, most());
     exh_passivity_update(&rig.s, &rig.cfg, &f, coded(f.force_N_q20));
     return rig.s.held_N_q20;
@@ -157,15 +157,15 @@ TEST(no_contact_gives_out_more_than_the_bound)
             cnt = exh_wrap_add(cnt, moved);
             flow(&e, moved, (int32_t)(check_u64() % 17));
             CHECK(-e.in_time <= 16 * rig.bound, "tick %d: %" PRId64 " of %" PRId64, k,
-                  e.in_time / 16, rig.bound);
+                e.in_time / 16, rig.bound);
             CHECK(on == 1 || -e.late <= 32 * rig.bound, "tick %d, late: %" PRId64 " of %" PRId64, k,
-                  e.late / 16, rig.bound);
+                e.late / 16, rig.bound);
             contact_begins(&e, !(touching && touched));
             e.before = e.held;
-            e.held = tick(cnt, touching, touching ? any_force() : 0, touching ? any_force() / 4 : 0,
-                          pull);
+            e.held = tick(
+                cnt, touching, touching ? any_force() : 0, touching ? any_force() / 4 : 0, pull);
             CHECK(on == 2 || rig.s.energy_Ncnt_q20 * 16 == e.in_time, "tick %d: %" PRId64, k,
-                  rig.s.energy_Ncnt_q20);
+                rig.s.energy_Ncnt_q20);
             CHECK(rig.s.energy_Ncnt_q20 * 16 <= e.in_time, "tick %d", k);
         }
     }
@@ -204,7 +204,7 @@ TEST(the_worst_turn_comes_up_to_it)
         CHECK(with <= rig.bound, "%" PRId64 " of %" PRId64, with, rig.bound);
         /* But for the two half codes by which a force held may differ. */
         CHECK(100 * with >= 99 * (rig.bound - 2 * half_a_code() * rig.cfg.way_cnt),
-              "%" PRId64 " of %" PRId64, with, rig.bound);
+            "%" PRId64 " of %" PRId64, with, rig.bound);
         CHECK(without >= 7 * with, "%" PRId64 ", with it %" PRId64, without, with);
     }
 }
@@ -228,7 +228,7 @@ TEST(late_outputs_come_up_to_twice_that)
         CHECK_EQ_I64(-rig.s.energy_Ncnt_q20, given);
         CHECK(given <= 2 * rig.bound, "%" PRId64 " of %" PRId64, given, rig.bound);
         CHECK(100 * given >= 198 * (rig.bound - 2 * half_a_code() * rig.cfg.way_cnt),
-              "%" PRId64 " of %" PRId64, given, rig.bound);
+            "%" PRId64 " of %" PRId64, given, rig.bound);
     }
 }
 
@@ -297,12 +297,11 @@ static void small_rig(int on)
     CHECK_EQ_I64(exh_table_setup(rig.to_cur, 4), 0);
     CHECK_EQ_I64(exh_table_invert(rig.held, rig.to_cur, 4), 0);
     CHECK_EQ_I64(exh_drive_setup(&rig.drive, &rig.drive_par, scale.T,
-                                 (struct exh_table){rig.to_cur, 4}, (struct exh_table){NULL, 0}),
-                 0);
+                     (struct exh_table){rig.to_cur, 4}, (struct exh_table){NULL, 0}),
+        0);
     CHECK_EQ_I64(exh_passivity_setup(&rig.cfg, &rig.par, &rig.drive,
-                                     (struct exh_table){rig.held, 4}, scale,
-                                     EXH_Q(1, 10, EXH_Q_VEL)),
-                 0);
+                     (struct exh_table){rig.held, 4}, scale, EXH_Q(1, 10, EXH_Q_VEL)),
+        0);
     CHECK_EQ_I64(rig.cfg.way_cnt, WAY);
 }
 
@@ -316,8 +315,8 @@ static int small_step(const struct exh_passivity *s, int moved, int touching, in
     exh_passivity_update(&rig.s, &rig.cfg, &f, f.force_N_q20);
     if (!may_be(&rig.s, rig.par.on)) {
         CHECK(0,
-              "on %d: e %" PRId64 ", held %" PRId32 ", late %" PRId32 ", moved %d, asked %" PRId32,
-              (int)rig.par.on, s->energy_Ncnt_q20, s->held_N_q20, s->late_N_q20, moved, asked);
+            "on %d: e %" PRId64 ", held %" PRId32 ", late %" PRId32 ", moved %d, asked %" PRId32,
+            (int)rig.par.on, s->energy_Ncnt_q20, s->held_N_q20, s->late_N_q20, moved, asked);
     }
     return rig.s.energy_Ncnt_q20 == -rig.par.on * BOUND;
 }
@@ -354,9 +353,9 @@ TEST(every_small_state_keeps_the_bound)
     }
     check_note("%" PRIu32 " steps from every state of a small drive; %" PRIu32
                " end at the bound, none beyond",
-               n, attained);
+        n, attained);
 }
 
 TEST_MAIN("passivity", no_contact_gives_out_more_than_the_bound, the_worst_turn_comes_up_to_it,
-          late_outputs_come_up_to_twice_that, the_limit_is_never_above_and_hardly_below,
-          missed_ticks_count_for_ticks, every_small_state_keeps_the_bound);
+    late_outputs_come_up_to_twice_that, the_limit_is_never_above_and_hardly_below,
+    missed_ticks_count_for_ticks, every_small_state_keeps_the_bound);

@@ -13,8 +13,7 @@
 
 static const struct exh_material_par material[3] = {
     {EXH_Q(20000, 1, EXH_Q_K), EXH_Q(60, 1, EXH_Q_B), EXH_Q(12, 1, EXH_Q_FORCE)},
-    {EXH_Q(500, 1, EXH_Q_K), EXH_Q(1, 1, EXH_Q_B), EXH_Q(3, 1, EXH_Q_FORCE)},
-    {0, 0, 0}};
+    {EXH_Q(500, 1, EXH_Q_K), EXH_Q(1, 1, EXH_Q_B), EXH_Q(3, 1, EXH_Q_FORCE)}, {0, 0, 0}};
 
 static uint64_t root(uint64_t v)
 {
@@ -38,15 +37,15 @@ static struct exh_vec3 unit(int64_t x, int64_t y, int64_t z)
         z *= 2;
     }
     by = (int64_t)root((uint64_t)(x * x + y * y + z * z));
-    n = (struct exh_vec3){(int32_t)(x * one / by), (int32_t)(y * one / by),
-                          (int32_t)(z * one / by)};
+    n = (struct exh_vec3){
+        (int32_t)(x * one / by), (int32_t)(y * one / by), (int32_t)(z * one / by)};
     return n;
 }
 
 static struct exh_vec3 along(struct exh_vec3 n, int64_t m_q30)
 {
-    const struct exh_vec3 v = {(int32_t)(n.x * m_q30 >> 30), (int32_t)(n.y * m_q30 >> 30),
-                               (int32_t)(n.z * m_q30 >> 30)};
+    const struct exh_vec3 v = {
+        (int32_t)(n.x * m_q30 >> 30), (int32_t)(n.y * m_q30 >> 30), (int32_t)(n.z * m_q30 >> 30)};
     return v;
 }
 
@@ -113,7 +112,7 @@ TEST(distance_and_limit_are_exact)
             const struct wide off = wide_sub(wide_shl(wide_of(s.lim_m_q30), 24), lim);
             CHECK(wide_within(off, wide_of(INT64_C(1) << 23)) ||
                       (s.lim_m_q30 == INT32_MAX && wide_negative(off)),
-                  "q_lim %" PRId32, s.lim_m_q30);
+                "q_lim %" PRId32, s.lim_m_q30);
         } else {
             CHECK(s.lim_m_q30 == EXH_PRECONTACT_NO_LIM, "q_lim %" PRId32, s.lim_m_q30);
         }
@@ -128,8 +127,8 @@ TEST(scale_of_the_slope)
     while (check_case(1)) {
         const struct exh_plane p = {EXH_PLANE_HIT, 0, 0, any_unit(), {0, 0, 0}};
         struct exh_precontact_in in = {{0, 0, 0}, {0, 0, 0}, 0, 0, 0};
-        const struct exh_precontact_cfg one = {cfg.par, cfg.material, -(INT64_C(1) << 60), 9, 9, 9,
-                                               3};
+        const struct exh_precontact_cfg one = {
+            cfg.par, cfg.material, -(INT64_C(1) << 60), 9, 9, 9, 3};
         struct exh_precontact s = {0};
         struct wide g;
         int64_t g_q24, kept;
@@ -148,7 +147,7 @@ TEST(scale_of_the_slope)
             const struct wide off =
                 wide_sub(wide_mul(s.lim_m_q30, kept), wide_of(INT64_C(1) << 54));
             CHECK(wide_within(off, wide_of((kept << 5) + (1 << 26) + kept)),
-                  "g %" PRId64 " s %" PRId32, kept, s.lim_m_q30);
+                "g %" PRId64 " s %" PRId32, kept, s.lim_m_q30);
         }
     }
 }
@@ -209,7 +208,7 @@ static void account_tell(struct account *a, const struct exh_plane *p, uint32_t 
 }
 
 static int32_t account_step(struct account *a, const struct exh_precontact_par *par, int32_t pad,
-                            const struct exh_precontact_in *in)
+    const struct exh_precontact_in *in)
 {
     const struct wide moved = wide_shl(wide_of(in->pos_m_q30), 24);
     const int seen = in->tip_age_ticks <= 50;
@@ -266,10 +265,7 @@ static int32_t account_step(struct account *a, const struct exh_precontact_par *
     return d;
 }
 
-static int is_frozen(const struct exh_precontact *s)
-{
-    return s->phase == EXH_PRECONTACT_FROZEN;
-}
+static int is_frozen(const struct exh_precontact *s) { return s->phase == EXH_PRECONTACT_FROZEN; }
 
 static struct exh_plane any_plane(const struct exh_plane *before)
 {
@@ -320,20 +316,20 @@ TEST(states_against_a_second_account)
             (void)exh_precontact_step(&s, &cfg, &in);
             CHECK(s.d_m_q30 == d && s.lim_m_q30 == a.lim &&
                       (s.phase == EXH_PRECONTACT_FROZEN) == a.frozen,
-                  "tick %d: d %" PRId32 " %" PRId32 ", lim %" PRId32 " %" PRId32
-                  ", phase %d, frozen %d",
-                  t, s.d_m_q30, d, s.lim_m_q30, a.lim, s.phase, a.frozen);
+                "tick %d: d %" PRId32 " %" PRId32 ", lim %" PRId32 " %" PRId32
+                ", phase %d, frozen %d",
+                t, s.d_m_q30, d, s.lim_m_q30, a.lim, s.phase, a.frozen);
         }
         CHECK(s.frozen_n == a.frozen_n && s.born_n == a.born_n && s.refused_n == a.refused_n &&
                   s.ignored_n == a.ignored_n && s.stale_n == a.stale_n && s.let_go_n == a.let_go_n,
-              "counts");
+            "counts");
         let_gos += a.let_go_n;
         freezes += a.frozen_n;
         borns += a.born_n;
         stales += a.stale_n;
     }
     CHECK(check_count < 1000000 || (freezes > 100 && borns > 100 && stales > 0 && let_gos > 100),
-          "all states seen");
+        "all states seen");
 }
 
 /* Nothing that is told after the freeze reaches a force, whatever else comes in. */
@@ -368,7 +364,7 @@ TEST(no_message_after_the_freeze_is_felt)
             CHECK(a == b && quiet.lim_m_q30 == busy.lim_m_q30 && quiet.d_m_q30 == busy.d_m_q30 &&
                       quiet.phase == busy.phase &&
                       memcmp(&quiet.taken, &busy.taken, sizeof quiet.taken) == 0,
-                  "tick %d", t);
+                "tick %d", t);
         }
     }
 }
@@ -397,10 +393,9 @@ TEST(no_touch_before_the_freeze_whatever_comes)
         s.doubt_ticks = (uint32_t)(check_u64() % 10);
         s.lim_m_q30 = check_i32();
         (void)exh_precontact_step(&s, &cfg, &in);
-        CHECK(is_frozen(&s) ||
-                  !exh_contact_step(&c, &law, (struct exh_contact_in){in.pos_m_q30, 1, s.lim_m_q30},
-                                    &f),
-              "q %" PRId32 " q_lim %" PRId32, in.pos_m_q30, s.lim_m_q30);
+        CHECK(is_frozen(&s) || !exh_contact_step(&c, &law,
+                                   (struct exh_contact_in){in.pos_m_q30, 1, s.lim_m_q30}, &f),
+            "q %" PRId32 " q_lim %" PRId32, in.pos_m_q30, s.lim_m_q30);
     }
 }
 
@@ -517,12 +512,11 @@ TEST(frozen_in_time_and_felt_where_it_is)
         n++;
         CHECK(!o.early, "felt before the freeze");
         CHECK(o.freeze_tick >= 0 && o.true_d_m_q30 <= 0,
-              "froze in tick %" PRId32 " at %" PRId64 ", d_lim %" PRId32 " lag %" PRId32
-              " rate %" PRIu32 " step %" PRId64,
-              o.freeze_tick, o.true_d_m_q30, a.par.d_lim_m_q30, a.lag_ticks, a.T.den,
-              a.step_nm_q10);
+            "froze in tick %" PRId32 " at %" PRId64 ", d_lim %" PRId32 " lag %" PRId32
+            " rate %" PRIu32 " step %" PRId64,
+            o.freeze_tick, o.true_d_m_q30, a.par.d_lim_m_q30, a.lag_ticks, a.T.den, a.step_nm_q10);
         CHECK(o.touch_tick >= o.freeze_tick && o.lim_m_q30 >= -off && o.lim_m_q30 <= off,
-              "wall %" PRId32 " off, %" PRId64 " allowed", o.lim_m_q30, off);
+            "wall %" PRId32 " off, %" PRId64 " allowed", o.lim_m_q30, off);
     }
     check_note("%" PRIu64 " approaches: none felt before its freeze, none frozen late", n);
 }
@@ -543,7 +537,7 @@ TEST(half_the_advice_is_too_little)
     }
     CHECK(n < 100 || late > n / 20, "%" PRIu64 " of %" PRIu64 " late", late, n);
     check_note("d_lim half of the advice: %" PRIu64 " of %" PRIu64 " frozen late, none felt early",
-               late, n);
+        late, n);
 }
 
 /* One motion, many links: from the freeze on, the same bits. */
@@ -563,7 +557,7 @@ TEST(the_link_is_not_felt)
             if (link == 0) { first = o; }
             CHECK(o.lim_m_q30 == first.lim_m_q30 && o.freeze_tick == first.freeze_tick &&
                       o.touch_tick == first.touch_tick,
-                  "link %d", link);
+                "link %d", link);
         }
     }
 }
@@ -590,7 +584,7 @@ static struct exh_plane tangent(const struct slide *m, int64_t t, struct exh_vec
 /* Where the string says contact, at q = lim, perhaps between two ticks: how far off is the
  * sphere? late: from above, how far it came; early: from below, by how much it curves away. */
 static int64_t gap_at(const struct slide *m, int64_t lim, int64_t taken, struct exh_vec3 n,
-                      int64_t *late, int64_t *early)
+    int64_t *late, int64_t *early)
 {
     const int64_t aside = m->aside * lim / m->down, up = m->up * lim / m->down;
     const int64_t x = m->x0 + aside, z = m->z0 - lim - up;
@@ -609,12 +603,8 @@ TEST(curved_and_moving_objects_within_the_bound)
         const struct exh_precontact_par par = {
             -check_i32_in(MM(1), MM(8)), MM(1), 1 << 24, 1, 0, 60000, MM(5), 100, 50};
         const struct exh_precontact_cfg cfg = set_up(&par, 0);
-        struct slide m = {check_i32_in(MM(20), MM(200)),
-                          check_i32_in(MM(1) / 20, MM(1)),
-                          check_i32_in(0, MM(1) / 4),
-                          check_i32_in(0, MM(1) / 20),
-                          0,
-                          0};
+        struct slide m = {check_i32_in(MM(20), MM(200)), check_i32_in(MM(1) / 20, MM(1)),
+            check_i32_in(0, MM(1) / 4), check_i32_in(0, MM(1) / 20), 0, 0};
         const int32_t age = check_i32_in(0, 30), frame = check_i32_in(1, 10);
         struct exh_precontact s = {0};
         struct exh_vec3 n = {0, 0, 0}, n_lim = {0, 0, 0};
@@ -625,10 +615,7 @@ TEST(curved_and_moving_objects_within_the_bound)
         for (int t = age; t < 3000 && !is_frozen(&s); t++) {
             const struct exh_precontact_in in = {
                 {(int32_t)(m.x0 + m.aside * t), 0, (int32_t)(m.z0 - m.down * t)},
-                {(int32_t)((m.aside << 24) / m.down), 0, -(1 << 24)},
-                (int32_t)(m.down * t),
-                0,
-                0};
+                {(int32_t)((m.aside << 24) / m.down), 0, -(1 << 24)}, (int32_t)(m.down * t), 0, 0};
             n_lim = n;
             taken_lim = taken;
             if ((t - age) % frame == 0) {
@@ -642,7 +629,7 @@ TEST(curved_and_moving_objects_within_the_bound)
             int64_t late, early;
             const int64_t gap = gap_at(&m, s.lim_m_q30, taken_lim, n_lim, &late, &early);
             CHECK(gap >= -late - 64 && gap <= early + 64,
-                  "gap %" PRId64 " allowed -%" PRId64 " .. %" PRId64, gap, late, early);
+                "gap %" PRId64 " allowed -%" PRId64 " .. %" PRId64, gap, late, early);
             if (late > MM(1) && -gap * 100 / late > worst_late) { worst_late = -gap * 100 / late; }
             if (early > MM(1) / 10 && gap * 100 / early > worst_early) {
                 worst_early = gap * 100 / early;
@@ -650,11 +637,11 @@ TEST(curved_and_moving_objects_within_the_bound)
         }
     }
     check_note("of theory's bounds: moving %" PRId64 " %%, curved %" PRId64 " %% at worst",
-               worst_late, worst_early);
+        worst_late, worst_early);
 }
 
 TEST_MAIN("prop/precontact", distance_and_limit_are_exact, scale_of_the_slope,
-          reciprocal_within_its_bound, states_against_a_second_account,
-          no_message_after_the_freeze_is_felt, no_touch_before_the_freeze_whatever_comes,
-          frozen_in_time_and_felt_where_it_is, half_the_advice_is_too_little, the_link_is_not_felt,
-          curved_and_moving_objects_within_the_bound);
+    reciprocal_within_its_bound, states_against_a_second_account,
+    no_message_after_the_freeze_is_felt, no_touch_before_the_freeze_whatever_comes,
+    frozen_in_time_and_felt_where_it_is, half_the_advice_is_too_little, the_link_is_not_felt,
+    curved_and_moving_objects_within_the_bound);

@@ -17,10 +17,10 @@ static void pos_case(int32_t step, int32_t cnt)
     const struct wide q30 = wide_shr_half_up(exact, EXH_Q_STEP - EXH_Q_POS);
     const int fits = wide_cmp(q30, wide_of(got)) == 0;
     CHECK(got == wide_sat32(q30), "step %" PRId32 " cnt %" PRId32 ": %" PRId32, step, cnt, got);
-    CHECK(check_saturations - before == !fits, "step %" PRId32 " cnt %" PRId32 ": audit", step,
-          cnt);
+    CHECK(
+        check_saturations - before == !fits, "step %" PRId32 " cnt %" PRId32 ": audit", step, cnt);
     CHECK(!fits || wide_within(wide_sub(wide_shl(wide_of(got), 12), exact), wide_of(1 << 11)),
-          "step %" PRId32 " cnt %" PRId32 ": error beyond half an LSB", step, cnt);
+        "step %" PRId32 " cnt %" PRId32 ": error beyond half an LSB", step, cnt);
 }
 
 TEST(position_is_within_half_an_lsb)
@@ -56,9 +56,9 @@ TEST(extension_is_congruent_and_shortest)
             continue;
         }
         CHECK(((moved ^ (raw - old.raw)) << (32 - bits)) == 0, "bits %" PRId32 ": not congruent",
-              bits);
-        CHECK(bits == 32 || moved + half < 2 * half, "bits %" PRId32 ": moved %" PRIu32, bits,
-              moved);
+            bits);
+        CHECK(
+            bits == 32 || moved + half < 2 * half, "bits %" PRId32 ": moved %" PRIu32, bits, moved);
         CHECK(cnt == s.cnt && s.started, "state");
     }
 }
@@ -113,7 +113,7 @@ TEST(steps_runs_and_words_are_the_definition)
         uint8_t ab[1024];
         const size_t k = (size_t)check_i32_in(0, 2);
         const struct exh_quad_ab start = {check_i32(), (uint32_t)check_i32(), (uint32_t)check_i32(),
-                                          (uint8_t)check_i32_in(0, 3), (uint8_t)check_i32_in(0, 1)};
+            (uint8_t)check_i32_in(0, 3), (uint8_t)check_i32_in(0, 1)};
         struct exh_quad_ab want = start, step = start, run = start;
         size_t done = 0;
         walk(ab, sizeof ab);
@@ -137,7 +137,7 @@ TEST(words_are_the_definition)
     while (check_case(200)) {
         uint8_t ab[4 * 64];
         const struct exh_quad_ab start = {check_i32(), (uint32_t)check_i32(), (uint32_t)check_i32(),
-                                          (uint8_t)check_i32_in(0, 3), (uint8_t)check_i32_in(0, 1)};
+            (uint8_t)check_i32_in(0, 3), (uint8_t)check_i32_in(0, 1)};
         struct exh_quad_ab want = start, word = start;
         walk(ab, sizeof ab);
         for (size_t w = 0; w < sizeof ab; w += 64) {
@@ -154,4 +154,4 @@ TEST(words_are_the_definition)
 }
 
 TEST_MAIN("prop/quad", position_is_within_half_an_lsb, extension_is_congruent_and_shortest,
-          steps_runs_and_words_are_the_definition, words_are_the_definition);
+    steps_runs_and_words_are_the_definition, words_are_the_definition);

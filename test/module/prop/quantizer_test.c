@@ -12,15 +12,9 @@ static struct exh_quantizer_cfg set(int32_t bits, int32_t hyst)
     return cfg;
 }
 
-static int64_t error_of(int32_t x, int32_t y)
-{
-    return x > y ? (int64_t)x - y : (int64_t)y - x;
-}
+static int64_t error_of(int32_t x, int32_t y) { return x > y ? (int64_t)x - y : (int64_t)y - x; }
 
-static int32_t hyst_max(int32_t bits)
-{
-    return bits == 1 ? INT32_MAX : INT32_C(1) << (32 - bits);
-}
+static int32_t hyst_max(int32_t bits) { return bits == 1 ? INT32_MAX : INT32_C(1) << (32 - bits); }
 
 /* Any path of the input: the error keeps its bound, the value is a multiple of Q. */
 TEST(error_keeps_its_bound)
@@ -37,7 +31,7 @@ TEST(error_keeps_its_bound)
             const int64_t bound = x > (INT64_C(1) << 31) - q ? q - 1 : 0;
             CHECK(y % q == 0, "%" PRId32 " is no multiple of 2^%" PRId32, y, 32 - bits);
             CHECK(2 * error_of(x, y) <= q + hyst || error_of(x, y) <= bound,
-                  "bits %" PRId32 " hyst %" PRId32 ": %" PRId32 " for %" PRId32, bits, hyst, y, x);
+                "bits %" PRId32 " hyst %" PRId32 ": %" PRId32 " for %" PRId32, bits, hyst, y, x);
         }
     }
 }
@@ -59,7 +53,7 @@ TEST(a_constant_input_does_not_flip)
             last = y;
         }
         CHECK(changes <= 1, "bits %" PRId32 " hyst %" PRId32 " level %" PRId32 ": %d changes", bits,
-              hyst, level, changes);
+            hyst, level, changes);
     }
 }
 
@@ -80,5 +74,5 @@ TEST(small_formats_in_full)
     }
 }
 
-TEST_MAIN("prop/quantizer", error_keeps_its_bound, a_constant_input_does_not_flip,
-          small_formats_in_full);
+TEST_MAIN(
+    "prop/quantizer", error_keeps_its_bound, a_constant_input_does_not_flip, small_formats_in_full);

@@ -21,10 +21,7 @@ static uint32_t listed;
 static uint8_t mem[CAP_MAX + 2];
 static struct exh_ring ring;
 
-static uint32_t up_to(uint32_t n)
-{
-    return (uint32_t)(check_u64() % (n + 1));
-}
+static uint32_t up_to(uint32_t n) { return (uint32_t)(check_u64() % (n + 1)); }
 
 static void put(uint8_t type, uint32_t tick, uint32_t len_B)
 {
@@ -58,11 +55,11 @@ static void compare(uint32_t tick_B)
         CHECK_EQ_I64(exh_record_decode(buf, n, &r), n);
         CHECK(r.type == every[i].type && r.tick == every[i].tick && r.len_B == every[i].len_B &&
                   r.seq == i - from && memcmp(r.payload, every[i].payload, r.len_B) == 0,
-              "record %" PRIu32 " of %" PRIu32, i, listed);
+            "record %" PRIu32 " of %" PRIu32, i, listed);
         held_B += EXH_RING_HEAD_B + every[i].len_B;
     }
     CHECK(from == 0 || held_B >= promised_B,
-          "%" PRIu32 " bytes held of %" PRIu32 ", promised %" PRIu32, held_B, stored_B, promised_B);
+        "%" PRIu32 " bytes held of %" PRIu32 ", promised %" PRIu32, held_B, stored_B, promised_B);
 }
 
 /* Every size of memory, so that records and their heads wrap at every place. */
@@ -115,11 +112,11 @@ TEST(who_breaks_the_rule_loses_records_and_no_more)
                 const uint32_t n = exh_record_out(&o, buf, sizeof buf);
                 CHECK_EQ_I64(exh_record_decode(buf, n, &r), n);
                 CHECK(next != UINT32_MAX || r.type == EXH_RECORD_KEYFRAME, "begins with type %d",
-                      r.type);
+                    r.type);
                 CHECK(next == UINT32_MAX || r.tick > next, "tick %" PRIu32 " after %" PRIu32,
-                      r.tick, next);
-                CHECK(r.len_B == 0 || r.payload[r.len_B - 1] == (r.tick & 0xFF),
-                      "another's payload");
+                    r.tick, next);
+                CHECK(
+                    r.len_B == 0 || r.payload[r.len_B - 1] == (r.tick & 0xFF), "another's payload");
                 next = r.tick;
             }
             CHECK(p.left_B == 0, "%" PRIu32 " bytes that are no record", p.left_B);

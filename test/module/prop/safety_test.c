@@ -72,17 +72,17 @@ static void check_finger(const struct box *b, unsigned k, int open, int64_t aske
     const struct exh_current_ledger *i = &b->i[k];
     const int32_t codes = (int32_t)b->out.dac_raw[k] - par->dac_zero_raw;
     CHECK(codes <= par->dac_span_raw && codes >= -par->dac_span_raw,
-          "finger %u: %" PRId32 " codes, span %" PRId32, k, codes, par->dac_span_raw);
+        "finger %u: %" PRId32 " codes, span %" PRId32, k, codes, par->dac_span_raw);
     CHECK(i->coded_A_q26 == asked + i->gate_A_q26 + i->dac_A_q26, "finger %u: ledger", k);
     CHECK(stands_for(par, codes, i->coded_A_q26), "finger %u: %" PRId32 " codes are not %" PRId32,
-          k, codes, i->coded_A_q26);
+        k, codes, i->coded_A_q26);
     if (open) {
         CHECK(nearest_code(par, b->most[k], asked, codes),
-              "finger %u: %" PRId64 " A q26 became %" PRId32, k, asked, codes);
+            "finger %u: %" PRId64 " A q26 became %" PRId32, k, asked, codes);
         CHECK(i->gate_A_q26 == 0 || asked > INT32_MAX || asked < INT32_MIN, "finger %u: gate", k);
     } else {
         CHECK(codes == 0 && i->coded_A_q26 == 0, "finger %u: %" PRId32 " codes outside RUN", k,
-              codes);
+            codes);
         CHECK(i->gate_A_q26 == -asked && i->dac_A_q26 == 0, "finger %u: gate", k);
     }
 }
@@ -120,7 +120,7 @@ TEST(gate_holds_with_any_input)
         for (unsigned k = 0; k < n; k++) { check_finger(&b, k, open, asked[k]); }
         for (unsigned k = n; k < EXH_FINGERS; k++) {
             CHECK(b.out.dac_raw[k] == b.par[0].dac_zero_raw, "unused finger %u: %d", k,
-                  b.out.dac_raw[k]);
+                b.out.dac_raw[k]);
         }
     }
 }
@@ -166,13 +166,13 @@ static uint32_t causes_of(const struct exh_safety_in *in, struct memory *m)
  * its tick; FAULT is left by CLEAR alone, with no cause and the dead-man opened since the last
  * other one; the first cause does not change; a release ends after its ticks. */
 static void check_step(const struct exh_safety *old, const struct exh_safety *s,
-                       const struct exh_safety_in *in, uint32_t now, struct memory *m)
+    const struct exh_safety_in *in, uint32_t now, struct memory *m)
 {
     const int was_open = exh_safety_is_open(old), open = exh_safety_is_open(s);
     CHECK(s->present == now, "present %" PRIx32 " not %" PRIx32, s->present, now);
     CHECK(s->state < EXH_STATES, "state %d", s->state);
     CHECK(!open || was_open || (old->state == EXH_STATE_ARM && !now && in->ready == EXH_ARM_ALL),
-          "opened from %d", old->state);
+        "opened from %d", old->state);
     CHECK(!open || !(now & EXH_FAULT_CUT), "open with %" PRIx32, now);
     CHECK(!open || !now || s->state == EXH_STATE_RELEASE, "cause in state %d", s->state);
     CHECK(!was_open || !now || s->faults != 0, "cause not latched");
@@ -181,15 +181,15 @@ static void check_step(const struct exh_safety *old, const struct exh_safety *s,
     CHECK((s->faults & old->faults) == old->faults || in->command == EXH_CMD_CLEAR, "forgotten");
     if (old->state == EXH_STATE_FAULT && s->state != EXH_STATE_FAULT) {
         CHECK(s->state == EXH_STATE_OFF && in->command == EXH_CMD_CLEAR && !now && m->opened,
-              "left FAULT");
+            "left FAULT");
     }
     if (old->faults) {
         CHECK(s->first == old->first && s->first_tick == old->first_tick, "first cause changed");
     }
     if (old->state == EXH_STATE_OFF) {
-        CHECK(s->state == EXH_STATE_OFF ||
-                  (s->state == EXH_STATE_ARM && in->command == EXH_CMD_RUN),
-              "from OFF to %d", s->state);
+        CHECK(
+            s->state == EXH_STATE_OFF || (s->state == EXH_STATE_ARM && in->command == EXH_CMD_RUN),
+            "from OFF to %d", s->state);
     }
     if (now) { m->opened = now == EXH_FAULT_DEADMAN && !(in->din & EXH_DIN_DEADMAN); }
     m->in_release = s->state == EXH_STATE_RELEASE ? m->in_release + 1 + in->missed : 0;

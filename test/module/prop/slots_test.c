@@ -15,10 +15,7 @@ static uint8_t flash[2][MOST_B], buf[MOST_B + 8];
 static uint32_t slot_B, unit_B;
 static int to_ones; /* what erased bits are */
 
-static uint32_t up_to(uint32_t n)
-{
-    return (uint32_t)(check_u64() % (n + 1));
-}
+static uint32_t up_to(uint32_t n) { return (uint32_t)(check_u64() % (n + 1)); }
 
 /* Toward `goal`, any of the bits that are not there yet, or all. */
 static void pull(uint8_t *p, const uint8_t *goal, uint32_t n, int all)
@@ -84,8 +81,8 @@ TEST(old_or_new_whenever_the_supply_fails)
             if (n == 0) { continue; } /* by chance it stands there */
             CHECK(n == (int32_t)EXH_SLOT_B(len_B) && to < 2, "%" PRId32 " to %u", n, to);
             if (erase(to & 1, how == 0)) {
-                (void)program(to & 1, (uint32_t)n,
-                              how == 1 ? up_to((uint32_t)n / unit_B) : UINT32_MAX);
+                (void)program(
+                    to & 1, (uint32_t)n, how == 1 ? up_to((uint32_t)n / unit_B) : UINT32_MAX);
             }
             now_B = image(now, &now_s);
             if (now_B == (int32_t)len_B && memcmp(now, buf + EXH_SLOT_HEAD_B, len_B) == 0 &&
@@ -98,14 +95,14 @@ TEST(old_or_new_whenever_the_supply_fails)
                 CHECK(how < 2, "lost although nothing failed");
                 CHECK(now_B == old_B && (old_B < 0 || memcmp(now, old, (size_t)old_B) == 0) &&
                           (old_B < 0 || now_s == old_s),
-                      "neither old nor new: %" PRId32 " B, sequence %" PRIu32, now_B, now_s);
+                    "neither old nor new: %" PRId32 " B, sequence %" PRIu32, now_B, now_s);
                 olds++;
             }
         }
     }
     check_note("%" PRIu32 " saves cut off or not: the old one counts in %" PRIu32
                ", the new one in %" PRIu32,
-               olds + news, olds, news);
+        olds + news, olds, news);
 }
 
 /* Any change of a whole slot that is not its own next image: the other one counts. */
@@ -133,7 +130,7 @@ TEST(what_is_damaged_does_not_count)
             }
         }
         CHECK(exh_slots_find(&is, flash[0], flash[1], slot_B) == 0,
-              "%" PRIu32 " bits from %" PRIu32 " on", turned, at);
+            "%" PRIu32 " bits from %" PRIu32 " on", turned, at);
     }
 }
 

@@ -59,7 +59,7 @@ TEST(what_follows_is_never_told)
             const int32_t by = check_i32_in(-(int32_t)noise, (int32_t)noise);
             y += (x - y) * a >> 16;
             CHECK(exh_tracking_step(&s, &cfg, (int32_t)(y + by)) == 0,
-                  "tick %" PRIu32 ", %" PRIu32 " late of %" PRIu32, n, late, cfg.ticks);
+                "tick %" PRIu32 ", %" PRIu32 " late of %" PRIu32, n, late, cfg.ticks);
             coded[n] = next(n ? coded[n - 1] : 0);
             exh_tracking_update(&s, coded[n]);
         }
@@ -117,5 +117,5 @@ TEST(what_stands_is_told_in_time)
     }
 }
 
-TEST_MAIN("prop/tracking", what_follows_is_never_told, as_the_history_says,
-          what_stands_is_told_in_time);
+TEST_MAIN(
+    "prop/tracking", what_follows_is_never_told, as_the_history_says, what_stands_is_told_in_time);

@@ -56,8 +56,8 @@ TEST(window_step_is_exact)
         oldest = s.cnt[s.at];
         got = exh_velocity_window_step(&s, &cfg, cnt);
         CHECK(close_to(got, scale, unwrapped(cnt, oldest), cfg.n),
-              "step %" PRId32 " T %" PRIu32 "/%" PRIu32 " n %d moved %" PRId64 ": %" PRId32,
-              scale.step_m_q42, scale.T.num, scale.T.den, cfg.n, unwrapped(cnt, oldest), got);
+            "step %" PRId32 " T %" PRIu32 "/%" PRIu32 " n %d moved %" PRId64 ": %" PRId32,
+            scale.step_m_q42, scale.T.num, scale.T.den, cfg.n, unwrapped(cnt, oldest), got);
     }
 }
 
@@ -75,8 +75,8 @@ TEST(window_keeps_its_samples)
             const int back = k - cfg.n < 0 ? 0 : k - cfg.n;
             hist[k] = check_i32();
             CHECK(close_to(exh_velocity_window_step(&s, &cfg, hist[k]), scale,
-                           unwrapped(hist[k], hist[back]), cfg.n),
-                  "n %d tick %d", cfg.n, k);
+                      unwrapped(hist[k], hist[back]), cfg.n),
+                "n %d tick %d", cfg.n, k);
         }
     }
 }
@@ -121,10 +121,10 @@ TEST(pole_share_is_exact)
         struct wide den, err;
         if (exh_velocity_pole_setup(&cfg, scale, tau) < 0) { continue; }
         den = wide_add(wide_mul(scale.T.num, 1000000), wide_mul(scale.T.den, tau));
-        err = wide_sub(wide_mul(cfg.a_q31, wide_sat64(den)),
-                       wide_shl(wide_mul(scale.T.num, 1000000), 31));
+        err = wide_sub(
+            wide_mul(cfg.a_q31, wide_sat64(den)), wide_shl(wide_mul(scale.T.num, 1000000), 31));
         CHECK(wide_within(err, den), "T %" PRIu32 "/%" PRIu32 " tau %" PRIu32 ": %" PRId32,
-              scale.T.num, scale.T.den, tau, cfg.a_q31);
+            scale.T.num, scale.T.den, tau, cfg.a_q31);
         CHECK(cfg.a_q31 > 0, "dead filter");
     }
 }
@@ -134,8 +134,8 @@ TEST(pole_share_is_exact)
 /* By definition: the least-squares slope over n+1 samples from its normal
  * equations, tried for n = 1, 2 … until a sample leaves the line through the
  * newest by more than tol. hist[0] is the newest. Slope as *num / *den. */
-static void foaw_reference(const int64_t *hist, int have, int n_max, int tol, int64_t *num,
-                           int64_t *den)
+static void foaw_reference(
+    const int64_t *hist, int have, int n_max, int tol, int64_t *num, int64_t *den)
 {
     *num = 0;
     *den = 1;
@@ -180,8 +180,8 @@ static void foaw_run(struct exh_velocity_scale scale, int64_t ramp_max)
     int64_t hist[EXH_VELOCITY_N + 1] = {0}, pos = check_i32(), num, den;
     if (exh_velocity_foaw_setup(&cfg, scale, (unsigned)n, (unsigned)tol) < 0) { return; }
     for (int k = 0; k < 25; k++) {
-        const int32_t cnt = (int32_t)unwrapped((int32_t)(pos & INT32_MAX),
-                                               (int32_t)(pos & (INT64_C(1) << 31) ? INT32_MIN : 0));
+        const int32_t cnt = (int32_t)unwrapped(
+            (int32_t)(pos & INT32_MAX), (int32_t)(pos & (INT64_C(1) << 31) ? INT32_MIN : 0));
         int32_t got;
         for (int j = EXH_VELOCITY_N; j > 0; j--) { hist[j] = hist[j - 1]; }
         hist[0] = pos;
@@ -192,19 +192,17 @@ static void foaw_run(struct exh_velocity_scale scale, int64_t ramp_max)
         foaw_reference(hist, k + 1, n, tol, &num, &den);
         got = exh_velocity_foaw_step(&s, &cfg, cnt);
         CHECK(close_to(got, scale, num, den),
-              "step %" PRId32 " T %" PRIu32 "/%" PRIu32 " n %d tol %d tick %d: %" PRId32
-              ", slope %" PRId64 "/%" PRId64,
-              scale.step_m_q42, scale.T.num, scale.T.den, n, tol, k, got, num, den);
+            "step %" PRId32 " T %" PRIu32 "/%" PRIu32 " n %d tol %d tick %d: %" PRId32
+            ", slope %" PRId64 "/%" PRId64,
+            scale.step_m_q42, scale.T.num, scale.T.den, n, tol, k, got, num, den);
         pos += foaw_move(how, ramp);
     }
 }
 
 TEST(foaw_equals_brute_force)
 {
-    static const struct exh_velocity_scale real[] = {{69049330, {1, 2000}},
-                                                     {69049330, {1, 20000}},
-                                                     {7000001, {65, 1193182}},
-                                                     {4398046, {1, 90}}};
+    static const struct exh_velocity_scale real[] = {{69049330, {1, 2000}}, {69049330, {1, 20000}},
+        {7000001, {65, 1193182}}, {4398046, {1, 90}}};
     while (check_case(50)) { foaw_run(real[check_u64() % 4], 5000); }
 }
 
@@ -234,8 +232,8 @@ TEST(track_step_is_exact)
     while (check_case(1)) {
         const struct exh_velocity_scale scale = any_scale();
         const int32_t cnt = check_i32();
-        struct exh_velocity_track s = {check_i64() % (most + 1), check_i64() % (most + 1),
-                                       check_i32(), 1};
+        struct exh_velocity_track s = {
+            check_i64() % (most + 1), check_i64() % (most + 1), check_i32(), 1};
         struct exh_velocity_track_cfg cfg;
         struct wide off, err, vel, out;
         int64_t moved = unwrapped(cnt, s.cnt);
@@ -255,7 +253,7 @@ TEST(track_step_is_exact)
         CHECK(wide_within(out, wide_of(INT64_C(1) << 32)) ||
                   (got == INT32_MAX && !wide_negative(out)) ||
                   (got == INT32_MIN && wide_negative(out)),
-              "output %" PRId32, got);
+            "output %" PRId32, got);
     }
 }
 
@@ -273,7 +271,7 @@ TEST(track_poles_are_double)
         a = same.a_q31;
         b_err = wide_sat64(wide_sub(wide_mul(a, a), wide_shl(wide_of(cfg.beta_q31), 31)));
         CHECK(b_err >= -(INT64_C(1) << 30) && b_err <= INT64_C(1) << 30, "beta %" PRId32,
-              cfg.beta_q31);
+            cfg.beta_q31);
         CHECK(cfg.beta_q31 > 0, "velocity never corrected: T_f %" PRIu32 " us", tf);
         a = 2 * a - cfg.beta_q31;
         CHECK(cfg.alpha_q31 >= a - 1 && cfg.alpha_q31 <= a + 1, "alpha %" PRId32, cfg.alpha_q31);
@@ -303,5 +301,5 @@ TEST(any_counts_then_rest)
 }
 
 TEST_MAIN("prop/velocity", window_step_is_exact, window_keeps_its_samples, pole_step_is_exact,
-          pole_share_is_exact, foaw_equals_brute_force, foaw_equals_brute_force_at_any_scale,
-          track_step_is_exact, track_poles_are_double, any_counts_then_rest);
+    pole_share_is_exact, foaw_equals_brute_force, foaw_equals_brute_force_at_any_scale,
+    track_step_is_exact, track_poles_are_double, any_counts_then_rest);

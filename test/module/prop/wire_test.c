@@ -159,7 +159,7 @@ TEST(what_gets_through_is_in_order_and_each_once)
             uint32_t lost = 0;
             for (uint32_t k = 0; k <= last - first; k++) { lost += !there[k]; }
             CHECK(rx.missing == lost, "missing %" PRIu32 ", %" PRIu32 " did not come", rx.missing,
-                  lost);
+                lost);
         }
         seen[0] += rx.accepted;
         seen[1] += rx.duplicate;
@@ -200,4 +200,4 @@ TEST(a_good_peer_is_heard_after_a_silence)
 }
 
 TEST_MAIN("prop/wire", there_and_back, noise_is_no_packet,
-          what_gets_through_is_in_order_and_each_once, a_good_peer_is_heard_after_a_silence);
+    what_gets_through_is_in_order_and_each_once, a_good_peer_is_heard_after_a_silence);

@@ -48,7 +48,7 @@ TEST(a_step_a_tick)
         (void)run_drop(&c, &r);
         run_free(&r);
         CHECK(ticks >= 2000 && off == 0, "run %d: %lu ticks, %lld off", i, (unsigned long)ticks,
-              (long long)off);
+            (long long)off);
     }
 }
 
@@ -64,10 +64,10 @@ TEST(another_rate_is_refused)
     CHECK_EQ_I64(exh_scene_custom.setup((struct exh_scene_board){{1, 1000}, 24}), -EXH_E_RATE);
     for (int i = 0; i < 2; i++) {
         said(&s, dir, i ? cli_run : cli_drop,
-             i ? WORDS("run", "--scene", "custom", "--seconds", "1")
-               : WORDS("drop", "--custom", "--rate", "1000"));
+            i ? WORDS("run", "--scene", "custom", "--seconds", "1")
+              : WORDS("drop", "--custom", "--rate", "1000"));
         CHECK(s.status == 2 && strstr(s.err, "this controller was made for 500 Hz"), "%d: %s",
-              s.status, s.err);
+            s.status, s.err);
     }
     said_clean(dir);
 }
@@ -97,7 +97,7 @@ static int adapt(const char *header, const char *options, char *said, size_t cap
     fputs(header, f);
     CHECK_EQ_I64(fclose(f), 0);
     snprintf(command, sizeof command, "awk -v model=m %s -f examples/custom/adapter.awk %s 2>&1",
-             options, path);
+        options, path);
     f = popen(command, "r");
     CHECK(f != NULL, "%s", command);
     n = fread(said, 1, cap - 1, f);
@@ -128,30 +128,30 @@ TEST(what_is_not_understood_is_named)
         {"extern void other_step(void);", "", "m.h: no m_step(): "},
         {"extern void m_step(void);", "", "m.h: no m_initialize()"},
         {"extern void m_initialize(void);\nextern void m_step(int_T tid);", "",
-         "m.h: m_step(int_T tid): not understood"},
+            "m.h: m_step(int_T tid): not understood"},
         {INPUTS ENTRIES, "", "m.h: no m_Y: "},
         {INPUTS "typedef struct { real_T g; } ExtY_m_T;\nextern ExtY_m_T m_Y;\n" ENTRIES, "",
-         "m.h: no outport f, "},
+            "m.h: no outport f, "},
         {"typedef struct { real_T q[5]; } ExtU_m_T;\nextern ExtU_m_T m_U;\n" OUTPUTS ENTRIES, "",
-         "ExtU_m_T: \"real_T q[5]\": only scalars"},
+            "ExtU_m_T: \"real_T q[5]\": only scalars"},
         {INPUTS OUTPUTS STATES ENTRIES, "", "m.h: it remembers, so it was made for one rate"},
         {INPUTS OUTPUTS TIMED ENTRIES, "", "m.h: it remembers, so it was made for one rate"},
         {TYPES REUSABLE("real_T x; DW_m_T dwork;", ""), "",
-         "m.h: it remembers, so it was made for one rate"},
+            "m.h: it remembers, so it was made for one rate"},
         {TYPES REUSABLE("", ", DW_m_T *m_DW"), "",
-         "m.h: it remembers, so it was made for one rate"},
+            "m.h: it remembers, so it was made for one rate"},
         {INPUTS OUTPUTS STATES ENTRIES, "-v rate=1kHz",
-         "m.h: MODEL_RATE=1kHz: give a whole number of Hz"},
+            "m.h: MODEL_RATE=1kHz: give a whole number of Hz"},
         {INPUTS OUTPUTS STATES ENTRIES, "-v rate=0",
-         "m.h: MODEL_RATE=0: give a whole number of Hz"},
+            "m.h: MODEL_RATE=0: give a whole number of Hz"},
         {INPUTS "typedef struct { int16_T f; } ExtY_m_T;\nextern ExtY_m_T m_Y;\n" ENTRIES, "",
-         "m.h: f: int16_T: wanted is real_T"},
+            "m.h: f: int16_T: wanted is real_T"},
         {"typedef struct { int32_T q; } ExtU_m_T;\nextern ExtU_m_T m_U;\n" OUTPUTS ENTRIES, "",
-         "m.h: q: int32_T: wanted is real_T"},
+            "m.h: q: int32_T: wanted is real_T"},
         {INPUTS "typedef struct { real_T f[5]; } ExtY_m_T;\nextern ExtY_m_T m_Y;\n" ENTRIES, "",
-         "ExtY_m_T: \"real_T f[5]\": only scalars"},
+            "ExtY_m_T: \"real_T f[5]\": only scalars"},
         {INPUTS "typedef struct { real_T f; real_T g; } ExtY_m_T;\nextern ExtY_m_T m_Y;\n" ENTRIES,
-         "-v map=g=f", "m.h: g: a second outport for f"},
+            "-v map=g=f", "m.h: g: a second outport for f"},
     };
     static const struct {
         const char *header, *options, *told;
@@ -159,25 +159,25 @@ TEST(what_is_not_understood_is_named)
         {INPUTS OUTPUTS ENTRIES, "", "slot = {\"m\", 0u, 1, "},
         {INPUTS OUTPUTS STATES ENTRIES, "-v rate=250", "slot = {\"m\", 250u, 1, "},
         {"typedef struct { real_T T; } ExtU_m_T;\nextern ExtU_m_T m_U;\n" OUTPUTS STATES ENTRIES,
-         "", "slot = {\"m\", 0u, 0, "},
+            "", "slot = {\"m\", 0u, 0, "},
         {INPUTS "typedef struct { real_T g; /* a \"comment\" ; } */ } ExtY_m_T;\nextern ExtY_m_T "
                 "m_Y;\n" ENTRIES,
-         "-v map=g=f", "m_Y.g"},
+            "-v map=g=f", "m_Y.g"},
         {"#ifdef __cplusplus\nextern \"C\" {\n#endif\n" INPUTS OUTPUTS ENTRIES
          "#ifdef __cplusplus\n}\n#endif\n",
-         "", "m_U.q = (real_T)real_in(0);"},
+            "", "m_U.q = (real_T)real_in(0);"},
         {INPUTS
-         "typedef struct { real_T v[5]; real_T f; } ExtY_m_T;\nextern ExtY_m_T m_Y;\n" ENTRIES,
-         "", "real_out((double)m_Y.f)"},
+            "typedef struct { real_T v[5]; real_T f; } ExtY_m_T;\nextern ExtY_m_T m_Y;\n" ENTRIES,
+            "", "real_out((double)m_Y.f)"},
         {"#define M(a) \\\n  ((a)->b; { \\\n  )\n" INPUTS OUTPUTS ENTRIES, "",
-         "real_out((double)m_Y.f)"},
+            "real_out((double)m_Y.f)"},
         {TYPES REUSABLE("", ""), "", "rtm.errorStatus ? real_none() : real_out((double)its_m_Y.f)"},
     };
     char said[8192];
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         CHECK_EQ_I64(adapt(bad[i].header, bad[i].options, said, sizeof said), 2);
         CHECK(strstr(said, bad[i].told) != NULL && strstr(said, "slot = ") == NULL,
-              "wanted \"%s\", said: %s", bad[i].told, said);
+            "wanted \"%s\", said: %s", bad[i].told, said);
     }
     for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
         CHECK_EQ_I64(adapt(good[i].header, good[i].options, said, sizeof said), 0);
@@ -186,4 +186,4 @@ TEST(what_is_not_understood_is_named)
 }
 
 TEST_MAIN("slot/count", a_step_a_tick, another_rate_is_refused, time_goes_on_without_an_answer,
-          what_is_not_understood_is_named);
+    what_is_not_understood_is_named);

@@ -88,7 +88,7 @@ TEST(good_answers_go_out)
     for (size_t i = 0; i < sizeof what / sizeof what[0]; i++) {
         run_rude(what[i], 0);
         CHECK(seen.faults == 0 && seen.dumb_at < 0 && seen.code_max > 0, "faults %lx",
-              (unsigned long)seen.faults);
+            (unsigned long)seen.faults);
         CHECK_EQ_I64(seen.f_max_N_q20, EXH_Q(5, 1, EXH_Q_FORCE));
     }
 }
@@ -100,10 +100,10 @@ TEST(no_answer_is_a_fault)
     for (size_t i = 0; i < sizeof what / sizeof what[0]; i++) {
         run_rude(what[i], 0);
         CHECK(seen.dumb_at > 0 && seen.dead_at == seen.dumb_at + 1, "%d: dumb at %d, FAULT at %d",
-              what[i], seen.dumb_at, seen.dead_at);
+            what[i], seen.dumb_at, seen.dead_at);
         CHECK_EQ_I64(seen.faults & EXH_FAULT_LOGIC, EXH_FAULT_LOGIC);
         CHECK(seen.code_max == 0 && seen.code_min == 0 && seen.f_max_N_q20 == 0, "%d: codes %d..%d",
-              what[i], seen.code_min, seen.code_max);
+            what[i], seen.code_min, seen.code_max);
     }
 }
 
@@ -113,11 +113,11 @@ TEST(what_is_too_much_is_held_back)
     CHECK(seen.f_max_N_q20 > 0 && seen.f_max_N_q20 <= f_limit(), "%ld", (long)seen.f_max_N_q20);
     CHECK_EQ_I64(seen.limits & EXH_LIMIT_FORCE, EXH_LIMIT_FORCE);
     CHECK(seen.code_min >= 0 && seen.code_max <= 12184 && seen.dumb_at < 0, "codes %d..%d",
-          seen.code_min, seen.code_max);
+        seen.code_min, seen.code_max);
     run_rude(HUGE_PUSH, 0);
     CHECK_EQ_I64(seen.limits & EXH_LIMIT_PULL, EXH_LIMIT_PULL);
     CHECK(seen.code_min == 0 && seen.code_max == 0 && seen.f_max_N_q20 == 0, "codes %d..%d",
-          seen.code_min, seen.code_max);
+        seen.code_min, seen.code_max);
 }
 
 /* By the wall clock: 10^8 additions, one after the other, are more than a tick and the slack on any
@@ -127,8 +127,8 @@ TEST(who_takes_too_long_loses_the_force)
     run_rude(LATE, 1);
     CHECK_EQ_I64(seen.faults & EXH_FAULT_OVERRUN, EXH_FAULT_OVERRUN);
     CHECK(seen.dead_at > 0 && seen.still_out == 0, "FAULT at %d, then %d codes", seen.dead_at,
-          seen.still_out);
+        seen.still_out);
 }
 
 TEST_MAIN("slot/rude", good_answers_go_out, no_answer_is_a_fault, what_is_too_much_is_held_back,
-          who_takes_too_long_loses_the_force);
+    who_takes_too_long_loses_the_force);

@@ -51,7 +51,7 @@ TEST(asks_what_the_law_asks)
         CHECK_EQ_I64(run_drop(&c, &r), 0);
         run_free(&r);
         CHECK(contact > 100 && worst <= 1, "%g Hz: %d ticks in contact, off by %lld LSB",
-              table2_paper[i].rate_Hz, contact, (long long)worst);
+            table2_paper[i].rate_Hz, contact, (long long)worst);
     }
 }
 
@@ -64,15 +64,12 @@ TEST(its_table_is_drops)
         c.scene = &exh_scene_drop;
         drop = table2_measure(&c, NULL, TABLE2_SAME);
         CHECK(ours.done && drop.done && ours.oscillating == drop.oscillating && ours.faults == 0,
-              "%g Hz", ours.rate_Hz);
+            "%g Hz", ours.rate_Hz);
         CHECK(ours.b_Npm >= 0.999 * drop.b_Npm && ours.b_Npm <= 1.001 * drop.b_Npm,
-              "%g Hz: %g and %g N/m", ours.rate_Hz, ours.b_Npm, drop.b_Npm);
+            "%g Hz: %g and %g N/m", ours.rate_Hz, ours.b_Npm, drop.b_Npm);
     }
 }
 
-TEST(its_log_replays)
-{
-    rig_replays(rig(2000, -1, -1));
-}
+TEST(its_log_replays) { rig_replays(rig(2000, -1, -1)); }
 
 TEST_MAIN("slot/wall", asks_what_the_law_asks, its_table_is_drops, its_log_replays);

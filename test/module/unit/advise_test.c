@@ -9,10 +9,7 @@
 #define MM(x) EXH_Q(x, 1000, EXH_Q_POS)
 
 /* um, rounded. */
-static int64_t um(int32_t m_q30)
-{
-    return ((int64_t)m_q30 * 1000000 + (1 << 29)) >> 30;
-}
+static int64_t um(int32_t m_q30) { return ((int64_t)m_q30 * 1000000 + (1 << 29)) >> 30; }
 
 TEST(advice)
 {
@@ -57,8 +54,8 @@ TEST(advice)
 /* Up to 2^31 - 1 each figure is given, the others far from it. */
 TEST(the_greatest_advice)
 {
-    struct exh_precontact_need n = {125, 2000000, INT32_MAX - 2001, 0, 0,
-                                    0,   0}; /* 1 um/s for 2.001 s: 2001 LSB */
+    struct exh_precontact_need n = {
+        125, 2000000, INT32_MAX - 2001, 0, 0, 0, 0}; /* 1 um/s for 2.001 s: 2001 LSB */
     struct exh_precontact_advice a;
     const struct exh_period T = {1, 1000};
     CHECK_EQ_I64(exh_precontact_advise(&a, &n, T, -5), 0);

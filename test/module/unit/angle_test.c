@@ -13,10 +13,8 @@ TEST(quarters_are_exact)
 {
     static const struct {
         int32_t x, sin, cos;
-    } row[] = {{0, 0, ONE_Q30},
-               {1 << 30, ONE_Q30, 0},
-               {INT32_MIN, 0, -ONE_Q30},
-               {-(1 << 30), -ONE_Q30, 0}};
+    } row[] = {{0, 0, ONE_Q30}, {1 << 30, ONE_Q30, 0}, {INT32_MIN, 0, -ONE_Q30},
+        {-(1 << 30), -ONE_Q30, 0}};
     for (size_t i = 0; i < LEN(row); i++) {
         struct exh_sincos y;
         exh_sincos(row[i].x, &y);
@@ -30,18 +28,17 @@ TEST(known_angles)
 {
     static const struct {
         int32_t x, sin, cos;
-    } row[] = {
-        {EXH_DEG(30, 1), 536870912, 929887697},     {EXH_DEG(45, 1), 759250125, 759250125},
-        {EXH_DEG(60, 1), 929887697, 536870912},     {EXH_DEG(-135, 1), -759250125, -759250125},
-        {EXH_DEG(-180, 1), 0, -1073741824},         {EXH_URAD(1000000), 903522589, 580145183},
+    } row[] = {{EXH_DEG(30, 1), 536870912, 929887697}, {EXH_DEG(45, 1), 759250125, 759250125},
+        {EXH_DEG(60, 1), 929887697, 536870912}, {EXH_DEG(-135, 1), -759250125, -759250125},
+        {EXH_DEG(-180, 1), 0, -1073741824}, {EXH_URAD(1000000), 903522589, 580145183},
         {EXH_URAD(-1000000), -903522589, 580145183}};
     for (size_t i = 0; i < LEN(row); i++) {
         struct exh_sincos y;
         exh_sincos(row[i].x, &y);
         CHECK(y.sin_q30 - row[i].sin <= 3 && row[i].sin - y.sin_q30 <= 3, "row %zu: %" PRId32, i,
-              y.sin_q30);
+            y.sin_q30);
         CHECK(y.cos_q30 - row[i].cos <= 3 && row[i].cos - y.cos_q30 <= 3, "row %zu: %" PRId32, i,
-              y.cos_q30);
+            y.cos_q30);
     }
 }
 
@@ -62,10 +59,8 @@ TEST(odd_eighths_change_places)
 {
     static const struct {
         int32_t x, sin, cos;
-    } row[] = {{1 << 29, 759250125, 759250123},
-               {3 * (1 << 29), 759250123, -759250125},
-               {-3 * (1 << 29), -759250125, -759250123},
-               {-(1 << 29), -759250123, 759250125}};
+    } row[] = {{1 << 29, 759250125, 759250123}, {3 * (1 << 29), 759250123, -759250125},
+        {-3 * (1 << 29), -759250125, -759250123}, {-(1 << 29), -759250123, 759250125}};
     for (size_t i = 0; i < LEN(row); i++) {
         struct exh_sincos y;
         exh_sincos(row[i].x, &y);
@@ -74,5 +69,5 @@ TEST(odd_eighths_change_places)
     }
 }
 
-TEST_MAIN("unit/angle", quarters_are_exact, odd_eighths_change_places, known_angles,
-          degrees_and_radians);
+TEST_MAIN(
+    "unit/angle", quarters_are_exact, odd_eighths_change_places, known_angles, degrees_and_radians);

@@ -22,25 +22,25 @@ struct finger {
     struct exh_safety safety;
 };
 
-static const struct exh_quad_par quad_par = {EXH_Q(5, 1000000, EXH_Q_STEP),
-                                             EXH_Q(10, 1, EXH_Q_VEL)};
+static const struct exh_quad_par quad_par = {
+    EXH_Q(5, 1000000, EXH_Q_STEP), EXH_Q(10, 1, EXH_Q_VEL)};
 static const struct exh_velocity_par velocity_par = {2};
-static const struct exh_motion_par watch_par = {EXH_Q(1, 10, EXH_Q_VEL), 2, 100,
-                                                EXH_Q(1, 4, EXH_Q_CUR)};
+static const struct exh_motion_par watch_par = {
+    EXH_Q(1, 10, EXH_Q_VEL), 2, 100, EXH_Q(1, 4, EXH_Q_CUR)};
 static const struct exh_tracking_par track_par = {EXH_Q(1, 4, EXH_Q_CUR), 20};
 static const struct exh_drive_par drive_par = {.f_max_N_q20 = EXH_Q(10, 1, EXH_Q_FORCE),
-                                               .slew_up_Nps = 1000,
-                                               .slew_down_Nps = 1000,
-                                               .i_peak_A_q26 = EXH_Q(33, 10, EXH_Q_CUR),
-                                               .i_cont_A_q26 = EXH_Q(33, 10, EXH_Q_CUR),
-                                               .peak_ms = 2700,
-                                               .dac_zero_raw = 32768,
-                                               .dac_span_raw = 12184,
-                                               .dac_rawpA_q16 = EXH_Q(324900, 176, EXH_Q_DAC),
-                                               .mon_A_q40 = EXH_Q(5164, 10000000, EXH_Q_MON)};
+    .slew_up_Nps = 1000,
+    .slew_down_Nps = 1000,
+    .i_peak_A_q26 = EXH_Q(33, 10, EXH_Q_CUR),
+    .i_cont_A_q26 = EXH_Q(33, 10, EXH_Q_CUR),
+    .peak_ms = 2700,
+    .dac_zero_raw = 32768,
+    .dac_span_raw = 12184,
+    .dac_rawpA_q16 = EXH_Q(324900, 176, EXH_Q_DAC),
+    .mon_A_q40 = EXH_Q(5164, 10000000, EXH_Q_MON)};
 static const struct exh_safety_par safety_par = {1, EXH_Q(1, 1, EXH_Q_FORCE), 50, 500, 15};
-static struct exh_knot knot[2] = {{0, 0, {0, 0}},
-                                  {EXH_Q(22, 1, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 0}}};
+static struct exh_knot knot[2] = {
+    {0, 0, {0, 0}}, {EXH_Q(22, 1, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 0}}};
 static const struct exh_period T = {1, 1000};
 static const struct exh_table no_table = {NULL, 0};
 
@@ -55,29 +55,29 @@ static struct exh_table to_cur(void)
 static struct exh_axis_setup parts_of(struct finger *f, unsigned parts)
 {
     return (struct exh_axis_setup){.quad = &f->quad_cfg,
-                                   .quad_par = &quad_par,
-                                   .velocity = parts & VELOCITY ? &f->velocity_cfg : NULL,
-                                   .velocity_par = &velocity_par,
-                                   .watch = parts & WATCH ? &f->watch_cfg : NULL,
-                                   .watch_par = &watch_par,
-                                   .track = parts & TRACK ? &f->track_cfg : NULL,
-                                   .track_par = &track_par,
-                                   .drive = &f->drive_cfg,
-                                   .drive_par = &drive_par};
+        .quad_par = &quad_par,
+        .velocity = parts & VELOCITY ? &f->velocity_cfg : NULL,
+        .velocity_par = &velocity_par,
+        .watch = parts & WATCH ? &f->watch_cfg : NULL,
+        .watch_par = &watch_par,
+        .track = parts & TRACK ? &f->track_cfg : NULL,
+        .track_par = &track_par,
+        .drive = &f->drive_cfg,
+        .drive_par = &drive_par};
 }
 
 static struct exh_axis axis_of(struct finger *f, unsigned parts)
 {
     return (struct exh_axis){.quad = &f->quad,
-                             .quad_cfg = &f->quad_cfg,
-                             .velocity = parts & VELOCITY ? &f->velocity : NULL,
-                             .velocity_cfg = &f->velocity_cfg,
-                             .watch = parts & WATCH ? &f->watch : NULL,
-                             .watch_cfg = &f->watch_cfg,
-                             .track = parts & TRACK ? &f->track : NULL,
-                             .track_cfg = &f->track_cfg,
-                             .drive = &f->drive,
-                             .drive_cfg = &f->drive_cfg};
+        .quad_cfg = &f->quad_cfg,
+        .velocity = parts & VELOCITY ? &f->velocity : NULL,
+        .velocity_cfg = &f->velocity_cfg,
+        .watch = parts & WATCH ? &f->watch : NULL,
+        .watch_cfg = &f->watch_cfg,
+        .track = parts & TRACK ? &f->track : NULL,
+        .track_cfg = &f->track_cfg,
+        .drive = &f->drive,
+        .drive_cfg = &f->drive_cfg};
 }
 
 /* What the board reads at tick t: the string comes to speed, goes back, is lost; the monitor
@@ -86,8 +86,8 @@ static struct exh_drive_in read_at(uint32_t t, int16_t mon_raw)
 {
     const uint32_t cnt = t < 900 ? t * t / 50 : 16200 - (t - 900) * 14;
     struct exh_drive_in in = {.enc_raw = {7, 7, t == 1900 ? cnt + 0x400000u : cnt, 7, 7},
-                              .mon_raw = {9, 9, t < 1500 ? mon_raw : 0, 9, 9},
-                              .din = 0x1Fu | EXH_DIN_DRIVE0};
+        .mon_raw = {9, 9, t < 1500 ? mon_raw : 0, 9, 9},
+        .din = 0x1Fu | EXH_DIN_DRIVE0};
     return in;
 }
 
@@ -102,16 +102,16 @@ static struct exh_force_ledger law(int32_t pos_m_q30)
 static struct exh_safety_in box_of(uint32_t t, uint32_t raised, uint8_t ready)
 {
     return (struct exh_safety_in){.din = 0x1Fu | EXH_DIN_DRIVE0,
-                                  .raised = raised,
-                                  .missed = 0,
-                                  .command = t == 3 ? EXH_CMD_RUN : EXH_CMD_NONE,
-                                  .fingers = 1,
-                                  .ready = ready};
+        .raised = raised,
+        .missed = 0,
+        .command = t == 3 ? EXH_CMD_RUN : EXH_CMD_NONE,
+        .fingers = 1,
+        .ready = ready};
 }
 
 /* One tick by the modules themselves. */
-static struct exh_drive_out by_hand(struct finger *f, unsigned parts, uint32_t t, int16_t mon_raw,
-                                    struct exh_axis_now *now)
+static struct exh_drive_out by_hand(
+    struct finger *f, unsigned parts, uint32_t t, int16_t mon_raw, struct exh_axis_now *now)
 {
     const struct exh_drive_in in = read_at(t, mon_raw);
     struct exh_current_ledger i;
@@ -134,8 +134,7 @@ static struct exh_drive_out by_hand(struct finger *f, unsigned parts, uint32_t t
         }
     }
     if (f->quad.lost) { now->raised |= EXH_FAULT_ENCODER; }
-    permit = exh_safety_step(
-        &f->safety, &f->safety_cfg,
+    permit = exh_safety_step(&f->safety, &f->safety_cfg,
         box_of(t, now->raised, (uint8_t)(f->quad.lost ? 0x7u : (unsigned)EXH_ARM_ALL)));
     force = law(now->pos_m_q30);
     now->limits |= exh_drive_force_step(&f->drive, &f->drive_cfg, &permit, &force);
@@ -147,8 +146,8 @@ static struct exh_drive_out by_hand(struct finger *f, unsigned parts, uint32_t t
 }
 
 /* The same by the axis. */
-static struct exh_drive_out by_axis(struct finger *f, unsigned parts, uint32_t t, int16_t mon_raw,
-                                    struct exh_axis_now *now)
+static struct exh_drive_out by_axis(
+    struct finger *f, unsigned parts, uint32_t t, int16_t mon_raw, struct exh_axis_now *now)
 {
     const struct exh_drive_in in = read_at(t, mon_raw);
     const struct exh_axis axis = axis_of(f, parts);
@@ -185,10 +184,10 @@ TEST(each_subset_of_parts_is_its_modules_in_order)
             CHECK(now.cnt == want.cnt && now.pos_m_q30 == want.pos_m_q30 &&
                       now.vel_mps_q27 == want.vel_mps_q27 && now.mon_A_q26 == want.mon_A_q26 &&
                       now.raised == want.raised && now.limits == want.limits,
-                  "sensed, parts %u, tick %u", parts, (unsigned)t);
+                "sensed, parts %u, tick %u", parts, (unsigned)t);
             CHECK(out.dac_raw[0] == same.dac_raw[0] && out.enable == same.enable &&
                       out.alive == same.alive,
-                  "out, parts %u, tick %u", parts, (unsigned)t);
+                "out, parts %u, tick %u", parts, (unsigned)t);
             seen |= now.raised;
             code = out.dac_raw[0];
         }
@@ -197,7 +196,7 @@ TEST(each_subset_of_parts_is_its_modules_in_order)
         CHECK(seen & EXH_FAULT_ENCODER, "encoder, parts %u", parts);
         CHECK(((seen & EXH_FAULT_SPEED) != 0) == fast, "speed, parts %u", parts);
         CHECK(((seen & EXH_FAULT_TRACKING) != 0) == ((parts & TRACK) && !fast),
-              "tracking, parts %u", parts);
+            "tracking, parts %u", parts);
     }
 }
 
@@ -249,4 +248,4 @@ TEST(permit_hears_every_finger)
 }
 
 TEST_MAIN("unit/axis", each_subset_of_parts_is_its_modules_in_order, setup_refuses_as_its_parts_do,
-          permit_hears_every_finger);
+    permit_hears_every_finger);

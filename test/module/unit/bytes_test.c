@@ -32,9 +32,8 @@ static int same(const struct all *a, const struct all *b)
 
 TEST(layout_is_little_endian)
 {
-    static const uint8_t want[ALL_B] = {0xA1, 0x02, 0x01, 0xFE, 0xFF, 0x04, 0x03,
-                                        0x02, 0x01, 0xFD, 0xFF, 0xFF, 0xFF, 0x08,
-                                        0x07, 0x06, 0x05, 0x04, 0x03, 0x02, 0x81};
+    static const uint8_t want[ALL_B] = {0xA1, 0x02, 0x01, 0xFE, 0xFF, 0x04, 0x03, 0x02, 0x01, 0xFD,
+        0xFF, 0xFF, 0xFF, 0x08, 0x07, 0x06, 0x05, 0x04, 0x03, 0x02, 0x81};
     struct all v = {0xA1, 0x0102, -2, 0x01020304, -3, INT64_C(0x0102030405060708)};
     uint8_t buf[ALL_B];
     struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
@@ -190,7 +189,7 @@ TEST(crc_check_value_and_definition)
         const uint32_t whole = exh_crc32(0, buf, n);
         CHECK(whole == crc_bitwise(buf, n), "length %zu", n);
         CHECK(exh_crc32(exh_crc32(0, buf, n / 3), buf + n / 3, n - n / 3) == whole,
-              "in two pieces, length %zu", n);
+            "in two pieces, length %zu", n);
     }
 }
 
@@ -210,6 +209,6 @@ TEST(the_largest_buffer)
 }
 
 TEST_MAIN("unit/bytes", layout_is_little_endian, round_trip_of_extremes_and_random,
-          measuring_needs_no_buffer, measuring_leaves_a_buffer, short_buffers_at_every_length,
-          short_reads_are_zeros, a_failed_cursor_stays_failed, crc_check_value_and_definition,
-          counting_does_not_wrap, the_largest_buffer);
+    measuring_needs_no_buffer, measuring_leaves_a_buffer, short_buffers_at_every_length,
+    short_reads_are_zeros, a_failed_cursor_stays_failed, crc_check_value_and_definition,
+    counting_does_not_wrap, the_largest_buffer);

@@ -30,18 +30,18 @@ static void set_up(struct fixture *f)
     memset(f, 0, sizeof *f);
     memcpy(f->point, p, sizeof p);
     f->c = (struct exh_calib){.device_id = 7,
-                              .finger = 1,
-                              .day = 20000,
-                              .valid_days = 30,
-                              .dac_rawpA_q16 = EXH_Q(324900, 176, EXH_Q_DAC),
-                              .dac_zero_raw = 32768,
-                              .mon_A_q40 = EXH_Q(5164, 10000000, EXH_Q_MON),
-                              .mon_zero_raw = -3,
-                              .f0_A_q26 = A(40),
-                              .end_A_q26 = A(6600),
-                              .point = f->point,
-                              .points = POINTS,
-                              .cap = EXH_CALIB_POINTS_MAX};
+        .finger = 1,
+        .day = 20000,
+        .valid_days = 30,
+        .dac_rawpA_q16 = EXH_Q(324900, 176, EXH_Q_DAC),
+        .dac_zero_raw = 32768,
+        .mon_A_q40 = EXH_Q(5164, 10000000, EXH_Q_MON),
+        .mon_zero_raw = -3,
+        .f0_A_q26 = A(40),
+        .end_A_q26 = A(6600),
+        .point = f->point,
+        .points = POINTS,
+        .cap = EXH_CALIB_POINTS_MAX};
 }
 
 TEST(mean_rounds_half_up_once)
@@ -50,15 +50,10 @@ TEST(mean_rounds_half_up_once)
         int32_t v[4];
         unsigned n;
         int32_t want;
-    } row[] = {{{0}, 0, 0},
-               {{5}, 1, 5},
-               {{1, 2}, 2, 2},
-               {{-1, -2}, 2, -1},
-               {{1, 1, 2}, 3, 1},
-               {{-1, -1, -2}, 3, -1},
-               {{INT32_MAX, INT32_MAX, INT32_MAX, INT32_MAX}, 4, INT32_MAX},
-               {{INT32_MIN, INT32_MIN, INT32_MIN, INT32_MIN}, 4, INT32_MIN},
-               {{INT32_MIN, INT32_MAX}, 2, 0}};
+    } row[] = {{{0}, 0, 0}, {{5}, 1, 5}, {{1, 2}, 2, 2}, {{-1, -2}, 2, -1}, {{1, 1, 2}, 3, 1},
+        {{-1, -1, -2}, 3, -1}, {{INT32_MAX, INT32_MAX, INT32_MAX, INT32_MAX}, 4, INT32_MAX},
+        {{INT32_MIN, INT32_MIN, INT32_MIN, INT32_MIN}, 4, INT32_MIN},
+        {{INT32_MIN, INT32_MAX}, 2, 0}};
     for (size_t i = 0; i < LEN(row); i++) {
         struct exh_mean m = {0, 0};
         for (unsigned k = 0; k < row[i].n; k++) { exh_mean_add(&m, row[i].v[k]); }
@@ -156,7 +151,7 @@ TEST(refusals_name_table_and_point)
         err = exh_calib_validate(&f.c, &bad);
         CHECK(err == row[i].err, "row %zu: %d", i, err);
         CHECK(bad.what == row[i].what && bad.at == row[i].at, "row %zu: %s, point %d", i,
-              exh_calib_error_text(bad.what), bad.at);
+            exh_calib_error_text(bad.what), bad.at);
         CHECK_EQ_I64(exh_calib_validate(&f.c, NULL), row[i].err);
         CHECK_EQ_I64(exh_calib_save(&f.c, buf, sizeof buf, &bad), row[i].err);
     }
@@ -193,8 +188,7 @@ TEST(another_device_and_stale_ones_are_refused)
         int err;
         unsigned what;
     } row[] = {
-        {{7, 1, 20000, 0, 0, 0, 0}, 0, 99},
-        {{7, 1, 20030, 0, 0, 0, 0}, 0, 99},
+        {{7, 1, 20000, 0, 0, 0, 0}, 0, 99}, {{7, 1, 20030, 0, 0, 0, 0}, 0, 99},
         {{7, 1, 20031, 0, 0, 0, 0}, -EXH_E_STALE, EXH_CALIB_AGE},
         {{7, 1, 19999, 0, 0, 0, 0}, -EXH_E_STALE, EXH_CALIB_AGE}, /* a clock that was set back */
         {{7, 1, UINT32_MAX, 0, 0, 0, 0}, -EXH_E_STALE, EXH_CALIB_AGE},
@@ -219,7 +213,7 @@ TEST(another_device_and_stale_ones_are_refused)
         here.mon_zero_raw += f.c.mon_zero_raw;
         CHECK(exh_calib_check(&f.c, &here, &bad) == row[i].err, "row %zu", i);
         CHECK(bad.what == row[i].what && bad.at == (row[i].err == 0 ? 99 : 0), "row %zu: %s of %d",
-              i, exh_calib_error_text(bad.what), bad.at);
+            i, exh_calib_error_text(bad.what), bad.at);
         CHECK_EQ_I64(exh_calib_check(&f.c, &here, NULL), row[i].err);
     }
     f.c.valid_days = UINT32_MAX; /* for ever, but not before it was made */
@@ -282,11 +276,11 @@ TEST(any_bit_flipped_any_byte_missing_is_refused)
         buf[i / 8] ^= (uint8_t)(1u << i % 8);
         err = exh_calib_load(&b.c, buf, (size_t)len, &bad);
         buf[i / 8] ^= (uint8_t)(1u << i % 8);
-        CHECK(err == (i < 48    ? -EXH_E_VERSION
-                      : i >= 64 ? -EXH_E_CRC
-                                : err) &&
+        CHECK(err == (i < 48       ? -EXH_E_VERSION
+                         : i >= 64 ? -EXH_E_CRC
+                                   : err) &&
                   err < 0,
-              "bit %" PRId32 ": %d", i, err);
+            "bit %" PRId32 ": %d", i, err);
         CHECK(bad.what == EXH_CALIB_IMAGE && bad.at == 0 && b.c.points == 0, "bit %" PRId32, i);
     }
     for (int k = 0; k < 4 && len >= 4; k++) { /* no CRC is none that fits */
@@ -322,7 +316,7 @@ TEST(a_sound_image_of_a_bad_table_is_refused)
     exh_bytes_u32(&c, &crc);
     CHECK_EQ_I64(exh_calib_load(&b.c, buf, (size_t)len, &bad), -EXH_E_MONOTONE);
     CHECK(bad.what == EXH_CALIB_FORCE_TABLE && bad.at == 2, "%s, point %d",
-          exh_calib_error_text(bad.what), bad.at);
+        exh_calib_error_text(bad.what), bad.at);
     CHECK_EQ_I64(b.c.points, 0);
 }
 
@@ -331,8 +325,8 @@ TEST(every_name_has_its_text)
     for (unsigned i = 0; i <= EXH_CALIB_ERRORS; i++) {
         CHECK(exh_calib_error_text(i)[0] != '\0', "%u", i);
         for (unsigned k = 0; k < i; k++) {
-            CHECK(!check_same_text(exh_calib_error_text(i), exh_calib_error_text(k)), "%u %u", i,
-                  k);
+            CHECK(
+                !check_same_text(exh_calib_error_text(i), exh_calib_error_text(k)), "%u %u", i, k);
         }
     }
 }
@@ -345,15 +339,15 @@ TEST(fit_by_hand)
     CHECK_EQ_I64(exh_calib_fit(&fit, f.point, 3, EXH_CALIB_CURRENT), 0);
     CHECK(fit.kf_NpA_q20 - EXH_Q(33, 10, EXH_Q_FORCE) <= 1 &&
               fit.kf_NpA_q20 - EXH_Q(33, 10, EXH_Q_FORCE) >= -1,
-          "%" PRId32, fit.kf_NpA_q20);
+        "%" PRId32, fit.kf_NpA_q20);
     /* the bent point lies 100 mN below that line */
     CHECK((exh_calib_residual_N_q20(&fit, &f.point[3], EXH_CALIB_CURRENT) + N(100)) / 4 == 0,
-          "%" PRId32, exh_calib_residual_N_q20(&fit, &f.point[3], EXH_CALIB_CURRENT));
+        "%" PRId32, exh_calib_residual_N_q20(&fit, &f.point[3], EXH_CALIB_CURRENT));
     CHECK_EQ_I64(exh_calib_fit(&fit, f.point, 3, EXH_CALIB_MONITOR), 0);
     CHECK((fit.kf_NpA_q20 - EXH_Q(330, 101, EXH_Q_FORCE)) / 2 == 0, "%" PRId32, fit.kf_NpA_q20);
     CHECK_EQ_I64(exh_calib_fit(&fit, f.point, 0, EXH_CALIB_CURRENT), -EXH_E_RANGE);
-    CHECK_EQ_I64(exh_calib_fit(&fit, f.point, EXH_CALIB_POINTS_MAX + 1, EXH_CALIB_CURRENT),
-                 -EXH_E_RANGE);
+    CHECK_EQ_I64(
+        exh_calib_fit(&fit, f.point, EXH_CALIB_POINTS_MAX + 1, EXH_CALIB_CURRENT), -EXH_E_RANGE);
     f.point[0].cur_A_q26 = 0;
     CHECK_EQ_I64(exh_calib_fit(&fit, f.point, 3, EXH_CALIB_CURRENT), -EXH_E_RANGE);
     f.point[0] = (struct exh_calib_point){N(100000), 1, 1, 0}; /* 10^9 N/A and more */
@@ -369,18 +363,15 @@ TEST(tables_that_cannot_go_on_are_refused)
         int32_t end_A_q26;
         uint8_t what;
     } row[] = {
-        {{N(1000), A(5000), A(5000), 0},
-         A(5000) + 1,
-         EXH_CALIB_FORCE_TABLE},                                        /* by less than an LSB */
+        {{N(1000), A(5000), A(5000), 0}, A(5000) + 1,
+            EXH_CALIB_FORCE_TABLE},                                     /* by less than an LSB */
         {{N(100000), A(50), A(50), 0}, A(6600), EXH_CALIB_FORCE_TABLE}, /* to 13 kN */
-        {{N(10000), A(1000), A(5), 0},
-         A(3000),
-         EXH_CALIB_MONITOR_TABLE}, /* to 4 kN by the monitor */
+        {{N(10000), A(1000), A(5), 0}, A(3000),
+            EXH_CALIB_MONITOR_TABLE}, /* to 4 kN by the monitor */
         {{N(10000), A(1000), A(10), 0}, A(3000), EXH_CALIB_MONITOR_TABLE}, /* from -2 kN to 2 kN */
         {{N(10000), A(1000), A(10000), 0}, A(6600), EXH_CALIB_ERRORS}, /* from -15.6 A to 15.6 A */
-        {{N(10000), A(100), A(10000), 0},
-         A(6600),
-         EXH_CALIB_MONITOR_TABLE}, /* from -16.5 A to 16.5 A */
+        {{N(10000), A(100), A(10000), 0}, A(6600),
+            EXH_CALIB_MONITOR_TABLE}, /* from -16.5 A to 16.5 A */
     };
     for (size_t i = 0; i < LEN(row); i++) {
         struct exh_calib_error bad = {99, 99};
@@ -395,7 +386,7 @@ TEST(tables_that_cannot_go_on_are_refused)
             CHECK(err == 0, "row %zu: %d", i, err);
         } else {
             CHECK(err == -EXH_E_RANGE && bad.what == row[i].what && bad.at == 0, "row %zu: %d, %s",
-                  i, err, exh_calib_error_text(bad.what));
+                i, err, exh_calib_error_text(bad.what));
         }
     }
 }
@@ -427,7 +418,7 @@ TEST(an_image_needs_room)
         bad.what = 99;
         CHECK(exh_calib_save(&f.c, image, (size_t)cap, &bad) == -EXH_E_SHORT &&
                   bad.what == EXH_CALIB_IMAGE,
-              "%" PRId32 " bytes", cap);
+            "%" PRId32 " bytes", cap);
     }
     CHECK_EQ_I64(exh_calib_save(&f.c, NULL, 0, NULL), -EXH_E_SHORT); /* not looked at */
 }
@@ -437,14 +428,14 @@ TEST(values_at_the_ends_of_their_ranges)
 {
     static const struct {
         int32_t lo, hi;
-    } row[] = {{1, INT32_MAX},  {0, 65535},   {1, INT32_MAX},
-               {-32768, 32767}, {0, A(6600)}, {0, A(6600)}};
+    } row[] = {
+        {1, INT32_MAX}, {0, 65535}, {1, INT32_MAX}, {-32768, 32767}, {0, A(6600)}, {0, A(6600)}};
     for (unsigned i = 0; i < LEN(row); i++) {
         for (unsigned end = 0; end < 4; end++) {
             struct exh_calib_error bad = {99, 99};
             struct fixture f;
             int32_t *const of[] = {&f.c.dac_rawpA_q16, &f.c.dac_zero_raw, &f.c.mon_A_q40,
-                                   &f.c.mon_zero_raw,  &f.c.f0_A_q26,     &f.c.end_A_q26};
+                &f.c.mon_zero_raw, &f.c.f0_A_q26, &f.c.end_A_q26};
             const int beyond = end >= 2;
             set_up(&f);
             if (end == 3 && row[i].hi == INT32_MAX) { continue; }
@@ -453,9 +444,9 @@ TEST(values_at_the_ends_of_their_ranges)
                      : end == 2 ? row[i].lo - 1
                                 : row[i].hi + 1;
             CHECK(exh_calib_validate(&f.c, &bad) == (beyond ? -EXH_E_RANGE : 0), "value %u, %u", i,
-                  end);
+                end);
             CHECK(!beyond || (bad.what == EXH_CALIB_VALUE && bad.at == 0), "value %u, %u: %d of %d",
-                  i, end, bad.what, bad.at);
+                i, end, bad.what, bad.at);
         }
     }
 }
@@ -479,18 +470,14 @@ TEST(the_ends_of_a_ratio)
     static const struct {
         int32_t force, cur, friction;
         int err;
-    } row[] = {{1, 640, 0, 0},
-               {1, 641, 0, -EXH_E_RANGE},
-               {2047, 64, 0, 0},
-               {2048, 64, 0, -EXH_E_RANGE},
-               {0, 0, 0, -EXH_E_RANGE},
-               {EXH_Q(100, 1, EXH_Q_FORCE), A(1000), A(6600), 0},
-               {EXH_Q(100, 1, EXH_Q_FORCE) + 1, A(1000), 0, -EXH_E_RANGE},
-               {N(1000), A(6600), 0, 0},
-               {N(1000), A(6600) + 1, 0, -EXH_E_RANGE}};
+    } row[] = {{1, 640, 0, 0}, {1, 641, 0, -EXH_E_RANGE}, {2047, 64, 0, 0},
+        {2048, 64, 0, -EXH_E_RANGE}, {0, 0, 0, -EXH_E_RANGE},
+        {EXH_Q(100, 1, EXH_Q_FORCE), A(1000), A(6600), 0},
+        {EXH_Q(100, 1, EXH_Q_FORCE) + 1, A(1000), 0, -EXH_E_RANGE}, {N(1000), A(6600), 0, 0},
+        {N(1000), A(6600) + 1, 0, -EXH_E_RANGE}};
     for (size_t i = 0; i < LEN(row); i++) {
-        const struct exh_calib_point p[2] = {{row[i].force, row[i].cur, 1, row[i].friction},
-                                             {N(10000), A(1000), A(1000), 0}};
+        const struct exh_calib_point p[2] = {
+            {row[i].force, row[i].cur, 1, row[i].friction}, {N(10000), A(1000), A(1000), 0}};
         struct exh_calib_fit fit = {{12345, 1}, 6789};
         CHECK(exh_calib_fit(&fit, p, 2, EXH_CALIB_CURRENT) == row[i].err, "row %zu", i);
         if (row[i].err == 0) { continue; }
@@ -538,19 +525,13 @@ TEST(no_table_ends_early)
         int err;
         uint8_t what;
     } row[] = {
-        {{{N(500), A(2500), A(2500), 0}, {N(1000), A(5000), A(5000), 0}},
-         A(5000) + 1,
-         -EXH_E_RANGE,
-         EXH_CALIB_FORCE_TABLE},
-        {{{N(5000), A(500), A(3), 0}, {N(10000), A(1000), A(5), 0}},
-         A(3000),
-         -EXH_E_RANGE,
-         EXH_CALIB_MONITOR_TABLE},
+        {{{N(500), A(2500), A(2500), 0}, {N(1000), A(5000), A(5000), 0}}, A(5000) + 1, -EXH_E_RANGE,
+            EXH_CALIB_FORCE_TABLE},
+        {{{N(5000), A(500), A(3), 0}, {N(10000), A(1000), A(5), 0}}, A(3000), -EXH_E_RANGE,
+            EXH_CALIB_MONITOR_TABLE},
         {{{94988559, 13330173, 39990519, 0}, {0, 0, 0, 0}}, 301366068, 0, 99}, /* to 2^31 - 1 */
-        {{{94988559, 13330173, 39990519, 0}, {0, 0, 0, 0}},
-         301366069,
-         -EXH_E_RANGE,
-         EXH_CALIB_FORCE_TABLE},
+        {{{94988559, 13330173, 39990519, 0}, {0, 0, 0, 0}}, 301366069, -EXH_E_RANGE,
+            EXH_CALIB_FORCE_TABLE},
     };
     for (size_t i = 0; i < LEN(row); i++) {
         struct exh_calib_error bad = {99, 99};
@@ -561,7 +542,7 @@ TEST(no_table_ends_early)
         f.c.points = row[i].point[1].force_N_q20 > 0 ? 2 : 1;
         f.c.end_A_q26 = row[i].end_A_q26;
         CHECK(exh_calib_validate(&f.c, &bad) == row[i].err && bad.what == row[i].what,
-              "row %zu: %d", i, bad.what);
+            "row %zu: %d", i, bad.what);
         CHECK(row[i].err == 0 || bad.at == f.c.points - 1, "row %zu: point %d", i, bad.at);
     }
 }
@@ -581,17 +562,15 @@ TEST(the_least_way_on)
         f.c.points = 1;
         f.c.end_A_q26 = p.cur_A_q26 + row[i].more;
         CHECK(exh_calib_validate(&f.c, NULL) == row[i].err, "row %zu: %d", i,
-              exh_calib_validate(&f.c, NULL));
+            exh_calib_validate(&f.c, NULL));
     }
 }
 
 TEST_MAIN("unit/calibrate", mean_rounds_half_up_once, mean_stops_before_it_overflows,
-          tables_meet_every_point_and_go_straight_on, tables_need_room,
-          refusals_name_table_and_point, values_out_of_range_are_refused,
-          another_device_and_stale_ones_are_refused, image_round_trip,
-          any_bit_flipped_any_byte_missing_is_refused, a_sound_image_of_a_bad_table_is_refused,
-          every_name_has_its_text, fit_by_hand, tables_that_cannot_go_on_are_refused,
-          points_that_are_none_are_not_fitted, an_image_needs_room,
-          values_at_the_ends_of_their_ranges, the_least_point_is_fitted, the_ends_of_a_ratio,
-          more_points_than_there_may_be, most_and_least_points, no_table_ends_early,
-          the_least_way_on);
+    tables_meet_every_point_and_go_straight_on, tables_need_room, refusals_name_table_and_point,
+    values_out_of_range_are_refused, another_device_and_stale_ones_are_refused, image_round_trip,
+    any_bit_flipped_any_byte_missing_is_refused, a_sound_image_of_a_bad_table_is_refused,
+    every_name_has_its_text, fit_by_hand, tables_that_cannot_go_on_are_refused,
+    points_that_are_none_are_not_fitted, an_image_needs_room, values_at_the_ends_of_their_ranges,
+    the_least_point_is_fitted, the_ends_of_a_ratio, more_points_than_there_may_be,
+    most_and_least_points, no_table_ends_early, the_least_way_on);

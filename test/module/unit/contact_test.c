@@ -59,10 +59,9 @@ TEST(contact_boundary_and_hysteresis)
     static const struct {
         int32_t past;
         int touching;
-    } row[] = {{-600, 0},         {-500, 0}, {-1, 0},   {0, 1},    {1, 1},
-               {-1, 1},           {-499, 1}, {-500, 1}, {-501, 0}, {-500, 0},
-               {-1, 0},           {1000, 1}, {-501, 0}, {0, 1},    {INT32_MIN / 2, 0},
-               {INT32_MAX / 2, 1}};
+    } row[] = {{-600, 0}, {-500, 0}, {-1, 0}, {0, 1}, {1, 1}, {-1, 1}, {-499, 1}, {-500, 1},
+        {-501, 0}, {-500, 0}, {-1, 0}, {1000, 1}, {-501, 0}, {0, 1}, {INT32_MIN / 2, 0},
+        {INT32_MAX / 2, 1}};
     static const int32_t lims[] = {0, 123456789, -123456789};
     for (size_t l = 0; l < LEN(lims); l++) {
         struct exh_contact s = {0};
@@ -190,26 +189,26 @@ TEST(state_round_trip)
 TEST(nothing_to_touch)
 {
     static const int32_t at[] = {INT32_MIN, -1, 0, 1, INT32_MAX};
-    const struct exh_contact_par par = {EXH_Q(1000, 1, EXH_Q_K), EXH_Q(60, 1, EXH_Q_B),
-                                        EXH_Q(1, 10, EXH_Q_FORCE), 1000, 1000};
+    const struct exh_contact_par par = {
+        EXH_Q(1000, 1, EXH_Q_K), EXH_Q(60, 1, EXH_Q_B), EXH_Q(1, 10, EXH_Q_FORCE), 1000, 1000};
     for (size_t i = 0; i < sizeof at / sizeof at[0]; i++) {
         for (int was = 0; was < 4; was++) {
             struct exh_contact s = {at[i], (uint8_t)(was & 1), (uint8_t)(was >> 1), 1};
             struct exh_contact same = s;
             struct exh_force_ledger f, want;
             exh_contact_step_free(&s, &par, at[i], &f);
-            (void)exh_contact_step(&same, &par, (struct exh_contact_in){at[i], 7, INT32_MAX},
-                                   &want);
+            (void)exh_contact_step(
+                &same, &par, (struct exh_contact_in){at[i], 7, INT32_MAX}, &want);
             CHECK(s.touching == 0 && f.spring_N_q20 == 0 && f.damper_N_q20 == 0, "at %" PRId32,
-                  at[i]);
+                at[i]);
             CHECK(f.pullback_N_q20 == want.pullback_N_q20 && s.inward == same.inward &&
                       s.turn_m_q30 == same.turn_m_q30,
-                  "F0 as ever at %" PRId32, at[i]);
+                "F0 as ever at %" PRId32, at[i]);
         }
     }
 }
 
 TEST_MAIN("unit/contact", truth_table, the_rest_of_the_ledger_is_zeroed,
-          contact_boundary_and_hysteresis, no_hysteresis_by_default, far_ends_do_not_wrap,
-          pullback_follows_the_direction, at_most_one_switch_per_reversal_under_noise,
-          state_round_trip, nothing_to_touch);
+    contact_boundary_and_hysteresis, no_hysteresis_by_default, far_ends_do_not_wrap,
+    pullback_follows_the_direction, at_most_one_switch_per_reversal_under_noise, state_round_trip,
+    nothing_to_touch);

@@ -27,10 +27,7 @@ static uint32_t any(void)
     return seed >> 8 ^ seed << 13;
 }
 
-static int32_t any_i32(void)
-{
-    return (int32_t)(any() - UINT32_C(0x80000000));
-}
+static int32_t any_i32(void) { return (int32_t)(any() - UINT32_C(0x80000000)); }
 
 /* One bit of it in one round, every byte in the next. */
 static void damage(void *memory, size_t size_B, uint32_t round)
@@ -80,8 +77,8 @@ TEST(velocity)
 
 TEST(encoder_and_quantizer)
 {
-    static const struct exh_quad_par par = {EXH_Q(6632, 100000000, EXH_Q_STEP),
-                                            EXH_Q(10, 1, EXH_Q_VEL)};
+    static const struct exh_quad_par par = {
+        EXH_Q(6632, 100000000, EXH_Q_STEP), EXH_Q(10, 1, EXH_Q_VEL)};
     static const struct exh_quantizer_par step = {11, EXH_Q(20, 1, 16)};
     for (uint32_t r = 0; r < ROUNDS; r++) {
         struct exh_quad_cfg cfg;
@@ -124,17 +121,9 @@ TEST(filter)
 
 /* --- drive --- */
 
-static const struct exh_drive_par drive_par = {EXH_Q(40, 1, EXH_Q_FORCE),
-                                               200000,
-                                               200000,
-                                               EXH_Q(66, 10, EXH_Q_CUR),
-                                               EXH_Q(33, 10, EXH_Q_CUR),
-                                               2700,
-                                               32768,
-                                               12184,
-                                               EXH_Q(324900, 176, EXH_Q_DAC),
-                                               0,
-                                               EXH_Q(5164, 10000000, EXH_Q_MON)};
+static const struct exh_drive_par drive_par = {EXH_Q(40, 1, EXH_Q_FORCE), 200000, 200000,
+    EXH_Q(66, 10, EXH_Q_CUR), EXH_Q(33, 10, EXH_Q_CUR), 2700, 32768, 12184,
+    EXH_Q(324900, 176, EXH_Q_DAC), 0, EXH_Q(5164, 10000000, EXH_Q_MON)};
 
 /* As many as a table's n can say: what stands behind the two that are. */
 static struct exh_knot knot[256];
@@ -183,7 +172,7 @@ TEST(drive)
             exh_gate_step(&box, &cfg, 1, &i, &limits, &out);
             /* Its own limit, of the parameters, holds all the same. */
             CHECK(out.dac_raw[0] >= 32768 - 12184 && out.dac_raw[0] <= 32768 + 12184, "%u",
-                  (unsigned)out.dac_raw[0]);
+                (unsigned)out.dac_raw[0]);
         }
     }
 }
@@ -258,4 +247,4 @@ TEST(planes)
 }
 
 TEST_MAIN("unit/damaged", velocity, encoder_and_quantizer, filter, drive, a_table_of_no_knots_ends,
-          glove, planes);
+    glove, planes);

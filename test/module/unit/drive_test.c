@@ -91,7 +91,8 @@ TEST(setup_refuses_tables_that_pull_at_no_force)
         {{1, 0, {0, 1}}, {9, 9, {0, 1}}},   /* begins above no force */
         {{0, 1, {0, 1}}, {9, 9, {0, 1}}},   /* a current at no force */
         {{-9, -9, {0, 1}}, {9, 5, {0, 1}}}, /* a push at no force */
-        {{-9, -9, {0, 1}}, {-1, -1, {0, 1}}}, {{-9, -9, {0, 1}}, {0, 0, {0, 1}}}, /* ends there */
+        {{-9, -9, {0, 1}}, {-1, -1, {0, 1}}},
+        {{-9, -9, {0, 1}}, {0, 0, {0, 1}}}, /* ends there */
         {{-9, -9, {0, 1}}, {-1, 0, {0, 1}}},
     };
     const struct exh_table none = {NULL, 0};
@@ -103,23 +104,18 @@ TEST(setup_refuses_tables_that_pull_at_no_force)
         const struct exh_table t = {k, 2}, one = {k, 1};
         CHECK_EQ_I64(exh_table_setup(k, 2), 0);
         CHECK(exh_drive_setup(&cfg, &par, (struct exh_period){1, 2000}, t, none) == -EXH_E_RANGE,
-              "table %zu", i);
-        CHECK_EQ_I64(exh_drive_setup(&cfg, &par, (struct exh_period){1, 2000}, one, none),
-                     -EXH_E_RANGE);
-        CHECK_EQ_I64(exh_drive_setup(&cfg, &par, (struct exh_period){1, 2000}, none, none),
-                     -EXH_E_RANGE);
+            "table %zu", i);
+        CHECK_EQ_I64(
+            exh_drive_setup(&cfg, &par, (struct exh_period){1, 2000}, one, none), -EXH_E_RANGE);
+        CHECK_EQ_I64(
+            exh_drive_setup(&cfg, &par, (struct exh_period){1, 2000}, none, none), -EXH_E_RANGE);
     }
 }
 
 TEST(setup_takes_every_documented_period)
 {
-    static const struct exh_period T[] = {{1, 20000},
-                                          {1, 1},
-                                          {65, 1193182},
-                                          {1, 90},
-                                          {4294967, 4294967295},
-                                          {214748, 4294967295},
-                                          {4294967295, 4294967295}};
+    static const struct exh_period T[] = {{1, 20000}, {1, 1}, {65, 1193182}, {1, 90},
+        {4294967, 4294967295}, {214748, 4294967295}, {4294967295, 4294967295}};
     for (size_t i = 0; i < LEN(T); i++) {
         struct axis a;
         axis_par(&a.par);
@@ -145,14 +141,9 @@ TEST(force_limit_and_pull_only)
         int64_t asked_N;
         int64_t want_N;
         uint32_t limits;
-    } row[] = {{0, 0, 0},
-               {39, 39, 0},
-               {40, 40, 0},
-               {41, 40, EXH_LIMIT_FORCE},
-               {1000000, 40, EXH_LIMIT_FORCE},
-               {-1, 0, EXH_LIMIT_PULL},
-               {-1000000, 0, EXH_LIMIT_PULL},
-               {12, 12, 0}};
+    } row[] = {{0, 0, 0}, {39, 39, 0}, {40, 40, 0}, {41, 40, EXH_LIMIT_FORCE},
+        {1000000, 40, EXH_LIMIT_FORCE}, {-1, 0, EXH_LIMIT_PULL}, {-1000000, 0, EXH_LIMIT_PULL},
+        {12, 12, 0}};
     struct axis a;
     axis_par(&a.par);
     CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
@@ -169,8 +160,8 @@ TEST(force_limit_and_pull_only)
 /* The table ends at 22 N: a force beyond it can't be had, and is not claimed. */
 TEST(no_force_beyond_the_table)
 {
-    struct exh_knot k[2] = {{0, 0, {0, 1}},
-                            {EXH_Q(22, 1, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 1}}};
+    struct exh_knot k[2] = {
+        {0, 0, {0, 1}}, {EXH_Q(22, 1, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 1}}};
     const struct exh_table t = {k, 2}, none = {NULL, 0};
     struct exh_force_ledger f = {30 * (int64_t)NEWTON, 0, 0, 0, 0, 0, 0, 0};
     struct axis a;
@@ -182,14 +173,14 @@ TEST(no_force_beyond_the_table)
     CHECK_EQ_I64(f.force_N_q20, 22 * NEWTON);
     CHECK_EQ_I64(f.clamp_N_q20, -8 * NEWTON);
     CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, exh_drive_monitor_A_q26(&a.cfg, 1000)),
-                 0); /* no monitor, no force of it */
+        0); /* no monitor, no force of it */
 }
 
 /* Slopes not filled in, as in a table of one's own in ROM: 0 A up to its very end. */
 TEST(setup_refuses_a_table_that_was_not_set)
 {
-    const struct exh_knot k[2] = {{0, 0, {0, 1}},
-                                  {EXH_Q(22, 1, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 1}}};
+    const struct exh_knot k[2] = {
+        {0, 0, {0, 1}}, {EXH_Q(22, 1, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR), {0, 1}}};
     struct exh_knot good[2] = {k[0], k[1]};
     const struct exh_table raw = {k, 2}, set = {good, 2}, none = {NULL, 0};
     const struct exh_period T = {1, 2000};
@@ -218,11 +209,11 @@ TEST(not_running_is_no_force)
     for (int sign = -1; sign <= 1; sign++) {
         f = (struct exh_force_ledger){sign * (INT64_C(1) << 40), 0, 0, 0, 7, 7, 7, 7};
         CHECK_EQ_I64(exh_drive_force_step(&a.s, &a.cfg, &closed, &f),
-                     sign > 0   ? EXH_LIMIT_GATE | EXH_LIMIT_FORCE
-                     : sign < 0 ? EXH_LIMIT_PULL
-                                : 0);
-        CHECK(f.force_N_q20 == 0 && f.slew_N_q20 == 0 && f.clamp_N_q20 == -f.spring_N_q20,
-              "ledger");
+            sign > 0   ? EXH_LIMIT_GATE | EXH_LIMIT_FORCE
+            : sign < 0 ? EXH_LIMIT_PULL
+                       : 0);
+        CHECK(
+            f.force_N_q20 == 0 && f.slew_N_q20 == 0 && f.clamp_N_q20 == -f.spring_N_q20, "ledger");
         CHECK_EQ_I64(a.s.force_N_q20, 0);
     }
     CHECK_EQ_I64(force(&a, 5 * NEWTON, &f), EXH_LIMIT_SLEW);
@@ -254,7 +245,7 @@ TEST(release_is_bounded_and_ends)
             CHECK_EQ_I64(exh_drive_force_step(&a.s, &a.cfg, &p, &f), EXH_LIMIT_RELEASE);
             CHECK(last - f.force_N_q20 >= 0 && (int64_t)(last - f.force_N_q20) * ticks <=
                                                    ((int64_t)from + ticks) * (int64_t)p.ticks,
-                  "%" PRId32 " of %" PRId32 " in %" PRId32, last - f.force_N_q20, from, ticks);
+                "%" PRId32 " of %" PRId32 " in %" PRId32, last - f.force_N_q20, from, ticks);
             CHECK((int64_t)f.force_N_q20 * ticks <= (int64_t)from * (ticks - n), "late");
             CHECK(f.force_N_q20 == asked + f.clamp_N_q20 + f.slew_N_q20 + f.release_N_q20, "sum");
             CHECK(f.clamp_N_q20 == 0 && f.slew_N_q20 == 0, "a term of its own");
@@ -288,11 +279,8 @@ TEST(ramp_limits_the_force)
         int64_t asked_N;
         int64_t want_N;
         uint32_t limits;
-    } row[] = {{19, 19, 0},
-               {20, 20, 0},
-               {21, 20, EXH_LIMIT_RAMP},
-               {41, 20, EXH_LIMIT_RAMP | EXH_LIMIT_FORCE},
-               {-1, 0, EXH_LIMIT_PULL}};
+    } row[] = {{19, 19, 0}, {20, 20, 0}, {21, 20, EXH_LIMIT_RAMP},
+        {41, 20, EXH_LIMIT_RAMP | EXH_LIMIT_FORCE}, {-1, 0, EXH_LIMIT_PULL}};
     const struct exh_permit half = {EXH_PERMIT_OPEN, 1 << 29, 0, 1, {0, 1}};
     struct axis a;
     axis_par(&a.par);
@@ -319,7 +307,7 @@ TEST(small_force_is_told)
         /* Passivity takes it away for a while: the wall is there. */
         f = (struct exh_force_ledger){NEWTON, 0, off_N_q20[i], -2 * NEWTON, 0, 0, 0, 0};
         CHECK_EQ_I64(exh_drive_force_step(&a.s, &a.cfg, &p, &f),
-                     i < 4 ? EXH_LIMIT_PULL | (i > 2 ? EXH_LIMIT_FORCE : 0u) : EXH_LIMIT_FORCE);
+            i < 4 ? EXH_LIMIT_PULL | (i > 2 ? EXH_LIMIT_FORCE : 0u) : EXH_LIMIT_FORCE);
         CHECK_EQ_I64(f.force_N_q20, 0);
     }
 }
@@ -471,7 +459,7 @@ TEST(monitor_by_hand)
     CHECK_EQ_I64(exh_drive_monitor_A_q26(&a.cfg, 100), 0);
     CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, exh_drive_monitor_A_q26(&a.cfg, 100)), 0);
     CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, exh_drive_monitor_A_q26(&a.cfg, INT16_MIN)),
-                 0); /* the string only pulls */
+        0); /* the string only pulls */
     CHECK_EQ_I64(exh_drive_monitor_N_q20(&a.cfg, exh_drive_monitor_A_q26(&a.cfg, 1100)), 5414846);
 }
 
@@ -479,10 +467,8 @@ TEST(monitor_by_hand)
 
 TEST(frames_round_trip)
 {
-    struct exh_drive_in in = {{1, 0xFFFFFF, 0x80000000u, 7, 9},
-                              {INT16_MIN, -1, 0, 1, INT16_MAX},
-                              -12345,
-                              EXH_DIN_ESTOP | (EXH_DIN_DRIVE0 << 4)};
+    struct exh_drive_in in = {{1, 0xFFFFFF, 0x80000000u, 7, 9}, {INT16_MIN, -1, 0, 1, INT16_MAX},
+        -12345, EXH_DIN_ESTOP | (EXH_DIN_DRIVE0 << 4)};
     struct exh_drive_out out = {{0, 65535, 32768, 1, 2}, 0x1F, 200};
     for (unsigned n = 0; n <= EXH_FINGERS; n++) {
         struct exh_drive_in in2 = {{0}, {0}, 0, 0};
@@ -517,12 +503,12 @@ TEST(state_round_trip)
     c = exh_bytes_reader(buf, c.at);
     exh_drive_serialize(&c, &back);
     CHECK(back.force_N_q20 == s.force_N_q20 && back.fall_N_q20 == 9 && back.i2t_q32 == s.i2t_q32,
-          "state differs");
+        "state differs");
     memset(buf, 0xFF, sizeof buf); /* damaged: no push, and as hot as can be */
     c = exh_bytes_reader(buf, sizeof buf);
     exh_drive_serialize(&c, &back);
     CHECK(back.force_N_q20 == 0 && back.fall_N_q20 == 0 && back.i2t_q32 == INT64_MAX / 2,
-          "damaged state");
+        "damaged state");
 }
 
 /* Whatever the bytes: no pull but what current limits allow, and none rises while it is released.
@@ -570,8 +556,8 @@ TEST(the_greatest_budget)
     par.i_cont_A_q26 = 0;
     par.peak_ms = 2700;
     CHECK_EQ_I64(exh_drive_setup(&cfg, &par, (struct exh_period){1, 20000},
-                                 (struct exh_table){k, 2}, (struct exh_table){NULL, 0}),
-                 0);
+                     (struct exh_table){k, 2}, (struct exh_table){NULL, 0}),
+        0);
     CHECK_EQ_I64(cfg.i2t_budget_q32, peak_q16 * peak_q16 * 54001);
     CHECK(cfg.i2t_budget_q32 < INT64_MAX / 2, "room for a tick more");
 }
@@ -589,18 +575,18 @@ TEST(no_peak_no_budget)
     memset(&cfg, 0x55, sizeof cfg);
     par.i_peak_A_q26 = par.i_cont_A_q26;
     CHECK_EQ_I64(exh_drive_setup(&cfg, &par, (struct exh_period){1, 1000}, (struct exh_table){k, 2},
-                                 (struct exh_table){NULL, 0}),
-                 0);
+                     (struct exh_table){NULL, 0}),
+        0);
     CHECK(cfg.i2t_budget_q32 == 0 && cfg.i2t_shift == 0 && cfg.i2t_fold.mant == 0 &&
               cfg.i2t_fold.shift == 1,
-          "a budget");
+        "a budget");
 }
 
 TEST_MAIN("unit/drive", setup_rejections, setup_refuses_tables_that_pull_at_no_force,
-          no_force_beyond_the_table, setup_refuses_a_table_that_was_not_set,
-          not_running_is_no_force, setup_takes_every_documented_period, force_limit_and_pull_only,
-          release_is_bounded_and_ends, release_begins_anew, ramp_limits_the_force,
-          small_force_is_told, slew_both_ways, hostile_bytes_come_into_range,
-          slowest_slew_still_moves, peak_limit, i2t_holds_folds_back_and_recovers,
-          continuous_current_is_for_ever, bursts_add_up, peak_equal_to_continuous, monitor_by_hand,
-          frames_round_trip, state_round_trip, no_peak_no_budget, the_greatest_budget);
+    no_force_beyond_the_table, setup_refuses_a_table_that_was_not_set, not_running_is_no_force,
+    setup_takes_every_documented_period, force_limit_and_pull_only, release_is_bounded_and_ends,
+    release_begins_anew, ramp_limits_the_force, small_force_is_told, slew_both_ways,
+    hostile_bytes_come_into_range, slowest_slew_still_moves, peak_limit,
+    i2t_holds_folds_back_and_recovers, continuous_current_is_for_ever, bursts_add_up,
+    peak_equal_to_continuous, monitor_by_hand, frames_round_trip, state_round_trip,
+    no_peak_no_budget, the_greatest_budget);

@@ -54,4 +54,4 @@ TEST(assert_looks_once_and_passes)
 }
 
 TEST_MAIN("unit/error", every_code_has_its_own_line, assert_looks_once_and_passes,
-          unknown_codes_are_never_null);
+    unknown_codes_are_never_null);

@@ -13,7 +13,7 @@ static const struct exh_filter_cfg *tuned(int32_t order, int32_t fc_Hz_q16, uint
     static struct exh_filter_cfg cfg;
     const struct exh_filter_par par = {order, fc_Hz_q16};
     CHECK(exh_filter_setup(&cfg, &par, (struct exh_period){1, rate_Hz}) == 0,
-          "order %" PRId32 " fc %" PRId32 " rate %" PRIu32, order, fc_Hz_q16, rate_Hz);
+        "order %" PRId32 " fc %" PRId32 " rate %" PRIu32, order, fc_Hz_q16, rate_Hz);
     return &cfg;
 }
 
@@ -29,10 +29,24 @@ static const struct {
     uint32_t rate_Hz;
     int32_t fc_Hz_q16;
 } tune[] = {
-    {1000, 5 << 16},   {2000, 5 << 16},   {20000, 5 << 16},  {2000, 50 << 16}, {20000, 50 << 16},
-    {1000, 20 << 16},  {1000, 100 << 16}, {1000, 10 << 16},  {1000, 1 << 16},  {10000, 1 << 16},
-    {90, 20 << 16},    {100, 49 << 16},   {200, 50 << 16},   {1, 32000},       {1, 655},
-    {1000, 106 << 16}, {1000, 105 << 16}, {2000, 999 << 16},
+    {1000, 5 << 16},
+    {2000, 5 << 16},
+    {20000, 5 << 16},
+    {2000, 50 << 16},
+    {20000, 50 << 16},
+    {1000, 20 << 16},
+    {1000, 100 << 16},
+    {1000, 10 << 16},
+    {1000, 1 << 16},
+    {10000, 1 << 16},
+    {90, 20 << 16},
+    {100, 49 << 16},
+    {200, 50 << 16},
+    {1, 32000},
+    {1, 655},
+    {1000, 106 << 16},
+    {1000, 105 << 16},
+    {2000, 999 << 16},
 };
 
 TEST(refusals_by_name)
@@ -110,8 +124,8 @@ TEST(coefficients_by_hand)
         CHECK_EQ_I64(exh_filter_setup(&c, &row[i].par, row[i].T), 0);
         CHECK(c.a == w->a && c.b == w->b && c.c == w->c && c.d == w->d && c.shift == w->shift &&
                   c.kind == w->kind,
-              "row %zu: %" PRId32 " %" PRId32 " %" PRId32 " %" PRId32 " %d %d", i, c.a, c.b, c.c,
-              c.d, c.shift, c.kind);
+            "row %zu: %" PRId32 " %" PRId32 " %" PRId32 " %" PRId32 " %d %d", i, c.a, c.b, c.c, c.d,
+            c.shift, c.kind);
     }
 }
 
@@ -125,9 +139,8 @@ static int32_t settling(size_t i)
 
 TEST(a_constant_input_comes_out_exactly)
 {
-    static const int32_t level[] = {795000000,  -795000000, 1,           -1,
-                                    0,          21474836,   -21474836,   INT32_MAX,
-                                    2104533974, INT32_MIN,  10923 << 16, 0};
+    static const int32_t level[] = {795000000, -795000000, 1, -1, 0, 21474836, -21474836, INT32_MAX,
+        2104533974, INT32_MIN, 10923 << 16, 0};
     for (size_t i = 0; i < LEN(tune); i++) {
         for (int32_t order = 1; order <= 2; order++) {
             const struct exh_filter_cfg *cfg = tuned(order, tune[i].fc_Hz_q16, tune[i].rate_Hz);
@@ -138,7 +151,7 @@ TEST(a_constant_input_comes_out_exactly)
                 for (int32_t t = 0; t < 100; t++) {
                     const int32_t y = one(&s, cfg, level[k]);
                     CHECK(y == level[k], "order %" PRId32 " tune %zu level %" PRId32 ": %" PRId32,
-                          order, i, level[k], y);
+                        order, i, level[k], y);
                 }
             }
         }
@@ -211,8 +224,8 @@ TEST(full_scale_does_not_latch)
 TEST(half_the_power_at_the_cut_off)
 {
     /* sin of k/24 of a turn, q30 */
-    static const int32_t sine[7] = {0,         277904834,  536870912, 759250125,
-                                    929887697, 1037154959, 1073741824};
+    static const int32_t sine[7] = {
+        0, 277904834, 536870912, 759250125, 929887697, 1037154959, 1073741824};
     static const uint32_t step[] = {1, 2, 3, 6};
     for (size_t i = 0; i < 2 * LEN(step); i++) {
         const uint32_t by = step[i / 2];
@@ -237,7 +250,7 @@ TEST(half_the_power_at_the_cut_off)
         power = in_phase * in_phase + across * across;
         half = INT64_C(1) << 55;
         CHECK(power - half < half / 10000000 && half - power < half / 10000000,
-              "%" PRIu32 " samples a period: %" PRId64 " of %" PRId64, 24 / by, power, half);
+            "%" PRIu32 " samples a period: %" PRId64 " of %" PRId64, 24 / by, power, half);
     }
 }
 
@@ -336,7 +349,7 @@ TEST(state_round_trip)
     c = exh_bytes_reader(buf, c.at);
     exh_filter_serialize(&c, &back);
     CHECK(exh_bytes_ok(&c) && back.pos == s.pos && back.vel == s.vel && back.wide == s.wide,
-          "state differs");
+        "state differs");
 }
 
 /* Whatever is restored: no undefined step, and the input again in the end. */
@@ -353,8 +366,8 @@ TEST(recovers_from_any_state)
                 s.wide = k >> 2 & 1;
                 s.vel = k < 4 ? (k & 2 ? INT64_MIN : INT64_MAX) : check_i64();
                 for (int32_t t = 2 * settling(i); t > 0; t--) { y = one(&s, cfg, x); }
-                CHECK(y == x, "order %" PRId32 " tune %zu: %" PRId32 " at %" PRId32, order, i, y,
-                      x);
+                CHECK(
+                    y == x, "order %" PRId32 " tune %zu: %" PRId32 " at %" PRId32, order, i, y, x);
             }
         }
     }
@@ -374,7 +387,7 @@ TEST(a_high_state_swings_to_32_times)
         (void)one(&end, cfg, 0);
         (void)one(&beyond, cfg, 0);
         CHECK(near.wide && far.pos != near.pos && far.pos - near.pos != end.pos - near.pos,
-              "order %d", (int)order);
+            "order %d", (int)order);
         CHECK(beyond.pos == end.pos && beyond.vel == end.vel, "order %d: beyond", (int)order);
     }
 }
@@ -403,9 +416,14 @@ TEST(limits_to_the_bit)
         int32_t y;
         int clips, anew;
     } row[] = {
-        {full - 1, INT32_MAX, 0, 0}, {full, INT32_MAX, 1, 0},      {last, INT32_MAX, 1, 0},
-        {last + 1, INT32_MAX, 1, 1}, {-full, INT32_MIN, 0, 0},     {-full - 1, INT32_MIN, 1, 0},
-        {-last, INT32_MIN, 1, 0},    {-last - 1, INT32_MIN, 1, 1},
+        {full - 1, INT32_MAX, 0, 0},
+        {full, INT32_MAX, 1, 0},
+        {last, INT32_MAX, 1, 0},
+        {last + 1, INT32_MAX, 1, 1},
+        {-full, INT32_MIN, 0, 0},
+        {-full - 1, INT32_MIN, 1, 0},
+        {-last, INT32_MIN, 1, 0},
+        {-last - 1, INT32_MIN, 1, 1},
     };
     for (size_t i = 0; i < LEN(row); i++) {
         const uint32_t before = check_saturations;
@@ -440,20 +458,20 @@ TEST(the_lowest_cut_off)
         int32_t fc_Hz_q16;
         uint32_t rate_Hz;
         int err;
-    } row[] = {{1, 1, 0},  {0, 1, -EXH_E_RANGE},  {-1, 1, -EXH_E_RANGE},
-               {1, 32, 0}, {1, 64, -EXH_E_RANGE}, {2, 64, 0}};
+    } row[] = {{1, 1, 0}, {0, 1, -EXH_E_RANGE}, {-1, 1, -EXH_E_RANGE}, {1, 32, 0},
+        {1, 64, -EXH_E_RANGE}, {2, 64, 0}};
     for (size_t i = 0; i < LEN(row); i++) {
         const struct exh_filter_par par = {1, row[i].fc_Hz_q16};
         struct exh_filter_cfg cfg;
         CHECK(exh_filter_setup(&cfg, &par, (struct exh_period){1, row[i].rate_Hz}) == row[i].err,
-              "row %zu", i);
+            "row %zu", i);
     }
 }
 
 TEST_MAIN("unit/filter", refusals_by_name, coefficients_by_hand, half_the_power_at_the_cut_off,
-          a_constant_input_comes_out_exactly, reset_is_settled, a_step_rises_once_and_overshoots,
-          full_scale_does_not_latch, channels_do_not_touch, retune_keeps_what_is_settled,
-          retune_keeps_every_settled_state, a_change_of_order_drops_the_speed,
-          a_state_beyond_any_input_starts_anew, state_round_trip, recovers_from_any_state,
-          a_high_state_swings_to_32_times, the_last_state_that_goes_on, limits_to_the_bit,
-          retune_to_low_limits_both_states, the_lowest_cut_off);
+    a_constant_input_comes_out_exactly, reset_is_settled, a_step_rises_once_and_overshoots,
+    full_scale_does_not_latch, channels_do_not_touch, retune_keeps_what_is_settled,
+    retune_keeps_every_settled_state, a_change_of_order_drops_the_speed,
+    a_state_beyond_any_input_starts_anew, state_round_trip, recovers_from_any_state,
+    a_high_state_swings_to_32_times, the_last_state_that_goes_on, limits_to_the_bit,
+    retune_to_low_limits_both_states, the_lowest_cut_off);

@@ -146,7 +146,7 @@ TEST(gain_set_at_its_ends)
         const int err = exh_gain_set(&g, row[i].num, row[i].den);
         CHECK(err == row[i].err, "row %zu: error %d, want %d", i, err, row[i].err);
         CHECK(err != 0 || row[i].num == 0 || (g.mant >= 1 << 30 && g.shift <= 62),
-              "row %zu: mantissa %" PRId32 " shift %d", i, g.mant, g.shift);
+            "row %zu: mantissa %" PRId32 " shift %d", i, g.mant, g.shift);
         CHECK(err != 0 || row[i].num != 0 || (g.mant == 0 && g.shift >= 1), "row %zu", i);
     }
 }
@@ -159,8 +159,8 @@ TEST(gain_set_at_its_upper_end)
     CHECK_EQ_I64(exh_gain_mul(g, 3), 3 * (INT64_C(1) << 30));
     CHECK(exh_gain_set(&g, INT32_MAX, 1) == 0, "2^31 - 1");
     CHECK_EQ_I64(exh_gain_mul(g, -2), -2 * (int64_t)INT32_MAX);
-    CHECK(exh_gain_set(&g, (UINT64_C(1) << 32) - 1, 2) == -EXH_E_RANGE,
-          "2^31 - 1/2 rounds to 2^31");
+    CHECK(
+        exh_gain_set(&g, (UINT64_C(1) << 32) - 1, 2) == -EXH_E_RANGE, "2^31 - 1/2 rounds to 2^31");
 }
 
 TEST(gain_mul_is_exact_for_powers_of_two)
@@ -188,7 +188,7 @@ TEST(udiv64_by_hand)
         {1000000007, 10, 100000000, 7},
         {UINT64_MAX, UINT64_MAX - 1, 1, 1},
         {UINT64_C(0xFEDCBA9876543210), UINT64_C(0xC000000000000001), 1,
-         UINT64_C(0x3EDCBA987654320F)},
+            UINT64_C(0x3EDCBA987654320F)},
         /* Twice the remainder needs bit 64 and is less than the divisor without it. */
         {UINT64_C(0xFFFFFFFFFFFFFFFE), UINT64_MAX, 0, UINT64_C(0xFFFFFFFFFFFFFFFE)},
     };
@@ -210,7 +210,6 @@ TEST(high_words_by_hand)
 }
 
 TEST_MAIN("unit/fix", sat32_keeps_the_sign_and_is_audited, clamp_is_a_limit_not_an_overflow,
-          shr_round_is_half_up, mul_shr_is_half_up, mul64_q31_at_its_ends,
-          from_u32_is_twos_complement, counters_wrap_both_ways, gain_set_at_its_ends,
-          gain_set_at_its_upper_end, gain_mul_is_exact_for_powers_of_two, udiv64_by_hand,
-          high_words_by_hand);
+    shr_round_is_half_up, mul_shr_is_half_up, mul64_q31_at_its_ends, from_u32_is_twos_complement,
+    counters_wrap_both_ways, gain_set_at_its_ends, gain_set_at_its_upper_end,
+    gain_mul_is_exact_for_powers_of_two, udiv64_by_hand, high_words_by_hand);

@@ -62,18 +62,8 @@ TEST(pieces_and_ends)
 TEST(setup_refuses)
 {
     struct exh_gains_par bad[12];
-    static const int want[] = {-EXH_E_RANGE,
-                               -EXH_E_RANGE,
-                               -EXH_E_RANGE,
-                               -EXH_E_RANGE,
-                               -EXH_E_RANGE,
-                               -EXH_E_RANGE,
-                               -EXH_E_RANGE,
-                               -EXH_E_RANGE,
-                               -EXH_E_MONOTONE,
-                               -EXH_E_MONOTONE,
-                               0,
-                               0};
+    static const int want[] = {-EXH_E_RANGE, -EXH_E_RANGE, -EXH_E_RANGE, -EXH_E_RANGE, -EXH_E_RANGE,
+        -EXH_E_RANGE, -EXH_E_RANGE, -EXH_E_RANGE, -EXH_E_MONOTONE, -EXH_E_MONOTONE, 0, 0};
     for (size_t i = 0; i < LEN(bad); i++) { bad[i] = rule; }
     bad[0].knots = 1;
     bad[1].knots = 9;
@@ -134,8 +124,8 @@ TEST(setup_asks_for_its_rate)
 
 /* --- staging --- */
 
-static const struct exh_signal_group group[] = {{exh_gains_rows, EXH_GAINS_ROWS, 1},
-                                                {exh_contact_rows, EXH_CONTACT_ROWS, 2}};
+static const struct exh_signal_group group[] = {
+    {exh_gains_rows, EXH_GAINS_ROWS, 1}, {exh_contact_rows, EXH_CONTACT_ROWS, 2}};
 static const struct exh_signal_table table = {group, 2};
 
 struct values {
@@ -360,8 +350,8 @@ TEST(a_damaged_pair_becomes_none)
 /* A table may have b before k, and either first of all. */
 TEST(rows_may_stand_in_any_order)
 {
-    const struct exh_signal_group turned[] = {{&exh_contact_rows[1], 1, 1},
-                                              {&exh_contact_rows[0], 1, 1}};
+    const struct exh_signal_group turned[] = {
+        {&exh_contact_rows[1], 1, 1}, {&exh_contact_rows[0], 1, 1}};
     const struct exh_signal_table t = {turned, 2};
     int32_t now[2], want[2];
     exh_params_setup(&params, &t, now, want);
@@ -375,8 +365,8 @@ TEST(rows_may_stand_in_any_order)
 }
 
 TEST_MAIN("gains", pieces_and_ends, setup_refuses, setup_refuses_two_halves,
-          setup_asks_for_its_rate, staging_refuses_what_is_outside,
-          a_whole_image_is_asked_and_dropped, through_a_valley, a_damaged_goal_is_not_gone_to,
-          a_goal_that_became_none_is_waited_for, no_wall_is_a_jump_away, rows_are_of_the_struct,
-          half_a_pair_is_none, without_the_lead_both_go_by_themselves, a_damaged_pair_becomes_none,
-          rows_may_stand_in_any_order);
+    setup_asks_for_its_rate, staging_refuses_what_is_outside, a_whole_image_is_asked_and_dropped,
+    through_a_valley, a_damaged_goal_is_not_gone_to, a_goal_that_became_none_is_waited_for,
+    no_wall_is_a_jump_away, rows_are_of_the_struct, half_a_pair_is_none,
+    without_the_lead_both_go_by_themselves, a_damaged_pair_becomes_none,
+    rows_may_stand_in_any_order);

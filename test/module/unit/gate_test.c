@@ -28,8 +28,8 @@ static void box_setup(struct box *b)
         const struct exh_table t = {b->knot, 2};
         int32_t *field = &b->par[k].f_max_N_q20;
         for (size_t r = 0; r < EXH_DRIVE_ROWS; r++) { field[r] = exh_drive_rows[r].dflt; }
-        CHECK_EQ_I64(exh_drive_setup(&b->cfg[k], &b->par[k], (struct exh_period){1, 2000}, t, none),
-                     0);
+        CHECK_EQ_I64(
+            exh_drive_setup(&b->cfg[k], &b->par[k], (struct exh_period){1, 2000}, t, none), 0);
         b->i[k].table_A_q26 = EXH_Q(3, 1, EXH_Q_CUR) * ((int)k % 3 - 1);
     }
 }
@@ -58,7 +58,7 @@ TEST(gate_in_every_state)
             CHECK_EQ_I64(b.out.dac_raw[k], open ? 32768 + codes : 32768);
             CHECK_EQ_I64(b.i[k].gate_A_q26, open ? 0 : -b.i[k].table_A_q26);
             CHECK((b.limits[k] & EXH_LIMIT_GATE) != 0 || open || b.i[k].table_A_q26 == 0,
-                  "the gate acts unreported, finger %u", k);
+                "the gate acts unreported, finger %u", k);
             CHECK_EQ_I64(b.i[k].coded_A_q26, b.i[k].table_A_q26 + b.i[k].peak_A_q26 +
                                                  b.i[k].i2t_A_q26 + b.i[k].gate_A_q26 +
                                                  b.i[k].dac_A_q26);
@@ -125,9 +125,9 @@ TEST(span_is_never_exceeded)
         b.i[0].table_A_q26 = amp[a] * (1 << 26);
         exh_gate_step(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
         CHECK(b.out.dac_raw[0] >= 32000 - 12184 && b.out.dac_raw[0] <= 32000 + 12184,
-              "%" PRId64 " A: code %d", amp[a], b.out.dac_raw[0]);
+            "%" PRId64 " A: code %d", amp[a], b.out.dac_raw[0]);
         CHECK(((b.limits[0] & EXH_LIMIT_DAC) != 0) == (amp[a] > 6 || amp[a] < -6), "%" PRId64 " A",
-              amp[a]);
+            amp[a]);
     }
 }
 
@@ -158,7 +158,7 @@ TEST(fingers_not_in_use_get_zero)
         CHECK_EQ_I64(b.out.enable, (1u << n) - 1u);
         for (unsigned k = 0; k < EXH_FINGERS; k++) {
             CHECK((b.out.dac_raw[k] == 32768) == (k >= n), "n %u finger %u: %d", n, k,
-                  b.out.dac_raw[k]);
+                b.out.dac_raw[k]);
         }
     }
 }
@@ -176,5 +176,5 @@ TEST(alive_changes_at_every_tick_in_every_state)
 }
 
 TEST_MAIN("unit/gate", gate_in_every_state, a_shut_gate_makes_a_frame_that_drives_nothing,
-          a_release_never_rises, span_is_never_exceeded, converter_end_is_reported,
-          fingers_not_in_use_get_zero, alive_changes_at_every_tick_in_every_state);
+    a_release_never_rises, span_is_never_exceeded, converter_end_is_reported,
+    fingers_not_in_use_get_zero, alive_changes_at_every_tick_in_every_state);

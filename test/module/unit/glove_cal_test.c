@@ -62,7 +62,7 @@ TEST(valid_names_the_culprit)
         err = exh_glove_cal_validate(&cal, &bad);
         CHECK(err == (row[i].what == EXH_GLOVE_ERRORS ? 0 : -EXH_E_RANGE), "row %zu: %d", i, err);
         CHECK(err == 0 || (bad.what == row[i].what && bad.at == row[i].sensor), "row %zu: %s of %d",
-              i, exh_glove_error_text(bad.what), bad.at);
+            i, exh_glove_error_text(bad.what), bad.at);
         CHECK(exh_glove_cal_validate(&cal, NULL) == err, "row %zu", i);
     }
 }
@@ -77,8 +77,8 @@ TEST(present_and_absent)
     cal.present = ALL | 1u << 22;
     CHECK_EQ_I64(exh_glove_cal_validate(&cal, &bad), -EXH_E_RANGE);
     CHECK_EQ_I64(bad.what, EXH_GLOVE_PRESENT);
-    cal = (struct exh_glove_cal){7,  3,        20000,
-                                 30, 1u << 22, {{0}}}; /* that bit alone, of no sensor that is */
+    cal = (struct exh_glove_cal){
+        7, 3, 20000, 30, 1u << 22, {{0}}}; /* that bit alone, of no sensor that is */
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
         cal.sensor[i].of[0] = cal.sensor[i].of[1] = EXH_GLOVE_NONE;
     }
@@ -124,7 +124,7 @@ TEST(check_tells_whose_and_when)
     for (size_t i = 0; i < LEN(row); i++) {
         const int err = exh_glove_cal_check(&cal, row[i].user, row[i].glove, row[i].day, &bad);
         CHECK(err == row[i].err && (err == 0 || (bad.what == row[i].what && bad.at == 0)),
-              "row %zu: %d, %s", i, err, exh_glove_error_text(bad.what));
+            "row %zu: %d, %s", i, err, exh_glove_error_text(bad.what));
     }
     cal.valid_days = UINT32_MAX; /* for ever, but not before */
     CHECK_EQ_I64(exh_glove_cal_check(&cal, 7, 3, UINT32_MAX, &bad), 0);
@@ -138,11 +138,11 @@ TEST(every_word_is_there)
 {
     for (unsigned i = 0; i <= EXH_GLOVE_ERRORS; i++) {
         CHECK(check_same_text(exh_glove_error_text(i), "unknown") == (i == EXH_GLOVE_ERRORS), "%u",
-              i);
+            i);
     }
     for (unsigned i = 0; i <= EXH_GLOVE_SENSORS; i++) {
         CHECK(check_same_text(exh_glove_sensor_text(i), "unknown") == (i == EXH_GLOVE_SENSORS),
-              "%u", i);
+            "%u", i);
     }
     CHECK(check_same_text(exh_glove_sensor_text(EXH_GLOVE_LITTLE_RING_AB), "PinkieRingAb"), "18");
 }
@@ -163,7 +163,7 @@ TEST(image_round_trip)
     CHECK(back.valid_days == 30 && back.sensor[10].cross_q30[1] == 87654321 &&
               back.sensor[21].low_raw == cal.sensor[21].low_raw &&
               back.sensor[20].gain_turnpraw_q38 == cal.sensor[20].gain_turnpraw_q38,
-          "values");
+        "values");
 }
 
 TEST(every_flipped_bit_is_seen)
@@ -192,7 +192,7 @@ TEST(every_cut_is_seen)
     CHECK(exh_glove_cal_save(&cal, image, sizeof image, &bad) > 0, "save");
     for (size_t len = 0; len < sizeof image; len++) {
         CHECK(exh_glove_cal_load(&cal, image, len, &bad) == -EXH_E_SHORT && cal.present == 0,
-              "%zu bytes", len);
+            "%zu bytes", len);
         CHECK_EQ_I64(bad.what, EXH_GLOVE_IMAGE);
     }
     cal = sound();
@@ -222,7 +222,7 @@ TEST(an_image_of_nonsense_is_refused)
     exh_bytes_u32(&b, &crc);
     CHECK_EQ_I64(exh_glove_cal_load(&cal, image, sizeof image, &bad), -EXH_E_RANGE);
     CHECK(bad.what == EXH_GLOVE_GAIN && bad.at == 4 && cal.present == 0, "%s",
-          exh_glove_error_text(bad.what));
+        exh_glove_error_text(bad.what));
 }
 
 /* --- the glove that the library has by itself --- */
@@ -231,13 +231,12 @@ TEST(an_image_of_nonsense_is_refused)
  * angles there. */
 TEST(the_default_goes_through_its_ends)
 {
-    static const int16_t of[EXH_GLOVE_SENSORS][4] = {
-        {335, 697, -60, 60}, {311, 736, -30, 30}, {461, 909, 0, 90}, {791, 350, 0, 50},
-        {429, 654, 0, 90},   {181, 654, 0, 90},   {185, 469, 0, 90}, {417, 630, 0, 90},
-        {268, 591, 0, 90},   {0, 323, 0, 90},     {468, 390, 0, 50}, {323, 571, 0, 90},
-        {240, 618, 0, 90},   {177, 390, 0, 90},   {610, 283, 0, 50}, {354, 591, 0, 90},
-        {154, 602, 0, 90},   {319, 579, 0, 90},   {516, 209, 0, 50}, {357, 650, 0, 40},
-        {154, 622, -30, 40}, {925, 236, -30, 10}};
+    static const int16_t of[EXH_GLOVE_SENSORS][4] = {{335, 697, -60, 60}, {311, 736, -30, 30},
+        {461, 909, 0, 90}, {791, 350, 0, 50}, {429, 654, 0, 90}, {181, 654, 0, 90},
+        {185, 469, 0, 90}, {417, 630, 0, 90}, {268, 591, 0, 90}, {0, 323, 0, 90}, {468, 390, 0, 50},
+        {323, 571, 0, 90}, {240, 618, 0, 90}, {177, 390, 0, 90}, {610, 283, 0, 50},
+        {354, 591, 0, 90}, {154, 602, 0, 90}, {319, 579, 0, 90}, {516, 209, 0, 50},
+        {357, 650, 0, 40}, {154, 622, -30, 40}, {925, 236, -30, 10}};
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
         const struct exh_glove_sensor *s = &exh_glove_cal_default.sensor[i];
         int16_t end[2];
@@ -260,13 +259,13 @@ TEST(the_default_goes_through_its_ends)
         CHECK(s->high_raw == (end[0] < end[1] ? end[1] : end[0]), "sensor %u: high", i);
         CHECK(s->cross_q30[0] == 0 && s->cross_q30[1] == 0 && s->of[0] == EXH_GLOVE_NONE &&
                   s->of[1] == EXH_GLOVE_NONE,
-              "sensor %u: cross", i);
+            "sensor %u: cross", i);
     }
     CHECK(exh_glove_cal_default.user_id == 0 && exh_glove_cal_default.glove_id == 0 &&
               exh_glove_cal_default.day == 0,
-          "somebody's");
+        "somebody's");
     CHECK(exh_glove_cal_default.valid_days == UINT32_MAX && exh_glove_cal_default.present == ALL,
-          "for ever, and all");
+        "for ever, and all");
 }
 
 /* A bit beyond the last sensor does not make it one. */
@@ -285,6 +284,6 @@ TEST(no_cross_term_of_what_is_no_sensor)
 }
 
 TEST_MAIN("unit/glove_cal", valid_names_the_culprit, present_and_absent, check_tells_whose_and_when,
-          every_word_is_there, image_round_trip, every_flipped_bit_is_seen, every_cut_is_seen,
-          an_image_of_nonsense_is_refused, the_default_goes_through_its_ends,
-          no_cross_term_of_what_is_no_sensor);
+    every_word_is_there, image_round_trip, every_flipped_bit_is_seen, every_cut_is_seen,
+    an_image_of_nonsense_is_refused, the_default_goes_through_its_ends,
+    no_cross_term_of_what_is_no_sensor);

@@ -32,8 +32,8 @@ static int32_t code_q16(unsigned i, int32_t own_deg)
  * sensor 10 alone and with 4. 10 is bent by a quarter of 4 and, backward, by half of 7. */
 static void set_up(struct fixture *f)
 {
-    static const int8_t knuckle[POSES][3] = {{0, 0, 0},  {80, 80, 80}, {80, 0, 0}, {0, 80, 0},
-                                             {0, 0, 40}, {40, 0, 40},  {40, 80, 0}}; /* 4, 7, 10 */
+    static const int8_t knuckle[POSES][3] = {{0, 0, 0}, {80, 80, 80}, {80, 0, 0}, {0, 80, 0},
+        {0, 0, 40}, {40, 0, 40}, {40, 80, 0}}; /* 4, 7, 10 */
     memset(f, 0, sizeof *f);
     f->cal = (struct exh_glove_cal){7, 3, 20000, 30, ALL, {{0}}};
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
@@ -59,38 +59,35 @@ static int fit(struct fixture *f)
     return exh_glove_cal_fit(&f->cal, f->fit, f->pose, f->n, &exh_glove_fit_default, &f->bad);
 }
 
-static int near(int64_t a, int64_t b, int64_t off)
-{
-    return a - b <= off && b - a <= off;
-}
+static int near(int64_t a, int64_t b, int64_t off) { return a - b <= off && b - a <= off; }
 
 TEST(poses_give_gain_zero_and_cross_terms)
 {
     struct fixture f;
     set_up(&f);
     CHECK(fit(&f) == 0, "%s of %s", exh_glove_error_text(f.bad.what),
-          exh_glove_sensor_text(f.bad.at));
+        exh_glove_sensor_text(f.bad.at));
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
         const struct exh_glove_sensor *s = &f.cal.sensor[i];
         const int64_t per_deg = (i & 1 ? -1 : 1) * (50 + 5 * (int64_t)i);
         const int64_t gain = (INT64_C(1) << 38) / (360 * per_deg);
         const int32_t end = code_q16(i, 80) >> 16, flat = code_q16(i, 0) >> 16;
         CHECK(near(s->gain_turnpraw_q38, gain, 40), "%u: gain %" PRId32 ", %" PRId64, i,
-              s->gain_turnpraw_q38, gain);
+            s->gain_turnpraw_q38, gain);
         CHECK(near(s->zero_raw_q15, (1000 * (int64_t)i - 9000) * 32768, 300), "%u: zero %" PRId32,
-              i, s->zero_raw_q15);
+            i, s->zero_raw_q15);
         CHECK(i == 10 || (s->low_raw == (flat < end ? flat : end) &&
-                          s->high_raw == (flat < end ? end : flat)),
-              "%u: %d .. %d", i, s->low_raw, s->high_raw);
+                             s->high_raw == (flat < end ? end : flat)),
+            "%u: %d .. %d", i, s->low_raw, s->high_raw);
         CHECK(f.fit[i].what == EXH_GLOVE_ERRORS &&
                   f.fit[i].poses == (i == 4 || i == 7 || i == 10 ? 7 : 2) &&
                   near(f.fit[i].residual_turn_q32, 0, 4096),
-              "%u: %d poses, %" PRId32, i, f.fit[i].poses, f.fit[i].residual_turn_q32);
+            "%u: %d poses, %" PRId32, i, f.fit[i].poses, f.fit[i].residual_turn_q32);
     }
     CHECK(near(f.cal.sensor[10].cross_q30[0], -(1 << 28), 2000), "%" PRId32,
-          f.cal.sensor[10].cross_q30[0]);
+        f.cal.sensor[10].cross_q30[0]);
     CHECK(near(f.cal.sensor[10].cross_q30[1], 1 << 29, 2000), "%" PRId32,
-          f.cal.sensor[10].cross_q30[1]);
+        f.cal.sensor[10].cross_q30[1]);
     CHECK_EQ_I64(f.cal.sensor[10].low_raw, (1000 - 40 * 100));
     CHECK_EQ_I64(f.cal.sensor[10].high_raw, (1000 + 60 * 100));
 }
@@ -107,7 +104,7 @@ TEST(residual_is_the_worst_pose)
     CHECK_EQ_I64(f.fit[5].poses, 3);
     CHECK_EQ_I64(f.fit[5].pose, 2);
     CHECK(near(f.fit[5].residual_turn_q32, DEG(2), DEG(1) / 50), "%" PRId32,
-          f.fit[5].residual_turn_q32);
+        f.fit[5].residual_turn_q32);
     f.pose[2].mean_raw_q16[5] = code_q16(5, 28);
     CHECK_EQ_I64(fit(&f), -EXH_E_RANGE);
 }
@@ -125,7 +122,7 @@ TEST(limits_of_poses_are_allowed)
         f.pose[p].mean_raw_q16[6] = code_q16(6, p == 2 ? 37 : 0);
     }
     CHECK(fit(&f) == 0, "%s of %s", exh_glove_error_text(f.bad.what),
-          exh_glove_sensor_text(f.bad.at));
+        exh_glove_sensor_text(f.bad.at));
     CHECK_EQ_I64(f.fit[6].pose, 2);
 }
 
@@ -208,7 +205,7 @@ TEST(poses_are_refused_by_name)
         case 12: /* knuckles that are never 4 degrees apart: as good as together */
             for (unsigned p = 0; p < POSES; p++) {
                 knuckles(&f, p, (int32_t)(p % 3) * 40, (int32_t)(p % 3) * 40 + (p & 1 ? 3 : 0),
-                         p & 4 ? 30 : 0);
+                    p & 4 ? 30 : 0);
             }
             what = EXH_GLOVE_POSES;
             at = 10;
@@ -274,12 +271,12 @@ TEST(poses_are_refused_by_name)
             break;
         }
         CHECK(exh_glove_cal_fit(&f.cal, f.fit, f.pose, f.n, &fit_par, &f.bad) == -EXH_E_RANGE,
-              "case %d", k);
+            "case %d", k);
         CHECK(f.bad.what == what && f.bad.at == at, "case %d: %s of %s", k,
-              exh_glove_error_text(f.bad.what), exh_glove_sensor_text(f.bad.at));
+            exh_glove_error_text(f.bad.what), exh_glove_sensor_text(f.bad.at));
         CHECK(f.cal.present == 0, "case %d", k);
         CHECK(k == 10 || k == 11 || (f.fit[at].what == what && f.fit[20].what == EXH_GLOVE_ERRORS),
-              "case %d", k);
+            "case %d", k);
         CHECK(k != 9 || f.fit[10].what == EXH_GLOVE_CROSS, "case %d", k);
         CHECK(k != 1 || f.fit[5].pose == 1, "case %d", k);
     }
@@ -312,7 +309,7 @@ TEST(a_line_as_good_as_level_is_refused)
     }
     CHECK_EQ_I64(fit(&f), -EXH_E_RANGE);
     CHECK(f.bad.what == EXH_GLOVE_GAIN && f.bad.at == 5, "%s of %d",
-          exh_glove_error_text(f.bad.what), f.bad.at);
+        exh_glove_error_text(f.bad.what), f.bad.at);
 }
 
 /* Nothing of an old calibration gets into a new one. */
@@ -335,10 +332,10 @@ TEST(a_fit_begins_anew)
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
         const struct exh_glove_sensor *a = &clean.cal.sensor[i], *b = &old.cal.sensor[i];
         CHECK(a->gain_turnpraw_q38 == b->gain_turnpraw_q38 && a->zero_raw_q15 == b->zero_raw_q15,
-              "line %u", i);
+            "line %u", i);
         CHECK(a->low_raw == b->low_raw && a->high_raw == b->high_raw, "span %u", i);
         CHECK(a->cross_q30[0] == b->cross_q30[0] && a->cross_q30[1] == b->cross_q30[1], "cross %u",
-              i);
+            i);
     }
 }
 
@@ -353,10 +350,10 @@ TEST(two_poses_five_degrees_apart)
         f.n = 2;
         f.pose[1].angle_turn_q32[5] = EXH_Q(5, 360, 32) - less;
         CHECK(fit(&f) == (less ? -EXH_E_RANGE : 0), "%d: %s of %d", (int)less,
-              exh_glove_error_text(f.bad.what), f.bad.at);
+            exh_glove_error_text(f.bad.what), f.bad.at);
         CHECK(f.cal.present == (less ? 0u : ALL), "%d", (int)less);
         CHECK(!less || (f.bad.what == EXH_GLOVE_POSES && f.bad.at == 5), "%s of %d",
-              exh_glove_error_text(f.bad.what), f.bad.at);
+            exh_glove_error_text(f.bad.what), f.bad.at);
         f.n = 1;
         CHECK_EQ_I64(fit(&f), -EXH_E_RANGE);
     }
@@ -374,10 +371,10 @@ TEST(residual_has_two_sides)
         CHECK_EQ_I64(fit(&f), 0);
         CHECK_EQ_I64(f.fit[5].pose, 2);
         CHECK(near(f.fit[5].residual_turn_q32, -2 * side * (int64_t)DEG(1), DEG(1) / 50),
-              "%d: %" PRId32, (int)side, f.fit[5].residual_turn_q32);
+            "%d: %" PRId32, (int)side, f.fit[5].residual_turn_q32);
         f.pose[2].mean_raw_q16[5] = code_q16(5, 40 + 12 * side);
         CHECK(fit(&f) == -EXH_E_RANGE && f.bad.what == EXH_GLOVE_RESIDUAL && f.bad.at == 5, "%d",
-              (int)side);
+            (int)side);
     }
 }
 
@@ -388,12 +385,10 @@ TEST(a_zero_at_the_end)
     static const struct {
         int32_t code_q16, angle_turn_q32, zero_q15;
     } row[] = {{INT32_MAX - (1 << 28), -(1 << 30), INT32_MAX / 2},
-               {INT32_MAX - (1 << 28), -(1 << 30) - 4, 0},
-               {INT32_MIN, 0, -(1 << 30)},
-               {INT32_MIN, 4, 0}};
+        {INT32_MAX - (1 << 28), -(1 << 30) - 4, 0}, {INT32_MIN, 0, -(1 << 30)}, {INT32_MIN, 4, 0}};
     CHECK(usual->move_min_raw == 256 && usual->noise_max_raw == 128 &&
               usual->residual_max_turn_q32 == 71582788,
-          "usual");
+        "usual");
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
         struct fixture f;
         int err;
@@ -405,10 +400,10 @@ TEST(a_zero_at_the_end)
         err = fit(&f);
         if (row[i].zero_q15 != 0) {
             CHECK(err == 0 && f.cal.sensor[5].zero_raw_q15 == row[i].zero_q15,
-                  "row %zu: %d, %" PRId32, i, err, f.cal.sensor[5].zero_raw_q15);
+                "row %zu: %d, %" PRId32, i, err, f.cal.sensor[5].zero_raw_q15);
         } else {
             CHECK(err == -EXH_E_RANGE && f.bad.what == EXH_GLOVE_ZERO && f.bad.at == 5,
-                  "row %zu: %d of %d", i, f.bad.what, f.bad.at);
+                "row %zu: %d of %d", i, f.bad.what, f.bad.at);
         }
     }
 }
@@ -417,8 +412,8 @@ TEST(a_zero_at_the_end)
  * is the least that counts. */
 TEST(a_knuckle_that_just_moved_enough)
 {
-    static const int8_t deg[5] = {-20, 20, -20, 20,
-                                  0}; /* its own way has nothing of the knuckle's */
+    static const int8_t deg[5] = {
+        -20, 20, -20, 20, 0}; /* its own way has nothing of the knuckle's */
     struct fixture f;
     struct exh_glove_sensor s;
     int32_t raw_q16 = code_q16(4, 0), flat, moved;
@@ -442,8 +437,8 @@ TEST(a_knuckle_that_just_moved_enough)
             raw_q16 += 98 * 65536;
             do {
                 raw_q16++;
-                moved = (int32_t)(exh_mul_shr((raw_q16 >> 1) - s.zero_raw_q15, s.gain_turnpraw_q38,
-                                              21) >>
+                moved = (int32_t)(exh_mul_shr(
+                                      (raw_q16 >> 1) - s.zero_raw_q15, s.gain_turnpraw_q38, 21) >>
                                   4) -
                         flat;
             } while (moved < 1 << 20);
@@ -454,12 +449,12 @@ TEST(a_knuckle_that_just_moved_enough)
         } else {
             CHECK_EQ_I64(fit(&f), -EXH_E_RANGE);
             CHECK(f.bad.what == EXH_GLOVE_POSES && f.bad.at == 10, "%s of %d",
-                  exh_glove_error_text(f.bad.what), f.bad.at);
+                exh_glove_error_text(f.bad.what), f.bad.at);
         }
     }
 }
 
 TEST_MAIN("unit/glove_fit", poses_give_gain_zero_and_cross_terms, residual_is_the_worst_pose,
-          limits_of_poses_are_allowed, poses_are_refused_by_name, absent_sensors_need_no_pose,
-          a_line_as_good_as_level_is_refused, a_fit_begins_anew, two_poses_five_degrees_apart,
-          residual_has_two_sides, a_zero_at_the_end, a_knuckle_that_just_moved_enough);
+    limits_of_poses_are_allowed, poses_are_refused_by_name, absent_sensors_need_no_pose,
+    a_line_as_good_as_level_is_refused, a_fit_begins_anew, two_poses_five_degrees_apart,
+    residual_has_two_sides, a_zero_at_the_end, a_knuckle_that_just_moved_enough);

@@ -23,7 +23,7 @@ static struct exh_glove_par defaults(void)
 {
     const struct exh_signal *r = exh_glove_rows;
     const struct exh_glove_par par = {r[0].dflt, r[1].dflt, r[2].dflt, r[3].dflt, r[4].dflt,
-                                      r[5].dflt, r[6].dflt, r[7].dflt, r[8].dflt};
+        r[5].dflt, r[6].dflt, r[7].dflt, r[8].dflt};
     return par;
 }
 
@@ -40,9 +40,8 @@ static void set_up(struct fixture *f)
     f->par.hyst_raw_q16 = 0;
     f->cal = (struct exh_glove_cal){.valid_days = 1, .present = ALL};
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
-        f->cal.sensor[i] =
-            (struct exh_glove_sensor){1000 * 32768, INT32_C(1) << (38 - 16),         {0, 0}, -4000,
-                                      6000,         {EXH_GLOVE_NONE, EXH_GLOVE_NONE}};
+        f->cal.sensor[i] = (struct exh_glove_sensor){1000 * 32768, INT32_C(1) << (38 - 16), {0, 0},
+            -4000, 6000, {EXH_GLOVE_NONE, EXH_GLOVE_NONE}};
         f->in.raw[i] = 1000;
     }
 }
@@ -62,8 +61,8 @@ TEST(codes_become_angles)
     static const struct {
         int16_t raw;
         int32_t turn_q32;
-    } row[] = {{1000, 0},      {1001, 65536},     {999, -65536},
-               {0, -65536000}, {6000, 327680000}, {-4000, -327680000}};
+    } row[] = {{1000, 0}, {1001, 65536}, {999, -65536}, {0, -65536000}, {6000, 327680000},
+        {-4000, -327680000}};
     struct fixture f;
     set_up(&f);
     ready(&f);
@@ -72,7 +71,7 @@ TEST(codes_become_angles)
         CHECK_EQ_I64(frame(&f), 0);
         for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
             CHECK(f.angle[i] == row[k].turn_q32, "sensor %u code %d: %" PRId32, i, row[k].raw,
-                  f.angle[i]);
+                f.angle[i]);
         }
     }
 }
@@ -160,12 +159,18 @@ TEST(causes_are_told_apart)
         int open_high;
         uint8_t cause;
     } row[] = {
-        {-9000, 1, EXH_GLOVE_GOOD},      {-9001, 1, EXH_GLOVE_OUTSIDE},
-        {11000, 1, EXH_GLOVE_GOOD},      {11001, 1, EXH_GLOVE_OUTSIDE},
-        {-31999, 1, EXH_GLOVE_OUTSIDE},  {31999, 1, EXH_GLOVE_OUTSIDE},
-        {-32000, 1, EXH_GLOVE_SHORT},    {32000, 1, EXH_GLOVE_OPEN},
-        {INT16_MIN, 1, EXH_GLOVE_SHORT}, {INT16_MAX, 1, EXH_GLOVE_OPEN},
-        {-32000, 0, EXH_GLOVE_OPEN},     {32000, 0, EXH_GLOVE_SHORT},
+        {-9000, 1, EXH_GLOVE_GOOD},
+        {-9001, 1, EXH_GLOVE_OUTSIDE},
+        {11000, 1, EXH_GLOVE_GOOD},
+        {11001, 1, EXH_GLOVE_OUTSIDE},
+        {-31999, 1, EXH_GLOVE_OUTSIDE},
+        {31999, 1, EXH_GLOVE_OUTSIDE},
+        {-32000, 1, EXH_GLOVE_SHORT},
+        {32000, 1, EXH_GLOVE_OPEN},
+        {INT16_MIN, 1, EXH_GLOVE_SHORT},
+        {INT16_MAX, 1, EXH_GLOVE_OPEN},
+        {-32000, 0, EXH_GLOVE_OPEN},
+        {32000, 0, EXH_GLOVE_SHORT},
     };
     for (size_t k = 0; k < LEN(row); k++) {
         struct fixture f;
@@ -176,7 +181,7 @@ TEST(causes_are_told_apart)
         f.in.raw[3] = row[k].raw;
         for (int n = 0; n < 3; n++) { (void)frame(&f); }
         CHECK(f.s.cause[3] == row[k].cause, "code %d: %s", row[k].raw,
-              exh_glove_cause_text(f.s.cause[3]));
+            exh_glove_cause_text(f.s.cause[3]));
         CHECK_EQ_I64(frame(&f), row[k].cause == EXH_GLOVE_GOOD ? 0 : 1 << 3);
         CHECK_EQ_I64(f.s.faults[3], row[k].cause != EXH_GLOVE_GOOD);
     }
@@ -286,10 +291,8 @@ TEST(no_margin_reaches_a_rail)
     static const struct {
         int16_t raw;
         uint8_t cause;
-    } row[] = {{-32000, EXH_GLOVE_SHORT},
-               {-31999, EXH_GLOVE_GOOD},
-               {32000, EXH_GLOVE_OPEN},
-               {31999, EXH_GLOVE_GOOD}};
+    } row[] = {{-32000, EXH_GLOVE_SHORT}, {-31999, EXH_GLOVE_GOOD}, {32000, EXH_GLOVE_OPEN},
+        {31999, EXH_GLOVE_GOOD}};
     for (size_t k = 0; k < LEN(row); k++) {
         struct fixture f;
         set_up(&f);
@@ -298,7 +301,7 @@ TEST(no_margin_reaches_a_rail)
         f.in.raw[3] = row[k].raw;
         (void)frame(&f);
         CHECK(f.s.cause[3] == row[k].cause, "code %d: %s", row[k].raw,
-              exh_glove_cause_text(f.s.cause[3]));
+            exh_glove_cause_text(f.s.cause[3]));
     }
 }
 
@@ -437,8 +440,8 @@ TEST(noise_within_the_hysteresis_moves_no_angle_twice)
 
 TEST(default_calibration_runs_at_the_default)
 {
-    static const struct exh_period T[] = {{1, 90},   {1, 100},  {1, 200},  {1, 500},
-                                          {1, 1000}, {1, 2000}, {1, 20000}};
+    static const struct exh_period T[] = {
+        {1, 90}, {1, 100}, {1, 200}, {1, 500}, {1, 1000}, {1, 2000}, {1, 20000}};
     const struct exh_glove_par par = defaults();
     struct exh_glove_cfg cfg;
     for (size_t k = 0; k < LEN(T); k++) {
@@ -453,9 +456,9 @@ TEST(default_calibration_gives_its_end_points)
     static const struct {
         unsigned sensor;
         int32_t milli, deg;
-    } row[] = {{0, 335, -60},  {0, 697, 60},  {3, 791, 0},    {3, 350, 50}, {4, 429, 0},
-               {4, 654, 90},   {9, 0, 0},     {9, 323, 90},   {10, 468, 0}, {10, 390, 50},
-               {20, 154, -30}, {20, 622, 40}, {21, 925, -30}, {21, 236, 10}};
+    } row[] = {{0, 335, -60}, {0, 697, 60}, {3, 791, 0}, {3, 350, 50}, {4, 429, 0}, {4, 654, 90},
+        {9, 0, 0}, {9, 323, 90}, {10, 468, 0}, {10, 390, 50}, {20, 154, -30}, {20, 622, 40},
+        {21, 925, -30}, {21, 236, 10}};
     struct exh_glove_par par = defaults();
     par.order = 0;
     par.bits = 16;
@@ -477,8 +480,8 @@ TEST(default_calibration_gives_its_end_points)
         (void)exh_glove_step(&s, &cfg, &in, angle);
         off = exh_wrap_diff(angle[row[k].sensor], (int32_t)(row[k].deg * (INT64_C(1) << 32) / 360));
         CHECK(off <= step && off >= -step,
-              "%s at %" PRId32 " deg: %" PRId32 " off, a code is %" PRId32,
-              exh_glove_sensor_text(row[k].sensor), row[k].deg, off, step);
+            "%s at %" PRId32 " deg: %" PRId32 " off, a code is %" PRId32,
+            exh_glove_sensor_text(row[k].sensor), row[k].deg, off, step);
     }
 }
 
@@ -503,10 +506,10 @@ TEST(setup_rejections)
         f.par = good;
         *field[i] = exh_glove_rows[i].min - 1;
         CHECK(exh_glove_setup(&f.cfg, &f.par, &f.cal, kilohertz) == -EXH_E_RANGE, "%s too low",
-              exh_glove_rows[i].name);
+            exh_glove_rows[i].name);
         *field[i] = exh_glove_rows[i].max + 1;
         CHECK(exh_glove_setup(&f.cfg, &f.par, &f.cal, kilohertz) == -EXH_E_RANGE, "%s too high",
-              exh_glove_rows[i].name);
+            exh_glove_rows[i].name);
     }
     f.par = good;
     f.par.low_raw = f.par.high_raw;
@@ -520,7 +523,7 @@ TEST(setup_rejections)
     CHECK(exh_glove_setup(&f.cfg, &f.par, &f.cal, kilohertz) == -EXH_E_RANGE, "a rail in the span");
     f.par = good;
     CHECK(exh_glove_setup(&f.cfg, &f.par, &f.cal, (struct exh_period){1, 60}) == -EXH_E_CUTOFF,
-          "30 Hz at 60 Hz");
+        "30 Hz at 60 Hz");
     CHECK_EQ_I64(exh_glove_setup(&f.cfg, &f.par, &f.cal, (struct exh_period){1, 61}), 0);
     f.par.order = 0; /* no filter: any rate */
     CHECK_EQ_I64(exh_glove_setup(&f.cfg, &f.par, &f.cal, (struct exh_period){1, 10}), 0);
@@ -562,7 +565,7 @@ TEST(state_round_trip)
         CHECK(memcmp(back.cause, f.s.cause, sizeof back.cause) == 0 &&
                   memcmp(back.run, f.s.run, sizeof back.run) == 0 &&
                   memcmp(back.faults, f.s.faults, sizeof back.faults) == 0,
-              "frame %d", n);
+            "frame %d", n);
     }
 }
 
@@ -611,7 +614,7 @@ TEST(every_cause_has_a_word)
 {
     for (unsigned i = 0; i <= EXH_GLOVE_CAUSES; i++) {
         CHECK(check_same_text(exh_glove_cause_text(i), "unknown") == (i == EXH_GLOVE_CAUSES), "%u",
-              i);
+            i);
     }
 }
 
@@ -643,7 +646,7 @@ TEST(a_second_cross_term_alone)
     f.cal.sensor[5].cross_q30[1] = INT32_C(1) << 29;
     ready(&f);
     CHECK(f.cfg.crosses == 1 && f.cfg.crossed[0] == 5, "%u of %u", (unsigned)f.cfg.crossed[0],
-          (unsigned)f.cfg.crosses);
+        (unsigned)f.cfg.crosses);
     f.in.raw[2] = 1100;
     (void)frame(&f);
     CHECK(f.angle[5] == 3276800 && f.angle[2] == 6553600, "%" PRId32, f.angle[5]);
@@ -655,13 +658,13 @@ TEST(a_second_cross_term_alone)
 }
 
 TEST_MAIN("unit/glove", codes_become_angles, a_gain_below_zero_falls,
-          angles_saturate_at_half_a_turn, abductions_lose_what_knuckles_add,
-          absent_sensors_have_no_faults, causes_are_told_apart,
-          a_fault_begins_and_ends_with_the_third_frame, a_loose_contact_keeps_its_state,
-          the_latest_cause_stands, faults_are_counted_up_to_65535, a_channel_may_start_faulty,
-          no_margin_reaches_a_rail, the_chain_is_filter_quantizer_line, the_first_frame_settles,
-          a_spike_leaves_no_trace, after_a_fault_the_angle_glides,
-          noise_within_the_hysteresis_moves_no_angle_twice, default_calibration_runs_at_the_default,
-          default_calibration_gives_its_end_points, setup_rejections, state_round_trip,
-          damaged_state_finds_back, a_state_that_has_not_begun_is_empty, every_cause_has_a_word,
-          the_first_and_the_last_have_cross_terms, a_second_cross_term_alone);
+    angles_saturate_at_half_a_turn, abductions_lose_what_knuckles_add,
+    absent_sensors_have_no_faults, causes_are_told_apart,
+    a_fault_begins_and_ends_with_the_third_frame, a_loose_contact_keeps_its_state,
+    the_latest_cause_stands, faults_are_counted_up_to_65535, a_channel_may_start_faulty,
+    no_margin_reaches_a_rail, the_chain_is_filter_quantizer_line, the_first_frame_settles,
+    a_spike_leaves_no_trace, after_a_fault_the_angle_glides,
+    noise_within_the_hysteresis_moves_no_angle_twice, default_calibration_runs_at_the_default,
+    default_calibration_gives_its_end_points, setup_rejections, state_round_trip,
+    damaged_state_finds_back, a_state_that_has_not_begun_is_empty, every_cause_has_a_word,
+    the_first_and_the_last_have_cross_terms, a_second_cross_term_alone);

@@ -13,8 +13,8 @@
 
 static struct exh_hand_par defaults(void)
 {
-    const struct exh_hand_par par = {exh_hand_rows[0].dflt, exh_hand_rows[1].dflt,
-                                     exh_hand_rows[2].dflt, exh_hand_rows[3].dflt};
+    const struct exh_hand_par par = {
+        exh_hand_rows[0].dflt, exh_hand_rows[1].dflt, exh_hand_rows[2].dflt, exh_hand_rows[3].dflt};
     return par;
 }
 
@@ -81,8 +81,8 @@ TEST(turns_are_turns)
                 dot_q60 += (int64_t)(columns ? r[k][a] : r[a][k]) * (columns ? r[k][b] : r[b][k]);
             }
             CHECK(dot_q60 <= INT64_C(3) << 30 && dot_q60 >= -(INT64_C(3) << 30),
-                  "finger %u, %s %u and %u: %" PRId64, f, columns ? "columns" : "rows", a, b,
-                  dot_q60);
+                "finger %u, %s %u and %u: %" PRId64, f, columns ? "columns" : "rows", a, b,
+                dot_q60);
         }
     }
 }
@@ -92,8 +92,7 @@ TEST(slope_on_paper)
 {
     static const struct exh_hand_bones plain = {
         {EXH_Q(60, 1000, 34), EXH_Q(20, 1000, 34), EXH_Q(10, 1000, 34)},
-        {{1 << 30, 0, 0}, {0, 1 << 30, 0}, {0, 0, 1 << 30}},
-        {0, 0, 0}};
+        {{1 << 30, 0, 0}, {0, 1 << 30, 0}, {0, 0, 1 << 30}}, {0, 0, 0}};
     const struct exh_hand_par par = {EXH_Q(10, 1000, 30), 0, 0, 0};
     const int32_t straight[3] = {0, 0, 0};
     const int32_t aside[3] = {EXH_DEG(90, 1), EXH_DEG(90, 1), 0};
@@ -102,13 +101,13 @@ TEST(slope_on_paper)
     CHECK_EQ_I64(exh_hand_setup(&f, &plain, &par), 0);
     CHECK_EQ_I64(f.pull_radpm_q20[1], 0); /* all string turns q1, by 100 rad/m */
     CHECK(f.pull_radpm_q20[0] - (100 << 20) <= 2 && f.pull_radpm_q20[0] >= 100 << 20, "%" PRId32,
-          f.pull_radpm_q20[0]);
+        f.pull_radpm_q20[0]);
     exh_hand_tip_slope(&f, straight, &tip, &slope); /* 90 mm at 100 rad/m, upwards */
     CHECK(slope.x == 0 && slope.y == 0, "%" PRId32 " %" PRId32, slope.x, slope.y);
     CHECK(slope.z - (9 << 24) <= 4 && (9 << 24) - slope.z <= 4, "%" PRId32, slope.z);
     exh_hand_tip_slope(&f, aside, &tip, &slope); /* in y-z, pointing up, moving to -y */
     CHECK(slope.x <= 1 && slope.x >= -1 && slope.z <= 1 && slope.z >= -1, "%" PRId32 " %" PRId32,
-          slope.x, slope.z);
+        slope.x, slope.z);
     CHECK(slope.y + (9 << 24) <= 4 && slope.y + (9 << 24) >= -4, "%" PRId32, slope.y);
 }
 
@@ -116,13 +115,10 @@ TEST(slope_on_paper)
 
 TEST(setup_refuses)
 {
-    static const struct exh_hand_par bad[] = {{0, 0, 0, 0},
-                                              {EXH_Q(39, 10000, 30), 0, 0, 0},
-                                              {EXH_Q(51, 1000, 30), 0, 0, 0},
-                                              {EXH_Q(20, 1000, 30), -1, 0, 0},
-                                              {EXH_Q(20, 1000, 30), 0, INT32_MAX, 0},
-                                              {EXH_Q(20, 1000, 30), 0, 0, -1},
-                                              {EXH_Q(20, 1000, 30), 0, 0, EXH_Q(26, 1000, 30)}};
+    static const struct exh_hand_par bad[] = {{0, 0, 0, 0}, {EXH_Q(39, 10000, 30), 0, 0, 0},
+        {EXH_Q(51, 1000, 30), 0, 0, 0}, {EXH_Q(20, 1000, 30), -1, 0, 0},
+        {EXH_Q(20, 1000, 30), 0, INT32_MAX, 0}, {EXH_Q(20, 1000, 30), 0, 0, -1},
+        {EXH_Q(20, 1000, 30), 0, 0, EXH_Q(26, 1000, 30)}};
     const struct exh_hand_par good = defaults(), least = {0, EXH_Q(4, 1000, 30), 0, 0};
     struct exh_hand_finger f;
     for (size_t i = 0; i < LEN(bad); i++) {
@@ -176,15 +172,14 @@ TEST(a_finger_follows_its_own_sensors)
     static const struct {
         unsigned sensor, finger, joint;
         int sign;
-    } row[] = {
-        {EXH_GLOVE_THUMB_ROTATE, EXH_THUMB, 0, -1},    {EXH_GLOVE_THUMB_AB, EXH_THUMB, 1, -1},
-        {EXH_GLOVE_THUMB_IJ, EXH_THUMB, 2, 1},         {EXH_GLOVE_INDEX_MPJ, EXH_INDEX, 1, 1},
-        {EXH_GLOVE_INDEX_PIJ, EXH_INDEX, 2, 1},        {EXH_GLOVE_INDEX_DIJ, EXH_INDEX, 2, 1},
+    } row[] = {{EXH_GLOVE_THUMB_ROTATE, EXH_THUMB, 0, -1}, {EXH_GLOVE_THUMB_AB, EXH_THUMB, 1, -1},
+        {EXH_GLOVE_THUMB_IJ, EXH_THUMB, 2, 1}, {EXH_GLOVE_INDEX_MPJ, EXH_INDEX, 1, 1},
+        {EXH_GLOVE_INDEX_PIJ, EXH_INDEX, 2, 1}, {EXH_GLOVE_INDEX_DIJ, EXH_INDEX, 2, 1},
         {EXH_GLOVE_MIDDLE_INDEX_AB, EXH_INDEX, 0, -1}, {EXH_GLOVE_MIDDLE_MPJ, EXH_MIDDLE, 1, 1},
-        {EXH_GLOVE_MIDDLE_PIJ, EXH_MIDDLE, 2, 1},      {EXH_GLOVE_MIDDLE_DIJ, EXH_MIDDLE, 2, 1},
-        {EXH_GLOVE_RING_MPJ, EXH_RING, 1, 1},          {EXH_GLOVE_RING_PIJ, EXH_RING, 2, 1},
-        {EXH_GLOVE_RING_DIJ, EXH_RING, 2, 1},          {EXH_GLOVE_LITTLE_MPJ, EXH_LITTLE, 1, 1},
-        {EXH_GLOVE_LITTLE_PIJ, EXH_LITTLE, 2, 1},      {EXH_GLOVE_LITTLE_DIJ, EXH_LITTLE, 2, 1},
+        {EXH_GLOVE_MIDDLE_PIJ, EXH_MIDDLE, 2, 1}, {EXH_GLOVE_MIDDLE_DIJ, EXH_MIDDLE, 2, 1},
+        {EXH_GLOVE_RING_MPJ, EXH_RING, 1, 1}, {EXH_GLOVE_RING_PIJ, EXH_RING, 2, 1},
+        {EXH_GLOVE_RING_DIJ, EXH_RING, 2, 1}, {EXH_GLOVE_LITTLE_MPJ, EXH_LITTLE, 1, 1},
+        {EXH_GLOVE_LITTLE_PIJ, EXH_LITTLE, 2, 1}, {EXH_GLOVE_LITTLE_DIJ, EXH_LITTLE, 2, 1},
         {EXH_GLOVE_LITTLE_RING_AB, EXH_LITTLE, 0, 1}};
     for (size_t i = 0; i < LEN(row); i++) {
         for (unsigned f = 0; f < EXH_FINGERS; f++) {
@@ -195,7 +190,7 @@ TEST(a_finger_follows_its_own_sensors)
             for (unsigned j = 0; j < 3; j++) {
                 const int moved = (bent[j] > rest[j]) - (bent[j] < rest[j]);
                 CHECK(moved == (f == row[i].finger && j == row[i].joint ? row[i].sign : 0),
-                      "row %zu, finger %u, joint %u: %d", i, f, j, moved);
+                    "row %zu, finger %u, joint %u: %d", i, f, j, moved);
             }
         }
     }
@@ -208,12 +203,12 @@ TEST(spans_end_at_the_limits)
         unsigned sensor, finger, joint;
         int32_t from_deg, lo_deg, to_deg, hi_deg;
     } row[] = {{EXH_GLOVE_THUMB_ROTATE, EXH_THUMB, 0, -60, 15, 130, -15},
-               {EXH_GLOVE_MIDDLE_INDEX_AB, EXH_INDEX, 0, -60, 15, 60, -15},
-               {EXH_GLOVE_RING_MIDDLE_AB, EXH_RING, 0, -60, -15, 60, 15},
-               {EXH_GLOVE_INDEX_MPJ, EXH_INDEX, 1, -30, 0, 110, 85},
-               {EXH_GLOVE_MIDDLE_MPJ, EXH_MIDDLE, 1, -30, 0, 110, 85},
-               {EXH_GLOVE_RING_MPJ, EXH_RING, 1, -30, 0, 110, 85},
-               {EXH_GLOVE_LITTLE_MPJ, EXH_LITTLE, 1, -30, 0, 110, 85}};
+        {EXH_GLOVE_MIDDLE_INDEX_AB, EXH_INDEX, 0, -60, 15, 60, -15},
+        {EXH_GLOVE_RING_MIDDLE_AB, EXH_RING, 0, -60, -15, 60, 15},
+        {EXH_GLOVE_INDEX_MPJ, EXH_INDEX, 1, -30, 0, 110, 85},
+        {EXH_GLOVE_MIDDLE_MPJ, EXH_MIDDLE, 1, -30, 0, 110, 85},
+        {EXH_GLOVE_RING_MPJ, EXH_RING, 1, -30, 0, 110, 85},
+        {EXH_GLOVE_LITTLE_MPJ, EXH_LITTLE, 1, -30, 0, 110, 85}};
     for (size_t i = 0; i < LEN(row); i++) {
         for (int end = 0; end < 2; end++) {
             const int32_t at = end ? row[i].to_deg : row[i].from_deg;
@@ -224,7 +219,7 @@ TEST(spans_end_at_the_limits)
             CHECK(exh_hand_joints(&exh_hit2_map, row[i].finger, sensor, q) == 0, "row %zu", i);
             sensor[row[i].sensor] = EXH_DEG(at + sign, 1);
             CHECK(exh_hand_joints(&exh_hit2_map, row[i].finger, sensor, q) == 1u << row[i].joint,
-                  "row %zu", i);
+                "row %zu", i);
             CHECK(q[row[i].joint] == want, "row %zu: %" PRId32, i, q[row[i].joint]);
         }
     }
@@ -249,7 +244,7 @@ TEST(map_check_refuses)
 /* Robot joints and tip of a finger of which so much string is out, as the wearer's joints share it.
  */
 static void pulled(const struct exh_hand_finger *own, const struct exh_hand_finger *f, unsigned i,
-                   int64_t out_um, int32_t *q, struct exh_vec3 *tip)
+    int64_t out_um, int32_t *q, struct exh_vec3 *tip)
 {
     const uint8_t *bent = exh_hit2_map.bent[i];
     int32_t sensor[EXH_GLOVE_SENSORS] = {0};
@@ -284,8 +279,8 @@ TEST(slope_is_that_of_the_string_through_the_map)
                 const int64_t went = (int64_t)axis(&after, c) - axis(&before, c);
                 const int64_t said = (int64_t)axis(&slope, c) * (1 << 6) / 1000;
                 CHECK(went - said <= 1100 && said - went <= 1100,
-                      "finger %u, %d um, axis %d: %d LSB, slope says %d", i, (int)out_um, c,
-                      (int)went, (int)said);
+                    "finger %u, %d um, axis %d: %d LSB, slope says %d", i, (int)out_um, c,
+                    (int)went, (int)said);
             }
         }
     }
@@ -324,8 +319,8 @@ TEST(mirror_images_are_no_turns)
 {
     const struct exh_hand_par par = defaults();
     for (unsigned i = 0; i < 6 * 8; i++) {
-        static const uint8_t to[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1},
-                                         {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+        static const uint8_t to[6][3] = {
+            {0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
         const unsigned way = i / 8, negative = i % 8;
         const unsigned odd = (way >= 3) ^ (negative & 1) ^ (negative >> 1 & 1) ^ (negative >> 2);
         struct exh_hand_bones b = exh_hit2_bones[EXH_INDEX];
@@ -335,7 +330,7 @@ TEST(mirror_images_are_no_turns)
             b.rot_q30[r][to[way][r]] = negative >> r & 1 ? -(INT32_C(1) << 30) : INT32_C(1) << 30;
         }
         CHECK(exh_hand_setup(&f, &b, &par) == (odd ? -EXH_E_RANGE : 0), "way %u, signs %u", way,
-              negative);
+            negative);
     }
 }
 
@@ -354,9 +349,9 @@ TEST(what_a_hand_does_not_use_is_zero)
          f++) { /* fingers bend about an axis of the palm */
         const int32_t(*r)[3] = exh_hit2_bones[f].rot_q30;
         CHECK(r[0][0] == 0 && r[1][0] == 0 && r[2][0] == 1 << 30 && r[2][1] == 0 && r[2][2] == 0,
-              "finger %u", f);
-        CHECK(r[0][1] == r[1][2] && r[0][2] == -r[1][1], "finger %u: an angle and its complement",
-              f);
+            "finger %u", f);
+        CHECK(
+            r[0][1] == r[1][2] && r[0][2] == -r[1][1], "finger %u: an angle and its complement", f);
     }
 }
 
@@ -391,6 +386,6 @@ TEST(ends_to_the_bit)
 }
 
 TEST_MAIN("unit/hand", published_vectors, turns_are_turns, slope_on_paper, setup_refuses,
-          map_of_the_hand_is_sound, a_finger_follows_its_own_sensors, spans_end_at_the_limits,
-          map_check_refuses, slope_is_that_of_the_string_through_the_map, follow_by_hand,
-          mirror_images_are_no_turns, what_a_hand_does_not_use_is_zero, ends_to_the_bit);
+    map_of_the_hand_is_sound, a_finger_follows_its_own_sensors, spans_end_at_the_limits,
+    map_check_refuses, slope_is_that_of_the_string_through_the_map, follow_by_hand,
+    mirror_images_are_no_turns, what_a_hand_does_not_use_is_zero, ends_to_the_bit);

@@ -57,8 +57,8 @@ TEST(silence_by_baud)
 {
     static const struct {
         uint32_t baud, us;
-    } want[] = {{300, 128334}, {9600, 4011},  {9625, 4000},  {7521, 5120},
-                {19200, 2006}, {19201, 1750}, {115200, 1750}};
+    } want[] = {{300, 128334}, {9600, 4011}, {9625, 4000}, {7521, 5120}, {19200, 2006},
+        {19201, 1750}, {115200, 1750}};
     for (size_t i = 0; i < sizeof want / sizeof want[0]; i++) {
         begin(1, want[i].baud);
         CHECK_EQ_I64(g.u.silence_us, want[i].us);
@@ -81,7 +81,7 @@ TEST(a_request_is_answered_once)
     CHECK_EQ_I64(exh_modbus_rtu_answer(&g.u, &g.r, g.resp, EXH_MODBUS_ADU_B - 1), -EXH_E_SHORT);
     CHECK_EQ_I64(exh_modbus_rtu_answer(&g.u, &g.r, g.resp, sizeof g.resp), 9);
     CHECK(g.resp[0] == 17 && g.resp[1] == 3 && g.resp[2] == 4 && g.resp[3] == 1 && g.resp[6] == 4,
-          "answer");
+        "answer");
     CHECK_EQ_I64(exh_crc16(g.resp, 9), 0); /* a frame with its CRC has CRC 0 */
     CHECK_EQ_I64(exh_modbus_rtu_answer(&g.u, &g.r, g.resp, sizeof g.resp), 0);
     CHECK_EQ_I64(exh_modbus_rtu_poll(&g.u, 1000000), 0);
@@ -136,8 +136,8 @@ TEST(every_damaged_bit_is_dropped)
     frame[7] = (uint8_t)(exh_crc16(req, 6) >> 8);
     for (unsigned bit = 0; bit < 64; bit++) {
         for (unsigned i = 0; i < 8; i++) {
-            exh_modbus_rtu_receive(&g.u,
-                                   (uint8_t)(frame[i] ^ (bit >> 3 == i ? 1u << (bit & 7u) : 0u)));
+            exh_modbus_rtu_receive(
+                &g.u, (uint8_t)(frame[i] ^ (bit >> 3 == i ? 1u << (bit & 7u) : 0u)));
         }
         CHECK(exh_modbus_rtu_poll(&g.u, 1750) == 0, "bit %u", bit);
         CHECK_EQ_I64(g.u.damaged, ++damaged);
@@ -239,7 +239,7 @@ TEST(however_much_room_is_told)
 }
 
 TEST_MAIN("modbus_rtu", crc_is_the_known_one, silence_by_baud, a_request_is_answered_once,
-          an_exception_is_an_answer, what_is_said_to_all_is_done_and_not_answered,
-          somebody_elses_is_left_alone, every_damaged_bit_is_dropped, frames_have_an_end,
-          silence_is_added_up_and_a_byte_ends_it, a_byte_that_came_damaged_drops_its_frame,
-          a_frame_of_65536_bytes_is_none, short_silences_are_added_up, however_much_room_is_told);
+    an_exception_is_an_answer, what_is_said_to_all_is_done_and_not_answered,
+    somebody_elses_is_left_alone, every_damaged_bit_is_dropped, frames_have_an_end,
+    silence_is_added_up_and_a_byte_ends_it, a_byte_that_came_damaged_drops_its_frame,
+    a_frame_of_65536_bytes_is_none, short_silences_are_added_up, however_much_room_is_told);

@@ -18,7 +18,7 @@ static const struct exh_signal par_row[4] = {
     {0x7102, 0, EXH_WHEN_SETUP, 0, 1000, 500, "window", "", "before the loop"},
     {0x7103, 20, EXH_WHEN_ANY, INT32_MIN, INT32_MAX, 0, "wide", "n", "any raw value"},
     {0x7104, 30, EXH_WHEN_ANY, 5 - INT32_MAX, INT32_MAX - 5, 0, "long", "m",
-     "ends between two binary32"},
+        "ends between two binary32"},
 };
 static const struct exh_signal out_row[7] = {
     {0x7201, 30, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "q", "m", ""},
@@ -81,11 +81,11 @@ static void ask(const uint8_t *req, size_t len_B)
 
 static void gives(const uint8_t *want, int len, int line)
 {
-    CHECK(g.len == len, "line %d: %d bytes, want %d; the second is %u", line, g.len, len,
-          g.resp[1]);
+    CHECK(
+        g.len == len, "line %d: %d bytes, want %d; the second is %u", line, g.len, len, g.resp[1]);
     for (int i = 0; i < len && i < g.len; i++) {
         CHECK(g.resp[i] == want[i], "line %d: byte %d is %02x, want %02x", line, i,
-              (unsigned)g.resp[i], (unsigned)want[i]);
+            (unsigned)g.resp[i], (unsigned)want[i]);
     }
 }
 #define GIVES(...) \
@@ -103,7 +103,7 @@ TEST(head_says_what_this_is)
     GIVES(4, 8, 0, 0, 0, SIGNALS, 0, 0, 0, VALUES);
     ASK(4, 0, 2 * EXH_HEAD_PERIOD_NUM, 0, 8);
     GIVES(4, 16, 0, 0, 0, 1, 0, 0, 0x07, 0xD0, 0, EXH_VERSION_MAJOR, EXH_VERSION_MINOR,
-          EXH_VERSION_PATCH, 0, 0, 0, 5);
+        EXH_VERSION_PATCH, 0, 0, 0, 5);
     ASK(4, 0, 2 * EXH_HEAD_NAME_0, 0, 8);
     GIVES(4, 16, 'u', 'n', 'i', 't', '_', 't', 'e', 's', 't', 0, 0, 0, 0, 0, 0, 0);
     ASK(4, 0, 2 * EXH_HEADS - 1, 0, 2);
@@ -188,11 +188,11 @@ TEST(says_who_it_is)
     begin();
     ASK(43, 14, 1, 0);
     GIVES(43, 14, 1, 0x81, 0, 0, 3, 0, 6, 'e', 'x', 'h', 'a', 'n', 'd', 1, 6, 'e', 'x', 'h', 'a',
-          'n', 'd', 2, 5, '0' + EXH_VERSION_MAJOR, '.', '0' + EXH_VERSION_MINOR, '.',
-          '0' + EXH_VERSION_PATCH);
+        'n', 'd', 2, 5, '0' + EXH_VERSION_MAJOR, '.', '0' + EXH_VERSION_MINOR, '.',
+        '0' + EXH_VERSION_PATCH);
     ASK(43, 14, 4, 2);
     GIVES(43, 14, 4, 0x81, 0, 0, 1, 2, 5, '0' + EXH_VERSION_MAJOR, '.', '0' + EXH_VERSION_MINOR,
-          '.', '0' + EXH_VERSION_PATCH);
+        '.', '0' + EXH_VERSION_PATCH);
     for (int i = g.len; i < EXH_MODBUS_PDU_B; i++) {
         CHECK(g.resp[i] == 0xA5, "behind the answer, at %d", i);
     }
@@ -225,8 +225,8 @@ static void untouched(int line)
 #define REFUSES(exception, ...) \
     do { \
         static const uint8_t refused[] = {__VA_ARGS__}; \
-        static const uint8_t answer[2] = {(uint8_t)(0x80u | refused_first(__VA_ARGS__, 0)), \
-                                          exception}; \
+        static const uint8_t answer[2] = { \
+            (uint8_t)(0x80u | refused_first(__VA_ARGS__, 0)), exception}; \
         ask(refused, sizeof refused); \
         gives(answer, 2, __LINE__); \
         untouched(__LINE__); \
@@ -246,7 +246,7 @@ TEST(no_such_function)
         for (size_t len_B = 1; len_B <= sizeof req; len_B++) {
             ask(req, len_B);
             CHECK(g.len == 2 && g.resp[0] == (fc | 0x80u) && g.resp[1] == 1,
-                  "function %u: %d bytes, %u %u", fc, g.len, g.resp[0], g.resp[1]);
+                "function %u: %d bytes, %u %u", fc, g.len, g.resp[0], g.resp[1]);
         }
     }
 }
@@ -271,7 +271,7 @@ TEST(counts_end_where_the_specification_says)
                 CHECK(g.len == 2 && g.resp[1] == 2, "function %u of %u: %u", req[0], n, g.resp[1]);
             } else {
                 CHECK(g.len == 2 + 2 * n && g.resp[1] == 2 * n, "function %u of %u: %d", req[0], n,
-                      g.len);
+                    g.len);
             }
         }
     }
@@ -311,10 +311,10 @@ TEST(counts_of_writes_end_there_too)
                 ask(req, long_request(req, w[i].fc, n, count, bytes));
                 if (good && off == 0 && w[i].fc != 15) {
                     CHECK(g.resp[0] == w[i].fc, "function %u of %u: exception %u", w[i].fc, n,
-                          g.resp[1]);
+                        g.resp[1]);
                 } else {
                     CHECK(g.len == 2 && g.resp[1] == (good && off == 0 ? 2 : 3),
-                          "function %u of %u, %u bytes: %u", w[i].fc, n, count, g.resp[1]);
+                        "function %u of %u, %u bytes: %u", w[i].fc, n, count, g.resp[1]);
                     untouched(__LINE__);
                 }
             }
@@ -324,17 +324,10 @@ TEST(counts_of_writes_end_there_too)
 
 TEST(a_request_of_another_length_is_refused)
 {
-    static const uint8_t good[][16] = {{5, 1, 0, 0, 0, 6},
-                                       {5, 2, 0, 0, 0, 192},
-                                       {5, 3, 0x50, 0, 0, 2},
-                                       {5, 4, 0, 0, 0, 8},
-                                       {5, 5, 0, 3, 0, 0},
-                                       {5, 6, 0x50, 5, 0, 7},
-                                       {7, 15, 0, 0, 0, 3, 1, 0},
-                                       {8, 16, 0x50, 5, 0, 1, 2, 0, 7},
-                                       {7, 22, 0x50, 5, 0, 0, 0, 7},
-                                       {12, 23, 0x50, 0, 0, 2, 0x50, 5, 0, 1, 2, 0, 7},
-                                       {4, 43, 14, 1, 0}};
+    static const uint8_t good[][16] = {{5, 1, 0, 0, 0, 6}, {5, 2, 0, 0, 0, 192},
+        {5, 3, 0x50, 0, 0, 2}, {5, 4, 0, 0, 0, 8}, {5, 5, 0, 3, 0, 0}, {5, 6, 0x50, 5, 0, 7},
+        {7, 15, 0, 0, 0, 3, 1, 0}, {8, 16, 0x50, 5, 0, 1, 2, 0, 7}, {7, 22, 0x50, 5, 0, 0, 0, 7},
+        {12, 23, 0x50, 0, 0, 2, 0x50, 5, 0, 1, 2, 0, 7}, {4, 43, 14, 1, 0}};
     uint8_t req[300];
     for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
         for (unsigned len_B = 0; len_B <= 260; len_B++) {
@@ -348,7 +341,7 @@ TEST(a_request_of_another_length_is_refused)
             } else {
                 CHECK(g.len == 2 && g.resp[0] == (req[0] | 0x80u) &&
                           g.resp[1] == (req[0] == 43 && len_B < 2 ? 1 : 3),
-                      "function %u of %u bytes: %u %u", req[0], len_B, g.resp[0], g.resp[1]);
+                    "function %u of %u bytes: %u %u", req[0], len_B, g.resp[0], g.resp[1]);
                 untouched(__LINE__);
             }
         }
@@ -568,7 +561,7 @@ TEST(bits_are_the_box)
     exh_regs_update(&g.r, &s, EXH_DIN_DEADMAN | (uint32_t)EXH_DIN_DRIVE0 << 4);
     ASK(2, 0, 0, 0, 192);
     GIVES(2, 24, 0x01, 0x40, 0, 0, 0, 0x04, 0, 0, 0x02, 0x10, 0, 0, 0x20, 0, 0, 0, 0, 0x04, 0, 0,
-          0x10, 0, 0, 0);
+        0x10, 0, 0, 0);
     ASK(2, 0, 14, 0, 30); /* across two words */
     GIVES(2, 4, 1, 0, 0, 0x10);
     g.r.box.state = 31; /* none has this number, nor the next */
@@ -580,7 +573,7 @@ TEST(bits_are_the_box)
     g.r.box.state = EXH_STATE_FAULT;
     ASK(4, 0, 2 * EXH_HEAD_TICK, 0, 20);
     GIVES(4, 40, 0xFF, 0xFF, 0xFF, 0xFF, 0, 0, 0, 5, 0, 0, 0x40, 1, 0, 0, 0x40, 0, 1, 2, 3, 4, 0, 0,
-          4, 0, 0, 0, 4, 0, 0, 0, 0, 0x10, 0, 0, 0x10, 2, 0, 0, 0, 9);
+        4, 0, 0, 0, 4, 0, 0, 0, 0, 0x10, 0, 0, 0x10, 2, 0, 0, 0, 9);
 }
 
 TEST(set_up_refuses)
@@ -645,14 +638,14 @@ TEST(words_for_people_are_all_there)
 {
     for (unsigned i = 0; i < EXH_HEADS; i++) {
         CHECK(exh_regs_head_row[i].name && exh_regs_head_row[i].help && exh_regs_head_row[i].format,
-              "head %u", i);
+            "head %u", i);
     }
     for (unsigned i = 0; i < EXH_BITS; i++) { CHECK(exh_regs_bits_row[i].name, "bits %u", i); }
     for (unsigned i = 0; i < EXH_COILS; i++) { CHECK(exh_regs_coil_row[i].name, "coil %u", i); }
     for (unsigned i = 0; i < EXH_REGS_BLOCKS; i++) {
         CHECK(exh_regs_blocks[i].name, "block %u", i);
         CHECK(exh_regs_blocks[i].kind > EXH_REGS_DISCRETE || exh_regs_blocks[i].at == 0,
-              "bits begin at 0: block %u", i);
+            "bits begin at 0: block %u", i);
     }
 }
 
@@ -694,7 +687,7 @@ TEST(a_word_full_of_values)
     CHECK_EQ_I64(g.touched[0], UINT32_C(1) << 31);
     CHECK_EQ_I64(exh_regs_apply(&g.r, &g.p), 0);
     CHECK(g.wanted[31] == 7 && g.touched[0] == 0 && g.touched[1] == UINT32_MAX, "%" PRId32,
-          g.wanted[31]);
+        g.wanted[31]);
 }
 
 /* A table of parameters with a row that is computed: it may be written as it reads. */
@@ -713,12 +706,11 @@ TEST(outputs_among_parameters_stay)
 }
 
 TEST_MAIN("modbus", head_says_what_this_is, a_value_is_high_word_first_and_starts_anywhere,
-          reads_as_in_the_examples, writes_as_in_the_examples, mask_and_both_as_in_the_examples,
-          says_who_it_is, no_such_function, counts_end_where_the_specification_says,
-          counts_of_writes_end_there_too, a_request_of_another_length_is_refused,
-          an_answer_needs_room, nothing_is_there, what_may_not_be, floats_that_may_not_be,
-          what_reads_the_same_stays, apply_hands_over_all_or_none,
-          what_is_staged_reads_back_and_is_counted, while_apply_is_pending_nothing_changes,
-          commands_in_order_of_caution, bits_are_the_box, set_up_refuses,
-          without_tables_the_head_alone_is_there, words_for_people_are_all_there,
-          requests_of_nothing, a_word_full_of_values, outputs_among_parameters_stay);
+    reads_as_in_the_examples, writes_as_in_the_examples, mask_and_both_as_in_the_examples,
+    says_who_it_is, no_such_function, counts_end_where_the_specification_says,
+    counts_of_writes_end_there_too, a_request_of_another_length_is_refused, an_answer_needs_room,
+    nothing_is_there, what_may_not_be, floats_that_may_not_be, what_reads_the_same_stays,
+    apply_hands_over_all_or_none, what_is_staged_reads_back_and_is_counted,
+    while_apply_is_pending_nothing_changes, commands_in_order_of_caution, bits_are_the_box,
+    set_up_refuses, without_tables_the_head_alone_is_there, words_for_people_are_all_there,
+    requests_of_nothing, a_word_full_of_values, outputs_among_parameters_stay);

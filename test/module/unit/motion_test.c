@@ -24,13 +24,8 @@ TEST(velocity_is_held_within_the_limit)
 {
     static const struct {
         int32_t v, want;
-    } row[] = {{0, 0},
-               {3 * MPS, 3 * MPS},
-               {-3 * MPS, -3 * MPS},
-               {3 * MPS + 1, 3 * MPS},
-               {-3 * MPS - 1, -3 * MPS},
-               {INT32_MAX, 3 * MPS},
-               {INT32_MIN, -3 * MPS}};
+    } row[] = {{0, 0}, {3 * MPS, 3 * MPS}, {-3 * MPS, -3 * MPS}, {3 * MPS + 1, 3 * MPS},
+        {-3 * MPS - 1, -3 * MPS}, {INT32_MAX, 3 * MPS}, {INT32_MIN, -3 * MPS}};
     const struct exh_motion_cfg cfg = cfg_of(&par, 1000);
     for (size_t i = 0; i < LEN(row); i++) {
         struct exh_motion s = {0, 0, 0};
@@ -55,7 +50,7 @@ TEST(too_fast_for_too_long)
             int32_t v = k == want ? MPS : -4 * MPS;
             const uint32_t faults = exh_motion_step(&s, &cfg, &v, &limits);
             CHECK(faults == (k >= 2 * want ? EXH_FAULT_SPEED : 0u), "%" PRIu32 " Hz, tick %" PRIu32,
-                  rate_Hz, k);
+                rate_Hz, k);
         }
     }
 }
@@ -140,5 +135,5 @@ TEST(damaged_state)
 }
 
 TEST_MAIN("unit/motion", velocity_is_held_within_the_limit, too_fast_for_too_long,
-          standing_while_pulled, off_is_never_stuck, setup_refuses_what_is_out_of_range,
-          state_round_trip, damaged_state);
+    standing_while_pulled, off_is_never_stuck, setup_refuses_what_is_out_of_range, state_round_trip,
+    damaged_state);

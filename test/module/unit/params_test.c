@@ -210,9 +210,9 @@ TEST(bad_keyframes)
         active[0] = staged[0] = 4711;
         c = exh_bytes_reader(b, n);
         exh_params_serialize(&c, &p);
-        CHECK(!exh_bytes_ok(&c) && active[0] == 4711 && staged[0] == 4711 && !p.moving &&
-                  !p.pending,
-              "case %u", i);
+        CHECK(
+            !exh_bytes_ok(&c) && active[0] == 4711 && staged[0] == 4711 && !p.moving && !p.pending,
+            "case %u", i);
     }
 }
 
@@ -281,8 +281,8 @@ TEST(keyframe_at_rest)
     CHECK(p.moving && p.pending, "nothing to take away");
     c = exh_bytes_reader(b, c.at);
     exh_params_serialize(&c, &p);
-    CHECK(exh_bytes_ok(&c) && !p.moving && !p.pending, "moving %d, pending %d", p.moving,
-          p.pending);
+    CHECK(
+        exh_bytes_ok(&c) && !p.moving && !p.pending, "moving %d, pending %d", p.moving, p.pending);
     CHECK(active[GAIN] == 100 && staged[GAIN] == 100 && staged[1] == 3, "values");
 }
 
@@ -364,6 +364,6 @@ TEST(the_sum_is_of_both_arrays)
 }
 
 TEST_MAIN("unit/params", steps_worked_out, slewed_and_not, damaged_while_another_moves,
-          before_the_loop_at_once, shift_of_a_time, image_in_mid_way, keyframe_in_mid_way,
-          bad_keyframes, guard_in_mid_way, taken_back, keyframe_at_rest, images_of_a_head,
-          a_table_of_none, a_limit_falls_at_once, what_may_be_staged, the_sum_is_of_both_arrays);
+    before_the_loop_at_once, shift_of_a_time, image_in_mid_way, keyframe_in_mid_way, bad_keyframes,
+    guard_in_mid_way, taken_back, keyframe_at_rest, images_of_a_head, a_table_of_none,
+    a_limit_falls_at_once, what_may_be_staged, the_sum_is_of_both_arrays);

@@ -26,10 +26,7 @@ static struct rig {
     struct exh_period T;
 } rig;
 
-static struct exh_table held(void)
-{
-    return (struct exh_table){rig.held, 2};
-}
+static struct exh_table held(void) { return (struct exh_table){rig.held, 2}; }
 
 static void start(int32_t on)
 {
@@ -45,8 +42,8 @@ static void start(int32_t on)
     CHECK_EQ_I64(exh_table_setup(rig.to_cur, 2), 0);
     CHECK_EQ_I64(exh_table_invert(rig.held, rig.to_cur, 2), 0);
     CHECK_EQ_I64(exh_drive_setup(&rig.drive, &rig.drive_par, rig.T,
-                                 (struct exh_table){rig.to_cur, 2}, (struct exh_table){NULL, 0}),
-                 0);
+                     (struct exh_table){rig.to_cur, 2}, (struct exh_table){NULL, 0}),
+        0);
 }
 
 static int setup(void)
@@ -66,17 +63,14 @@ static int32_t tick(int32_t cnt, int touching, int32_t spring, int32_t pull)
     rig.f.pullback_N_q20 = pull * (NEWTON / 8);
     (void)exh_passivity_step(&rig.s, &rig.cfg, cnt, touching, &rig.f);
     force = exh_clamp(rig.f.spring_N_q20 + rig.f.pullback_N_q20 + rig.f.passivity_N_q20, 0,
-                      rig.drive_par.f_max_N_q20);
+        rig.drive_par.f_max_N_q20);
     rig.f.force_N_q20 = force;
     exh_passivity_update(&rig.s, &rig.cfg, &rig.f, force * (AMPERE / NEWTON / 4));
     return force / (NEWTON / 8);
 }
 
 /* Newton counts, in eighths. */
-static int64_t energy(void)
-{
-    return rig.s.energy_Ncnt_q20 / (NEWTON / 8);
-}
+static int64_t energy(void) { return rig.s.energy_Ncnt_q20 / (NEWTON / 8); }
 
 TEST(what_is_held_times_what_moves)
 {
@@ -105,22 +99,22 @@ TEST(what_is_owed_lowers_the_limit)
     static const struct {
         int32_t owed;        /* N counts */
         int32_t asked, left; /* N/8 */
-    } row[] = {{0, 160, 160},  {0, 1000, 160},  {31, 160, 152}, {31, 152, 152}, {31, 151, 151},
-               {310, 160, 80}, {310, 79, 79},   {310, 1, 1},    {589, 160, 8},  {620, 160, 0},
-               {621, 160, 0},  {99999, 160, 0}, {-31, 160, 160}};
+    } row[] = {{0, 160, 160}, {0, 1000, 160}, {31, 160, 152}, {31, 152, 152}, {31, 151, 151},
+        {310, 160, 80}, {310, 79, 79}, {310, 1, 1}, {589, 160, 8}, {620, 160, 0}, {621, 160, 0},
+        {99999, 160, 0}, {-31, 160, 160}};
     start(1);
     CHECK_EQ_I64(setup(), 0);
     for (size_t i = 0; i < LEN(row); i++) {
         int32_t left;
         rig.s = (struct exh_passivity){.energy_Ncnt_q20 = -(int64_t)row[i].owed * NEWTON,
-                                       .held_N_q20 = 0,
-                                       .touching = 1,
-                                       .started = 1};
+            .held_N_q20 = 0,
+            .touching = 1,
+            .started = 1};
         (void)tick(0, 1, row[i].asked, 0);
         /* Never above; below by no more than 3 LSB. */
         left = (int32_t)exh_clamp(rig.f.spring_N_q20 + rig.f.passivity_N_q20, 0, 20 * NEWTON);
         CHECK(left <= row[i].left * (NEWTON / 8) && left > row[i].left * (NEWTON / 8) - 4,
-              "row %zu: %" PRId32, i, left);
+            "row %zu: %" PRId32, i, left);
     }
 }
 
@@ -135,7 +129,7 @@ TEST(the_bit_says_when_and_the_term_what)
     rig.f.pullback_N_q20 = 5 * NEWTON; /* no part in it */
     CHECK_EQ_I64(exh_passivity_step(&rig.s, &rig.cfg, 0, 1, &rig.f), EXH_LIMIT_PASSIVITY);
     CHECK(rig.f.passivity_N_q20 <= -NEWTON && rig.f.passivity_N_q20 > -NEWTON - 4, "%" PRId64,
-          rig.f.passivity_N_q20);
+        rig.f.passivity_N_q20);
     rig.f.passivity_N_q20 = 0;
     rig.f.damper_N_q20 = -2 * NEWTON - 4;
     CHECK_EQ_I64(exh_passivity_step(&rig.s, &rig.cfg, 0, 1, &rig.f), 0);
@@ -242,24 +236,24 @@ TEST(what_cannot_be_proved_is_refused)
     CHECK_EQ_I64(SETUP(held(), ((struct exh_velocity_scale){0, {1, 1000}}), SPEED), -EXH_E_RANGE);
     CHECK_EQ_I64(SETUP(held(), ((struct exh_velocity_scale){STEP, {0, 1000}}), SPEED), -EXH_E_RATE);
     CHECK_EQ_I64(SETUP(held(), ((struct exh_velocity_scale){STEP, {1, 0}}), SPEED), -EXH_E_RATE);
-    CHECK_EQ_I64(SETUP(held(), ((struct exh_velocity_scale){STEP, {1, 30000}}), SPEED),
-                 -EXH_E_RATE);
+    CHECK_EQ_I64(
+        SETUP(held(), ((struct exh_velocity_scale){STEP, {1, 30000}}), SPEED), -EXH_E_RATE);
     CHECK_EQ_I64(SETUP(held(), scale, EXH_Q(1, 10, EXH_Q_VEL) - 1), -EXH_E_RANGE);
     CHECK_EQ_I64(SETUP(held(), scale, EXH_Q(1, 10, EXH_Q_VEL)), 0);
     CHECK_EQ_I64(SETUP(((struct exh_table){NULL, 0}), scale, SPEED), -EXH_E_RANGE);
     CHECK_EQ_I64(SETUP(held(), ((struct exh_velocity_scale){1, {1, 1}}), SPEED), -EXH_E_RANGE);
     /* 10 m/s at 1 Hz and 1 um: inside. 0.5 um: not. */
     CHECK_EQ_I64(SETUP(held(), ((struct exh_velocity_scale){EXH_Q(1, 1000000, 42), {1, 1}}),
-                       EXH_Q(10, 1, EXH_Q_VEL)),
-                 0);
+                     EXH_Q(10, 1, EXH_Q_VEL)),
+        0);
     CHECK_EQ_I64(SETUP(held(), ((struct exh_velocity_scale){EXH_Q(1, 2000000, 42), {1, 1}}),
-                       EXH_Q(10, 1, EXH_Q_VEL)),
-                 -EXH_E_RANGE);
+                     EXH_Q(10, 1, EXH_Q_VEL)),
+        -EXH_E_RANGE);
     /* A count a tick is 2^-27 m/s: the longest way, and one count more. */
     CHECK_EQ_I64(SETUP(held(), ((struct exh_velocity_scale){1 << 15, {1, 1}}), (1 << 24) - 1), 0);
     CHECK_EQ_I64(rig.cfg.way_cnt, 1 << 24);
-    CHECK_EQ_I64(SETUP(held(), ((struct exh_velocity_scale){1 << 15, {1, 1}}), 1 << 24),
-                 -EXH_E_RANGE);
+    CHECK_EQ_I64(
+        SETUP(held(), ((struct exh_velocity_scale){1 << 15, {1, 1}}), 1 << 24), -EXH_E_RANGE);
     rig.held[0].y = 1; /* a force without a current */
     CHECK_EQ_I64(exh_table_setup(rig.held, 2), 0);
     CHECK_EQ_I64(setup(), -EXH_E_RANGE);
@@ -287,7 +281,7 @@ TEST(bytes_come_back)
     exh_passivity_serialize(&c, &t);
     CHECK(s.energy_Ncnt_q20 == t.energy_Ncnt_q20 && t.held_N_q20 == 7 && t.late_N_q20 == 8 &&
               t.cnt == -9 && t.touching == 1 && t.started == 1,
-          "%" PRId64, t.energy_Ncnt_q20);
+        "%" PRId64, t.energy_Ncnt_q20);
 }
 
 /* Any bytes: nothing overflows in what follows (the sanitizers look). */
@@ -320,8 +314,8 @@ TEST(what_has_to_fall_is_no_more_than_the_highest_limit)
     CHECK_EQ_I64(exh_table_setup(rig.to_cur, 2), 0);
     rig.drive_par.slew_down_Nps = 100001; /* of a tick of 1 ms, rounded: 100 N */
     CHECK_EQ_I64(exh_drive_setup(&rig.drive, &rig.drive_par, rig.T,
-                                 (struct exh_table){rig.to_cur, 2}, (struct exh_table){NULL, 0}),
-                 0);
+                     (struct exh_table){rig.to_cur, 2}, (struct exh_table){NULL, 0}),
+        0);
     CHECK_EQ_I64(setup(), 0);
     rig.drive_par.slew_down_Nps = 99999;
     CHECK_EQ_I64(setup(), -EXH_E_RANGE);
@@ -348,9 +342,8 @@ TEST(the_least_energy_is_forgotten_and_the_first_tick_moves_nothing)
 TEST(energies_and_ways_at_their_ends)
 {
     static const int64_t row[][2] = {{INT64_C(1) << 60, INT64_C(1) << 60},
-                                     {(INT64_C(1) << 60) + 1, INT64_C(1) << 60},
-                                     {INT64_MIN, -(INT64_C(1) << 60)},
-                                     {INT64_MAX, INT64_C(1) << 60}};
+        {(INT64_C(1) << 60) + 1, INT64_C(1) << 60}, {INT64_MIN, -(INT64_C(1) << 60)},
+        {INT64_MAX, INT64_C(1) << 60}};
     const struct exh_velocity_scale scale = {INT32_MAX, {1, 20000}};
     for (size_t i = 0; i < LEN(row); i++) {
         struct exh_passivity s = {.energy_Ncnt_q20 = row[i][0]};
@@ -366,11 +359,11 @@ TEST(energies_and_ways_at_their_ends)
     rig.T = scale.T;
     rig.drive_par.slew_down_Nps = 10000000;
     CHECK_EQ_I64(exh_drive_setup(&rig.drive, &rig.drive_par, rig.T,
-                                 (struct exh_table){rig.to_cur, 2}, (struct exh_table){NULL, 0}),
-                 0);
+                     (struct exh_table){rig.to_cur, 2}, (struct exh_table){NULL, 0}),
+        0);
     CHECK_EQ_I64(exh_passivity_setup(&rig.cfg, &rig.par, &rig.drive, held(), scale, SPEED), 0);
     CHECK(rig.cfg.way_cnt == 1 && rig.cfg.shift == 0, "way %" PRId32 ", shift %d", rig.cfg.way_cnt,
-          rig.cfg.shift);
+        rig.cfg.shift);
 }
 
 /* A table of one knot is none, and nothing of an earlier set-up stays. */
@@ -382,8 +375,8 @@ TEST(set_up_anew)
     scale = (struct exh_velocity_scale){STEP, rig.T};
     for (uint8_t n = 0; n < 2; n++) {
         const struct exh_table few = {rig.held, n};
-        CHECK_EQ_I64(exh_passivity_setup(&rig.cfg, &rig.par, &rig.drive, few, scale, SPEED),
-                     -EXH_E_RANGE);
+        CHECK_EQ_I64(
+            exh_passivity_setup(&rig.cfg, &rig.par, &rig.drive, few, scale, SPEED), -EXH_E_RANGE);
     }
     CHECK_EQ_I64(setup(), 0);
     first = rig.cfg;
@@ -391,14 +384,13 @@ TEST(set_up_anew)
     CHECK_EQ_I64(setup(), 0);
     CHECK(rig.cfg.shift == first.shift && rig.cfg.way_cnt == first.way_cnt &&
               rig.cfg.share.mant == first.share.mant && rig.cfg.share.shift == first.share.shift,
-          "shift %d", rig.cfg.shift);
+        "shift %d", rig.cfg.shift);
 }
 
 TEST_MAIN("passivity", what_is_held_times_what_moves, what_is_owed_lowers_the_limit,
-          the_bit_says_when_and_the_term_what, the_pull_back_is_not_the_contacts,
-          contacts_are_reckoned_one_by_one, late_outputs_count_for_the_worse, counts_wrap,
-          what_cannot_be_proved_is_refused, force_has_to_be_able_to_fall_in_one_tick,
-          bytes_come_back, damaged_bytes_do_no_harm,
-          what_has_to_fall_is_no_more_than_the_highest_limit,
-          the_least_energy_is_forgotten_and_the_first_tick_moves_nothing,
-          energies_and_ways_at_their_ends, set_up_anew);
+    the_bit_says_when_and_the_term_what, the_pull_back_is_not_the_contacts,
+    contacts_are_reckoned_one_by_one, late_outputs_count_for_the_worse, counts_wrap,
+    what_cannot_be_proved_is_refused, force_has_to_be_able_to_fall_in_one_tick, bytes_come_back,
+    damaged_bytes_do_no_harm, what_has_to_fall_is_no_more_than_the_highest_limit,
+    the_least_energy_is_forgotten_and_the_first_tick_moves_nothing, energies_and_ways_at_their_ends,
+    set_up_anew);

@@ -41,10 +41,7 @@ static void at(int32_t z_m_q30)
     bits = exh_precontact_step(&s, &cfg, &in);
 }
 
-static void tell(struct exh_plane p)
-{
-    CHECK_EQ_I64(exh_precontact_update(&s, &cfg, &p, 0), 0);
-}
+static void tell(struct exh_plane p) { CHECK_EQ_I64(exh_precontact_update(&s, &cfg, &p, 0), 0); }
 
 static void frozen_at_116(void)
 {
@@ -96,8 +93,8 @@ TEST(no_plane_means_no_contact)
 {
     start();
     at(MM(150));
-    CHECK(s.lim_m_q30 == EXH_PRECONTACT_NO_LIM && s.d_m_q30 == INT32_MIN && bits == 0,
-          "first tick");
+    CHECK(
+        s.lim_m_q30 == EXH_PRECONTACT_NO_LIM && s.d_m_q30 == INT32_MIN && bits == 0, "first tick");
     CHECK(exh_precontact_none(&s), "no plane");
     tell((struct exh_plane){EXH_PLANE_UNTOLD, 9, 9, {1, 2, 3}, {4, 5, 6}});
     at(MM(150));
@@ -188,13 +185,13 @@ TEST(a_contact_that_the_glove_denies_is_let_go)
     for (n = 0; c && n < 100; n++) {
         at(MM(150));
         in.pos_m_q30 += MM(60);
-        c = exh_contact_step(&law, &wall, (struct exh_contact_in){in.pos_m_q30, 0, s.lim_m_q30},
-                             &f);
+        c = exh_contact_step(
+            &law, &wall, (struct exh_contact_in){in.pos_m_q30, 0, s.lim_m_q30}, &f);
         in.touching = (uint8_t)c;
     }
     CHECK(n == 12 && f.spring_N_q20 == 0, "force in %d ticks", n);
     CHECK(bits == (EXH_PRECONTACT_RELEASE | EXH_PRECONTACT_DOUBT | EXH_PRECONTACT_LETGO),
-          "%" PRIx32, bits);
+        "%" PRIx32, bits);
     CHECK(s.let_go_n == 1 && s.lim_m_q30 == EXH_PRECONTACT_NO_LIM, "counted");
     tell(floor_plane);
     at(MM(150));
@@ -229,7 +226,7 @@ TEST(an_unknown_fingertip)
     at(MM(150));
     CHECK(bits == EXH_PRECONTACT_BLIND && s.lim_m_q30 == EXH_PRECONTACT_NO_LIM &&
               s.d_m_q30 == INT32_MIN && s.stale_n == 0,
-          "tracking: no contact, %" PRIx32, bits);
+        "tracking: no contact, %" PRIx32, bits);
     in.tip_age_ticks = 0;
     at(MM(112));
     CHECK(bits == EXH_PRECONTACT_AROUND, "came near unseen");
@@ -241,7 +238,7 @@ TEST(an_unknown_fingertip)
         in.touching = i & 1;
         at(MM(150));
         CHECK(bits == (EXH_PRECONTACT_STANDS | EXH_PRECONTACT_DOUBT | EXH_PRECONTACT_BLIND),
-              "tick %d: %" PRIx32, i, bits);
+            "tick %d: %" PRIx32, i, bits);
     }
     at(MM(150));
     CHECK((bits & EXH_PRECONTACT_LETGO) && s.let_go_n == 1, "frozen: the string alone for 10 ms");
@@ -286,8 +283,8 @@ TEST(what_comes_while_frozen_is_ignored_and_counted)
     other.point_m_q30.z = MM(120);
     tell(other);
     at(MM(112));
-    CHECK(s.ignored_n == 1 && s.lim_m_q30 == lim && s.d_m_q30 == MM(100) - MM(112) + MM(10),
-          "moved");
+    CHECK(
+        s.ignored_n == 1 && s.lim_m_q30 == lim && s.d_m_q30 == MM(100) - MM(112) + MM(10), "moved");
     other.material = 1;
     other.object = 2;
     tell(other);
@@ -297,7 +294,7 @@ TEST(what_comes_while_frozen_is_ignored_and_counted)
     CHECK_EQ_I64(s.taken.k_Npm_q10, material[0].k_Npm_q10);
     at(MM(150));
     CHECK(s.lim_m_q30 == EXH_PRECONTACT_NO_LIM && bits == EXH_PRECONTACT_RELEASE,
-          "left, and there is none any more");
+        "left, and there is none any more");
 }
 
 TEST(what_came_while_frozen_is_new_at_the_release)
@@ -343,7 +340,7 @@ TEST(another_object_has_to_be_left_first)
     tell(p);
     at(MM(129)); /* d = 6 mm from one tick to the next */
     CHECK((bits & EXH_PRECONTACT_AROUND) && s.born_n == 1 && s.phase != EXH_PRECONTACT_FROZEN,
-          "thrown onto the finger");
+        "thrown onto the finger");
     p.point_m_q30.z = MM(100);
     tell(p);
     at(MM(129));
@@ -380,7 +377,7 @@ TEST(a_stale_plane_is_none)
     }
     at(MM(150));
     CHECK(bits == EXH_PRECONTACT_STALE && s.lim_m_q30 == EXH_PRECONTACT_NO_LIM && s.stale_n == 1,
-          "too old: %" PRIx32, bits);
+        "too old: %" PRIx32, bits);
     at(MM(112));
     CHECK(bits == EXH_PRECONTACT_STALE && s.stale_n == 1, "counted once");
     tell(floor_plane);
@@ -420,7 +417,7 @@ TEST(a_frozen_plane_does_not_age)
     CHECK(s.phase == EXH_PRECONTACT_FROZEN && s.stale_n == 0, "world gone for 1 s");
     at(MM(150));
     CHECK(bits == (EXH_PRECONTACT_RELEASE | EXH_PRECONTACT_STALE) && s.stale_n == 0,
-          "after it, nothing is known");
+        "after it, nothing is known");
 }
 
 TEST(what_cannot_be_is_refused)
@@ -468,7 +465,7 @@ TEST(material_is_taken_at_the_freeze)
     CHECK_EQ_I64(s.taken.k_Npm_q10, k + 5);
     CHECK(s.taken.b_Nspm_q20 == material[1].b_Nspm_q20 &&
               s.taken.f_max_N_q20 == material[1].f_max_N_q20,
-          "b, f_max");
+        "b, f_max");
 }
 
 TEST(scale_and_slope)
@@ -518,18 +515,18 @@ TEST(set_up_refuses)
         memcpy(odd, material, sizeof odd);
         ((int32_t *)&odd[0])[i] = exh_material_rows[i].max + 1;
         CHECK(exh_precontact_setup(&cfg, &par, odd, 2, 0, TICK) == -EXH_E_RANGE,
-              "row %d of the first", i);
+            "row %d of the first", i);
     }
     CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 0, 0, TICK), -EXH_E_RANGE);
     CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 256, 0, TICK), -EXH_E_RANGE);
     CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, -1, TICK), -EXH_E_RANGE);
     CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, MM(25) + 1, TICK), -EXH_E_RANGE);
     CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, 0, (struct exh_period){0, 1000}),
-                 -EXH_E_RATE);
+        -EXH_E_RATE);
     for (int i = 0; i < EXH_PRECONTACT_ROWS; i++) {
         CHECK(exh_precontact_rows[i].dflt >= exh_precontact_rows[i].min &&
                   exh_precontact_rows[i].dflt <= exh_precontact_rows[i].max,
-              "default %d", i);
+            "default %d", i);
     }
 }
 
@@ -550,7 +547,7 @@ TEST(state_round_trip)
     c = exh_bytes_writer(again, sizeof again);
     exh_precontact_serialize(&c, &back);
     CHECK(memcmp(buf, again, n) == 0 && back.phase == EXH_PRECONTACT_FROZEN && back.ignored_n == 7,
-          "the same");
+        "the same");
 }
 
 TEST(damaged_state_comes_back_into_range)
@@ -584,7 +581,7 @@ TEST(damaged_state_comes_back_into_range)
         c = exh_bytes_reader(buf, sizeof buf);
         exh_precontact_serialize(&c, &back);
         CHECK(back.phase == EXH_PRECONTACT_FROZEN && back.held.offset_m_q60 == s.held.offset_m_q60,
-              "sign %d", sign);
+            "sign %d", sign);
     }
     frozen_at_116();
     s.newest = s.held;
@@ -667,14 +664,13 @@ TEST(the_longest_normal)
 }
 
 TEST_MAIN("unit/precontact", distance_has_the_sign_of_the_text, rounds_once_and_half_up,
-          no_plane_means_no_contact, tracks_freezes_and_releases, the_boundary_is_d_lim_itself,
-          a_touching_finger_is_not_released, a_contact_that_the_glove_denies_is_let_go,
-          a_doubt_hangs_on_no_message, an_unknown_fingertip, missed_ticks_age_a_plane_and_a_doubt,
-          what_comes_while_frozen_is_ignored_and_counted,
-          what_came_while_frozen_is_new_at_the_release, born_inside_gives_no_contact_until_left,
-          another_object_has_to_be_left_first, the_same_object_may_come_to_the_finger,
-          a_stale_plane_is_none, a_message_may_be_old_when_it_comes, a_frozen_plane_does_not_age,
-          what_cannot_be_is_refused, material_is_taken_at_the_freeze, scale_and_slope,
-          set_up_refuses, state_round_trip, damaged_state_comes_back_into_range,
-          restored_tracking_touches_nothing_at_once, a_plane_that_turned_over_is_another,
-          the_longest_normal);
+    no_plane_means_no_contact, tracks_freezes_and_releases, the_boundary_is_d_lim_itself,
+    a_touching_finger_is_not_released, a_contact_that_the_glove_denies_is_let_go,
+    a_doubt_hangs_on_no_message, an_unknown_fingertip, missed_ticks_age_a_plane_and_a_doubt,
+    what_comes_while_frozen_is_ignored_and_counted, what_came_while_frozen_is_new_at_the_release,
+    born_inside_gives_no_contact_until_left, another_object_has_to_be_left_first,
+    the_same_object_may_come_to_the_finger, a_stale_plane_is_none,
+    a_message_may_be_old_when_it_comes, a_frozen_plane_does_not_age, what_cannot_be_is_refused,
+    material_is_taken_at_the_freeze, scale_and_slope, set_up_refuses, state_round_trip,
+    damaged_state_comes_back_into_range, restored_tracking_touches_nothing_at_once,
+    a_plane_that_turned_over_is_another, the_longest_normal);

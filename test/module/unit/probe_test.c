@@ -13,17 +13,17 @@
 /* 100 um a count, 1 kHz: a dwell of 10 ms is 10 ticks, 1 mm is 10 counts. */
 static const struct exh_probe_scale scale = {EXH_Q(1, 10000, EXH_Q_STEP), {1, 1000}};
 static const struct exh_probe_par par = {.step_A_q26 = MA(10),
-                                         .end_A_q26 = MA(1000),
-                                         .dwell_ms = 10,
-                                         .time_ms = 5000,
-                                         .move_m_q30 = MM(1) + 64,
-                                         .travel_m_q30 = MM(50)};
+    .end_A_q26 = MA(1000),
+    .dwell_ms = 10,
+    .time_ms = 5000,
+    .move_m_q30 = MM(1) + 64,
+    .travel_m_q30 = MM(50)};
 static const struct exh_home_par home_par = {.cur_A_q26 = MA(100),
-                                             .dwell_ms = 10,
-                                             .time_ms = 2000,
-                                             .move_m_q30 = MM(1) + 64,
-                                             .least_m_q30 = MM(20) + 64,
-                                             .most_m_q30 = MM(100)};
+    .dwell_ms = 10,
+    .time_ms = 2000,
+    .move_m_q30 = MM(1) + 64,
+    .least_m_q30 = MM(20) + 64,
+    .most_m_q30 = MM(100)};
 
 /* A string: in above `in`, out below `out` (a weight's; none: INT32_MIN), 2 counts a
  * tick, not beyond its end, stuck at `stuck`. way -1: wired the wrong way. A weight
@@ -75,10 +75,10 @@ TEST(finds_the_current_that_moves_within_a_step)
     for (int32_t mA = 0; mA < 990; mA += 7) {
         struct string w = slack(MA(mA));
         const struct found f = probe(&w, &par, 0);
-        CHECK(f.result == EXH_PROBE_DONE, "%" PRId32 " mA: %s", mA,
-              exh_probe_result_text(f.result));
+        CHECK(
+            f.result == EXH_PROBE_DONE, "%" PRId32 " mA: %s", mA, exh_probe_result_text(f.result));
         CHECK(f.cur_A_q26 > MA(mA) && f.cur_A_q26 <= MA(mA) + MA(10) + 8,
-              "%" PRId32 " mA: found %" PRId32, mA, f.cur_A_q26 / MA(1));
+            "%" PRId32 " mA: found %" PRId32, mA, f.cur_A_q26 / MA(1));
         CHECK(w.cnt <= -10 && w.cnt >= -20, "moved %" PRId32 " counts", w.cnt);
     }
 }
@@ -91,10 +91,10 @@ TEST(falling_finds_the_current_that_lets_go)
     for (int32_t mA = 10; mA < 800; mA += 7) {
         struct string w = {0, MA(850), MA(mA), INT32_MIN, INT32_MIN, 2, 1, INT32_MAX};
         const struct found f = probe(&w, &down, MA(900)); /* still rising at first */
-        CHECK(f.result == EXH_PROBE_DONE, "%" PRId32 " mA: %s", mA,
-              exh_probe_result_text(f.result));
+        CHECK(
+            f.result == EXH_PROBE_DONE, "%" PRId32 " mA: %s", mA, exh_probe_result_text(f.result));
         CHECK(f.cur_A_q26 < MA(mA) && f.cur_A_q26 >= MA(mA) - MA(10) - 64,
-              "%" PRId32 " mA: found %" PRId32, mA, f.cur_A_q26 / MA(1));
+            "%" PRId32 " mA: found %" PRId32, mA, f.cur_A_q26 / MA(1));
     }
 }
 
@@ -107,7 +107,7 @@ TEST(slack_is_taken_up_first)
     f = probe(&w, &par, MA(50));
     CHECK(f.result == EXH_PROBE_STILL, "%s", exh_probe_result_text(f.result));
     CHECK(f.most_A_q26 <= MA(1000) && f.most_A_q26 > MA(989), "tried up to %" PRId32 " mA",
-          f.most_A_q26 / MA(1));
+        f.most_A_q26 / MA(1));
     CHECK(f.cur_A_q26 == 0, "current stays on");
 }
 
@@ -131,7 +131,7 @@ TEST(what_stops_a_probe)
     w = slack(MA(2000));
     f = probe(&w, &slow, 0);
     CHECK(f.result == EXH_PROBE_TIME && f.cur_A_q26 == 0 && f.ticks == 100, "%s, %u ticks",
-          exh_probe_result_text(f.result), f.ticks);
+        exh_probe_result_text(f.result), f.ticks);
 
     w = slack(MA(10)); /* runs away at its first current */
     f = probe(&w, &par, MA(50));
@@ -142,7 +142,7 @@ TEST(what_stops_a_probe)
     w.out_A_q26 = MA(90); /* somebody pulls before there is current */
     f = probe(&w, &par, 0);
     CHECK(f.result == EXH_PROBE_WRONG_WAY && f.most_A_q26 == 0, "%s",
-          exh_probe_result_text(f.result));
+        exh_probe_result_text(f.result));
 }
 
 TEST(set_up_refuses_what_is_out_of_range)
@@ -150,9 +150,9 @@ TEST(set_up_refuses_what_is_out_of_range)
     static const struct {
         int field;
         int32_t v;
-    } row[] = {{0, 0},       {0, 66},       {0, -66},       {0, MA(501)}, {0, INT32_MIN},
-               {1, -1},      {1, MA(3301)}, {2, 0},         {2, 10001},   {3, 0},
-               {3, 1000001}, {4, 0},        {4, INT32_MIN}, {5, MM(1)},   {5, INT32_MAX}};
+    } row[] = {{0, 0}, {0, 66}, {0, -66}, {0, MA(501)}, {0, INT32_MIN}, {1, -1}, {1, MA(3301)},
+        {2, 0}, {2, 10001}, {3, 0}, {3, 1000001}, {4, 0}, {4, INT32_MIN}, {5, MM(1)},
+        {5, INT32_MAX}};
     struct exh_probe_cfg cfg;
     struct exh_home_cfg home;
     struct exh_weigh_cfg weigh;
@@ -160,8 +160,8 @@ TEST(set_up_refuses_what_is_out_of_range)
     for (size_t i = 0; i < LEN(row); i++) {
         struct exh_probe_par p = par;
         struct exh_weigh_par wp = {par, 0, 100};
-        int32_t *const field[] = {&p.step_A_q26, &p.end_A_q26,  &p.dwell_ms,
-                                  &p.time_ms,    &p.move_m_q30, &p.travel_m_q30};
+        int32_t *const field[] = {
+            &p.step_A_q26, &p.end_A_q26, &p.dwell_ms, &p.time_ms, &p.move_m_q30, &p.travel_m_q30};
         *field[row[i].field] = row[i].v;
         CHECK(exh_probe_setup(&cfg, &p, scale) == -EXH_E_RANGE, "row %zu", i);
         wp.probe = p;
@@ -170,8 +170,8 @@ TEST(set_up_refuses_what_is_out_of_range)
     for (unsigned i = 0; i < 6; i++) {
         const int32_t v[] = {0, 0, 0, 0, -1, INT32_MAX};
         struct exh_home_par p = home_par;
-        int32_t *const field[] = {&p.cur_A_q26,  &p.dwell_ms,    &p.time_ms,
-                                  &p.move_m_q30, &p.least_m_q30, &p.most_m_q30};
+        int32_t *const field[] = {
+            &p.cur_A_q26, &p.dwell_ms, &p.time_ms, &p.move_m_q30, &p.least_m_q30, &p.most_m_q30};
         *field[i] = v[i];
         CHECK(exh_home_setup(&home, &p, scale) == -EXH_E_RANGE, "home, row %u", i);
     }
@@ -203,10 +203,10 @@ TEST(set_up_refuses_what_is_out_of_range)
     bad.step_m_q42 = INT32_MAX; /* 488 um a count: `move` is still two of them */
     CHECK_EQ_I64(exh_probe_setup(&cfg, &par, bad), 0);
     CHECK_EQ_I64(cfg.move_cnt, 2);
-    CHECK_EQ_I64(exh_probe_setup(&cfg, &par, (struct exh_probe_scale){1, {1, 20000}}),
-                 -EXH_E_RANGE);
+    CHECK_EQ_I64(
+        exh_probe_setup(&cfg, &par, (struct exh_probe_scale){1, {1, 20000}}), -EXH_E_RANGE);
     CHECK_EQ_I64(exh_home_setup(&home, &home_par, (struct exh_probe_scale){100, {1, 1000}}),
-                 -EXH_E_RANGE); /* 4.4 * 10^9 counts to the limit: beyond any counter */
+        -EXH_E_RANGE); /* 4.4 * 10^9 counts to the limit: beyond any counter */
     CHECK_EQ_I64(exh_probe_setup(&cfg, &par, (struct exh_probe_scale){1000, {1, 1}}), 0);
     CHECK(cfg.dwell_ticks == 2 && cfg.ticks == 5, "1 Hz");
 }
@@ -237,9 +237,9 @@ TEST(home_is_the_end_of_the_string)
     static const struct {
         int32_t end_cnt;
         unsigned result;
-    } row[] = {{-500, EXH_PROBE_DONE},    {-202, EXH_PROBE_DONE},       {-990, EXH_PROBE_DONE},
-               {-198, EXH_PROBE_JAM},     {0, EXH_PROBE_JAM},           {-20, EXH_PROBE_JAM},
-               {-1100, EXH_PROBE_TRAVEL}, {INT32_MIN, EXH_PROBE_TRAVEL}};
+    } row[] = {{-500, EXH_PROBE_DONE}, {-202, EXH_PROBE_DONE}, {-990, EXH_PROBE_DONE},
+        {-198, EXH_PROBE_JAM}, {0, EXH_PROBE_JAM}, {-20, EXH_PROBE_JAM}, {-1100, EXH_PROBE_TRAVEL},
+        {INT32_MIN, EXH_PROBE_TRAVEL}};
     for (size_t i = 0; i < LEN(row); i++) {
         struct string w = slack(MA(20));
         struct found f;
@@ -259,7 +259,7 @@ TEST(what_stops_homing)
     w.way = -1;
     f = home(&w, NULL);
     CHECK(f.result == EXH_PROBE_WRONG_WAY && w.cnt <= 12 && f.ticks < 10, "%s, %" PRId32,
-          exh_probe_result_text(f.result), w.cnt);
+        exh_probe_result_text(f.result), w.cnt);
     w = slack(MA(20));
     w.stuck_cnt = -100; /* half way to where an end may be */
     f = home(&w, NULL);
@@ -280,8 +280,8 @@ TEST(homing_takes_no_longer_than_allowed)
     CHECK_EQ_I64(exh_home_setup(&cfg, &p, scale), 0);
     exh_home_start(&s, 0);
     while (exh_home_step(&s, &cfg, -2 * (int32_t)n) == EXH_PROBE_BUSY && n < 1000) { n++; }
-    CHECK(s.result == EXH_PROBE_TIME && n == 99, "%s, %u ticks", exh_probe_result_text(s.result),
-          n);
+    CHECK(
+        s.result == EXH_PROBE_TIME && n == 99, "%s, %u ticks", exh_probe_result_text(s.result), n);
 }
 
 /* With a least way of 0 an end at once is one; the whole way may be gone, and no more. */
@@ -335,15 +335,15 @@ TEST(weighing_brackets_friction)
             w.stand_cnt = 0;
             f = weigh(&w, &p, MA(1));
             CHECK(f.result == EXH_PROBE_DONE, "%" PRId32 "+%" PRId32 " mA: %s", sink, band,
-                  exh_probe_result_text(f.result));
+                exh_probe_result_text(f.result));
             off = p.cur_A_q26 - MA(2 * sink + band) / 2;
             half = p.friction_A_q26 - MA(band) / 2;
             CHECK(off <= MA(6) && off >= -MA(6),
-                  "%" PRId32 "+%" PRId32 " mA: middle off by %" PRId32 " uA", sink, band,
-                  off / (MA(1) / 1000));
+                "%" PRId32 "+%" PRId32 " mA: middle off by %" PRId32 " uA", sink, band,
+                off / (MA(1) / 1000));
             CHECK(half >= 0 && half <= MA(11),
-                  "%" PRId32 "+%" PRId32 " mA: friction off by %" PRId32, sink, band,
-                  half / (MA(1) / 1000));
+                "%" PRId32 "+%" PRId32 " mA: friction off by %" PRId32, sink, band,
+                half / (MA(1) / 1000));
             CHECK(p.mon_A_q26 == p.cur_A_q26 + MA(1) && p.force_N_q20 == 77, "monitor");
         }
     }
@@ -358,16 +358,16 @@ TEST(what_stops_weighing)
     w = slack(MA(2000)); /* too heavy */
     f = weigh(&w, &p, 0);
     CHECK(f.result == EXH_PROBE_STILL && f.most_A_q26 <= MA(1000), "%s",
-          exh_probe_result_text(f.result));
+        exh_probe_result_text(f.result));
     w = slack(MA(500)); /* lifted, and never comes down again */
     f = weigh(&w, &p, 0);
     CHECK(f.result == EXH_PROBE_STILL && f.most_A_q26 <= MA(520), "%s",
-          exh_probe_result_text(f.result));
-    w = (struct string){0,         MA(500), MA(499), INT32_MIN,
-                        INT32_MIN, 2,       1,       INT32_MAX}; /* pulls at once */
+        exh_probe_result_text(f.result));
+    w = (struct string){
+        0, MA(500), MA(499), INT32_MIN, INT32_MIN, 2, 1, INT32_MAX}; /* pulls at once */
     f = weigh(&w, &p, 0);
     CHECK(f.result == EXH_PROBE_WRONG_WAY && f.most_A_q26 <= MA(20), "%s",
-          exh_probe_result_text(f.result));
+        exh_probe_result_text(f.result));
 }
 
 /* Counts by script: how far the string goes in each phase. The limits are of all phases
@@ -428,7 +428,7 @@ TEST(a_mass_that_swings_is_not_waited_for)
     CHECK_EQ_I64(move(&w, 2, 6), EXH_PROBE_BUSY);
     while (move(&w, n % 20 < 10 ? 2 : -2, 1) == EXH_PROBE_BUSY && n < 100000) { n++; }
     CHECK(w.s.result == EXH_PROBE_TIME && w.s.cur_A_q26 == 0 && n < 5000, "%s after %u ticks",
-          exh_probe_result_text(w.s.result), n);
+        exh_probe_result_text(w.s.result), n);
 }
 
 /* A movement while the means are taken: what was taken before it is not of this rest. */
@@ -446,13 +446,13 @@ TEST(means_begin_anew_after_a_movement)
             moved = 1;
             w.cnt += 10;
         }
-        r = exh_weigh_step(&w.s, &w.cfg, w.cnt, moved ? MA(200) : MA(100),
-                           moved ? MA(220) : MA(110));
+        r = exh_weigh_step(
+            &w.s, &w.cfg, w.cnt, moved ? MA(200) : MA(100), moved ? MA(220) : MA(110));
     }
     CHECK(r == EXH_PROBE_DONE && moved, "%s", exh_probe_result_text(r));
     p = exh_weigh_point(&w.s, 1);
     CHECK(p.cur_A_q26 == MA(200) && p.mon_A_q26 == MA(220), "%" PRId32 ", %" PRId32, p.cur_A_q26,
-          p.mon_A_q26);
+        p.mon_A_q26);
 }
 
 /* --- whatever the counts do --- */
@@ -508,7 +508,7 @@ TEST(every_result_has_its_text)
     for (unsigned i = 0; i <= EXH_PROBE_RESULTS; i++) {
         for (unsigned k = 0; k < i; k++) {
             CHECK(!check_same_text(exh_probe_result_text(i), exh_probe_result_text(k)), "%u and %u",
-                  i, k);
+                i, k);
         }
     }
 }
@@ -528,7 +528,7 @@ TEST(creeping_out_ends_at_the_travel)
         (void)exh_probe_step(&s, &cfg, cnt);
     }
     CHECK(s.result == EXH_PROBE_TRAVEL && cnt == 21, "%s at %" PRId32,
-          exh_probe_result_text(s.result), cnt);
+        exh_probe_result_text(s.result), cnt);
     CHECK_EQ_I64(s.cur_A_q26, 0);
 }
 
@@ -541,8 +541,8 @@ TEST(holding_stays_within_the_way)
     for (int32_t way = -1; way <= 1; way += 2) {
         struct exh_weigh s = {.phase = 2, .result = EXH_PROBE_BUSY};
         CHECK_EQ_I64(exh_weigh_step(&s, &cfg, way * cfg.up.travel_cnt, 0, 0), EXH_PROBE_BUSY);
-        CHECK_EQ_I64(exh_weigh_step(&s, &cfg, way * (cfg.up.travel_cnt + 1), 0, 0),
-                     EXH_PROBE_TRAVEL);
+        CHECK_EQ_I64(
+            exh_weigh_step(&s, &cfg, way * (cfg.up.travel_cnt + 1), 0, 0), EXH_PROBE_TRAVEL);
     }
     CHECK_EQ_I64(cfg.down.end_A_q26, 0);
 }
@@ -574,15 +574,15 @@ TEST(ends_to_the_bit)
             last = s.cur_A_q26;
         }
         CHECK(s.result == EXH_PROBE_STILL && tried == 3 && last == from + 3 * step,
-              "%u, last %" PRId32, tried, last);
+            "%u, last %" PRId32, tried, last);
     }
 }
 
 TEST_MAIN("unit/probe", finds_the_current_that_moves_within_a_step,
-          falling_finds_the_current_that_lets_go, slack_is_taken_up_first, what_stops_a_probe,
-          set_up_refuses_what_is_out_of_range, home_is_the_end_of_the_string, what_stops_homing,
-          homing_takes_no_longer_than_allowed, weighing_brackets_friction, what_stops_weighing,
-          travel_is_of_all_phases_together, a_mass_that_swings_is_not_waited_for,
-          means_begin_anew_after_a_movement, any_counts_stay_within_the_bounds,
-          every_result_has_its_text, creeping_out_ends_at_the_travel,
-          homing_from_the_end_and_all_the_way, holding_stays_within_the_way, ends_to_the_bit);
+    falling_finds_the_current_that_lets_go, slack_is_taken_up_first, what_stops_a_probe,
+    set_up_refuses_what_is_out_of_range, home_is_the_end_of_the_string, what_stops_homing,
+    homing_takes_no_longer_than_allowed, weighing_brackets_friction, what_stops_weighing,
+    travel_is_of_all_phases_together, a_mass_that_swings_is_not_waited_for,
+    means_begin_anew_after_a_movement, any_counts_stay_within_the_bounds, every_result_has_its_text,
+    creeping_out_ends_at_the_travel, homing_from_the_end_and_all_the_way,
+    holding_stays_within_the_way, ends_to_the_bit);

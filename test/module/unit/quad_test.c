@@ -41,7 +41,7 @@ TEST(all_transitions_in_all_modes)
         CHECK(s.cnt == 0 && s.edges == 0 && s.illegal == 0, "first sample %u counted", from);
         exh_quad_ab_step(&s, m, to | 0xFC);
         CHECK(s.cnt == (want == ILL ? 0 : want), "x%d %u to %u: %" PRId32, modes[i / 16].x, from,
-              to, s.cnt);
+            to, s.cnt);
         CHECK(s.illegal == (want == ILL), "x%d %u to %u", modes[i / 16].x, from, to);
         CHECK(s.edges == (want != ILL && from != to), "x%d %u to %u", modes[i / 16].x, from, to);
     }
@@ -241,18 +241,10 @@ TEST(position_by_hand)
     static const struct {
         int32_t step_m_q42, cnt, want;
     } row[] = {
-        {4096, 7, 7},
-        {4096, -7, -7},
-        {2048, 1, 1},
-        {2048, -1, 0}, /* halves go up */
-        {1, 2047, 0},
-        {1, 2048, 1},
-        {INT32_MAX, 1, 524288},
-        {INT32_MAX, INT32_MAX, INT32_MAX},
-        {INT32_MAX, INT32_MIN, INT32_MIN},
-        {4096, INT32_MIN, INT32_MIN},
-        {4097, INT32_MIN, INT32_MIN},
-        {4097, INT32_MAX, INT32_MAX},
+        {4096, 7, 7}, {4096, -7, -7}, {2048, 1, 1}, {2048, -1, 0}, /* halves go up */
+        {1, 2047, 0}, {1, 2048, 1}, {INT32_MAX, 1, 524288}, {INT32_MAX, INT32_MAX, INT32_MAX},
+        {INT32_MAX, INT32_MIN, INT32_MIN}, {4096, INT32_MIN, INT32_MIN},
+        {4097, INT32_MIN, INT32_MIN}, {4097, INT32_MAX, INT32_MAX},
         {43980465, 100000, 1073741821}, /* 10 um a count, 1 m */
     };
     for (size_t i = 0; i < LEN(row); i++) {
@@ -272,9 +264,9 @@ TEST(state_round_trip)
     c = exh_bytes_reader(buf, c.at);
     exh_quad_serialize(&c, &back);
     CHECK(exh_bytes_ok(&c), "reader");
-    CHECK(back.raw == s.raw && back.cnt == s.cnt && back.started == s.started &&
-              back.lost == s.lost,
-          "state differs");
+    CHECK(
+        back.raw == s.raw && back.cnt == s.cnt && back.started == s.started && back.lost == s.lost,
+        "state differs");
 }
 
 TEST(lines_round_trip)
@@ -288,7 +280,7 @@ TEST(lines_round_trip)
     exh_quad_ab_serialize(&c, &back);
     CHECK(exh_bytes_ok(&c) && back.cnt == -5 && back.edges == 6 && back.illegal == 7 &&
               back.ab == 3 && back.started == 1,
-          "state differs");
+        "state differs");
     memset(buf, 0xFF, sizeof buf); /* damaged: the lines are an index into a table */
     c = exh_bytes_reader(buf, sizeof buf);
     exh_quad_ab_serialize(&c, &back);
@@ -308,7 +300,7 @@ TEST(index_round_trip)
     exh_quad_index_serialize(&c, &back);
     CHECK(exh_bytes_ok(&c) && back.cnt == -8 && back.seen == 9 && back.level == 1 &&
               back.started == 1,
-          "state differs");
+        "state differs");
     memset(buf, 0xFE, sizeof buf);
     c = exh_bytes_reader(buf, sizeof buf);
     exh_quad_index_serialize(&c, &back);
@@ -382,8 +374,7 @@ TEST(setup_rejections)
 }
 
 TEST_MAIN("unit/quad", all_transitions_in_all_modes, a_turn_and_back, chatter_does_not_drift,
-          count_wraps_without_a_jump, runs_of_one_kind, a_run_of_nothing_starts_nothing,
-          words_hang_together, index_latches_the_count, first_value_is_count_zero,
-          wraps_at_both_ends, bits_above_the_counter_are_ignored, long_walks, position_by_hand,
-          state_round_trip, lines_round_trip, index_round_trip, a_jump_is_told_at_every_rate,
-          setup_rejections);
+    count_wraps_without_a_jump, runs_of_one_kind, a_run_of_nothing_starts_nothing,
+    words_hang_together, index_latches_the_count, first_value_is_count_zero, wraps_at_both_ends,
+    bits_above_the_counter_are_ignored, long_walks, position_by_hand, state_round_trip,
+    lines_round_trip, index_round_trip, a_jump_is_told_at_every_rate, setup_rejections);

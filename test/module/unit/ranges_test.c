@@ -27,7 +27,7 @@ struct range {
 };
 
 static void some(const char *name, const struct range *of, uint32_t n,
-                 int (*setup)(const int32_t *par), int32_t *par)
+    int (*setup)(const int32_t *par), int32_t *par)
 {
     CHECK(setup(par) == 0, "%s, usual: %d", name, setup(par));
     for (uint32_t i = 0; i < n; i++) {
@@ -49,8 +49,8 @@ static void some(const char *name, const struct range *of, uint32_t n,
     }
 }
 
-static void ends(const char *name, const struct range *of, uint32_t n,
-                 int (*setup)(const int32_t *par))
+static void ends(
+    const char *name, const struct range *of, uint32_t n, int (*setup)(const int32_t *par))
 {
     int32_t par[FIELDS_MAX] = {0};
     for (uint32_t i = 0; i < n; i++) { par[i] = of[i].usual; }
@@ -117,12 +117,12 @@ static int drive(const int32_t *p)
 {
     static struct exh_knot knot[2] = {{0, 0, {0, 0}}, {EXH_Q(10, 1, EXH_Q_FORCE), A(5, 1), {0, 0}}};
     static struct exh_knot back[2];
-    const struct exh_drive_par par = {p[0], p[1], p[2], p[3], p[4], p[5],
-                                      p[6], p[7], p[8], p[9], p[10]};
+    const struct exh_drive_par par = {
+        p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8], p[9], p[10]};
     struct exh_drive_cfg cfg;
     if (exh_table_setup(knot, 2) < 0 || exh_table_invert(back, knot, 2) < 0) { return 1; }
-    return exh_drive_setup(&cfg, &par, kHz, (struct exh_table){knot, 2},
-                           (struct exh_table){back, 2});
+    return exh_drive_setup(
+        &cfg, &par, kHz, (struct exh_table){knot, 2}, (struct exh_table){back, 2});
 }
 
 static int advise(const int32_t *p)
@@ -159,10 +159,8 @@ TEST(of_track)
 TEST(of_supply)
 {
     enum { V = INT32_C(1) << EXH_Q_SUPPLY };
-    static const struct range of[] = {{20 * V, 0, 50 * V},
-                                      {50 * V, 20 * V, 100 * V},
-                                      {EXH_Q(1, 128, EXH_Q_VPRAW), 1638451, INT32_MAX},
-                                      {10, 1, 1000}};
+    static const struct range of[] = {{20 * V, 0, 50 * V}, {50 * V, 20 * V, 100 * V},
+        {EXH_Q(1, 128, EXH_Q_VPRAW), 1638451, INT32_MAX}, {10, 1, 1000}};
     static const struct range unjudged[] = {
         {0, 0, 0}, {50 * V, 0, 100 * V}, {1, 1, INT32_MAX}, {10, 1, 1000}};
     ends("supply", of, LEN(of), supply);
@@ -183,12 +181,9 @@ TEST(of_supply)
 
 TEST(of_safety)
 {
-    static const struct range of[] = {
-        {1, 0, 1},
+    static const struct range of[] = {{1, 0, 1},
         {EXH_Q(1, 1, EXH_Q_FORCE), EXH_Q(1, 10, EXH_Q_FORCE), EXH_Q(10, 1, EXH_Q_FORCE)},
-        {50, 1, 1000},
-        {500, 1, 5000},
-        {15, 5, 18}};
+        {50, 1, 1000}, {500, 1, 5000}, {15, 5, 18}};
     ends("safety", of, LEN(of), safety);
 }
 
@@ -262,14 +257,8 @@ TEST(of_home)
 TEST(of_weigh)
 {
     int32_t par[] = {A(1, 100), A(1, 1), 100, 10000, M(1, 1000), M(1, 10), A(1, 10), 1000};
-    static const struct range of[] = {{0, A(1, 1000000), A(1, 2)},
-                                      {0, A(1, 10), A(33, 10)},
-                                      {0, 1, 10000},
-                                      {0, 1, 1000000},
-                                      {0, 1, 0},
-                                      {0, 1, 0},
-                                      {0, 0, A(1, 1)},
-                                      {0, 1, 100000}};
+    static const struct range of[] = {{0, A(1, 1000000), A(1, 2)}, {0, A(1, 10), A(33, 10)},
+        {0, 1, 10000}, {0, 1, 1000000}, {0, 1, 0}, {0, 1, 0}, {0, 0, A(1, 1)}, {0, 1, 100000}};
     some("weigh", of, LEN(of), weigh, par);
     par[0] = -A(1, 100);
     CHECK(weigh(par) == -EXH_E_RANGE, "it goes up first");
@@ -311,8 +300,8 @@ TEST(of_drive)
 TEST(of_advise)
 {
     int32_t par[] = {0, 0, 0, 0, 0, 0, 0, -M(5, 1000)};
-    static const int32_t most[] = {M(1, 1000), 2000000,  M(1, 2), 2000000, EXH_Q(1, 4, EXH_Q_VEL),
-                                   INT32_MAX,  INT32_MAX};
+    static const int32_t most[] = {
+        M(1, 1000), 2000000, M(1, 2), 2000000, EXH_Q(1, 4, EXH_Q_VEL), INT32_MAX, INT32_MAX};
     CHECK(advise(par) == 0, "nothing at all is needed");
     for (uint32_t i = 0; i < LEN(most); i++) {
         par[i] = -1;
@@ -341,4 +330,4 @@ TEST(advice_for_the_least_ball)
 }
 
 TEST_MAIN("unit/ranges", of_watch, of_track, of_supply, of_safety, of_quad, of_probe, of_home,
-          of_weigh, of_drive, of_advise, advice_for_the_least_ball);
+    of_weigh, of_drive, of_advise, advice_for_the_least_ball);

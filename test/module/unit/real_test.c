@@ -6,15 +6,9 @@
 #include "check.h"
 #include "wide.h"
 
-static int same(struct exh_real a, uint64_t m, int32_t e)
-{
-    return a.m == m && a.e == e;
-}
+static int same(struct exh_real a, uint64_t m, int32_t e) { return a.m == m && a.e == e; }
 
-static int64_t rounded(struct exh_real a)
-{
-    return (int64_t)exh_real_round(a);
-}
+static int64_t rounded(struct exh_real a) { return (int64_t)exh_real_round(a); }
 
 #define TOP (UINT64_C(1) << 62)
 
@@ -51,7 +45,7 @@ TEST(what_is_too_small_to_matter)
         CHECK(same(exh_real_add(one, small), TOP + left, -62), "1 + 2^-%" PRId32, n);
         CHECK(same(exh_real_add(small, one), TOP + left, -62), "2^-%" PRId32 " + 1", n);
         CHECK(same(exh_real_sub(one, small), left ? 2 * (TOP - left) : TOP, left ? -63 : -62),
-              "1 - 2^-%" PRId32, n);
+            "1 - 2^-%" PRId32, n);
     }
 }
 
@@ -79,8 +73,8 @@ TEST(rounds_half_up_once)
 TEST(products_are_exact_in_64_bits)
 {
     for (uint32_t i = 0; i < 1000; i++) {
-        const struct exh_real a = {TOP | (UINT64_C(0x9E3779B97F4A7C15) * (i + 1) >> 2),
-                                   (int32_t)i - 500};
+        const struct exh_real a = {
+            TOP | (UINT64_C(0x9E3779B97F4A7C15) * (i + 1) >> 2), (int32_t)i - 500};
         const struct exh_real b = {
             TOP | (i == 0 ? TOP - 1 : UINT64_C(0xD1342543DE82EF95) * (i + 7) >> 2), 3};
         uint64_t m = wide_mulu(a.m, b.m).hi;
@@ -102,9 +96,9 @@ TEST(quotients_to_the_last_bit)
         }
     }
     CHECK(same(exh_real_div(exh_real_of(1), exh_real_of(3)), UINT64_C(0x5555555555555555), -64),
-          "1/3");
+        "1/3");
     CHECK(same(exh_real_div(exh_real_of(2), exh_real_of(3)), UINT64_C(0x5555555555555555), -63),
-          "2/3");
+        "2/3");
 }
 
 /* Of 80 digits, beside a flat and a right angle too: within 2^-56. */
@@ -131,5 +125,5 @@ TEST(tangents_near_both_ends)
 }
 
 TEST_MAIN("unit/real", none_is_none, none_and_very_small, what_is_too_small_to_matter,
-          sums_in_either_order, rounds_half_up_once, products_are_exact_in_64_bits,
-          quotients_to_the_last_bit, tangents_near_both_ends);
+    sums_in_either_order, rounds_half_up_once, products_are_exact_in_64_bits,
+    quotients_to_the_last_bit, tangents_near_both_ends);

@@ -8,8 +8,8 @@
 
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
 
-static const uint8_t all_types[] = {EXH_RECORD_HEADER,   EXH_RECORD_FRAME,   EXH_RECORD_EVENT,
-                                    EXH_RECORD_KEYFRAME, EXH_RECORD_DROPPED, EXH_RECORD_END};
+static const uint8_t all_types[] = {EXH_RECORD_HEADER, EXH_RECORD_FRAME, EXH_RECORD_EVENT,
+    EXH_RECORD_KEYFRAME, EXH_RECORD_DROPPED, EXH_RECORD_END};
 
 /* A record with n payload bytes 1, 2, 3 …; its size. */
 static uint32_t make(uint8_t *buf, size_t cap, uint8_t type, uint32_t seq, uint32_t n)
@@ -104,8 +104,8 @@ TEST(every_flipped_bit_is_detected)
         got = exh_record_decode(buf, sizeof buf, &r);
         buf[bit / 8] ^= (uint8_t)(1u << bit % 8);
         CHECK(got < 0, "bit %" PRIu32 " passed as %" PRId32 " bytes", bit, got);
-        CHECK(got == (bit < 16 ? -EXH_E_UNKNOWN : -EXH_E_CRC), "bit %" PRIu32 ": %" PRId32, bit,
-              got);
+        CHECK(
+            got == (bit < 16 ? -EXH_E_UNKNOWN : -EXH_E_CRC), "bit %" PRIu32 ": %" PRId32, bit, got);
     }
 }
 
@@ -251,7 +251,7 @@ TEST(begins_at_the_beginning)
 }
 
 TEST_MAIN("unit/record", layout_by_hand, round_trip_of_every_type_and_size,
-          largest_payload_and_one_more, does_not_fit_at_any_size, truncated_at_every_byte,
-          every_flipped_bit_is_detected, another_version_is_named, resync_after_damage,
-          any_bytes_are_safe_to_read, header_and_event_round_trip, measuring_a_record,
-          what_was_not_begun_does_not_end, begins_at_the_beginning, every_byte_of_a_name);
+    largest_payload_and_one_more, does_not_fit_at_any_size, truncated_at_every_byte,
+    every_flipped_bit_is_detected, another_version_is_named, resync_after_damage,
+    any_bytes_are_safe_to_read, header_and_event_round_trip, measuring_a_record,
+    what_was_not_begun_does_not_end, begins_at_the_beginning, every_byte_of_a_name);

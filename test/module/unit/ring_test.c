@@ -161,7 +161,7 @@ TEST(a_record_in_pieces_is_the_record)
             }
             size = exh_record_end(&c);
             exh_record_out_begin(&o, EXH_RECORD_EVENT, 0x01020304, 0x99887766,
-                                 (struct exh_record_place){wrapped, sizeof wrapped, at, 10});
+                (struct exh_record_place){wrapped, sizeof wrapped, at, 10});
             while (n < sizeof want && (k = exh_record_out(&o, got + n, piece)) > 0) {
                 CHECK(k <= piece, "%" PRIu32 " of %" PRIu32, k, piece);
                 n += k;
@@ -215,8 +215,7 @@ TEST(beginnings_have_their_room)
 }
 
 TEST_MAIN("unit/ring", set_up_refuses_memory_that_is_none, nothing_before_the_first_keyframe,
-          a_keyframe_is_wanted_when_a_part_is_long_enough, the_oldest_part_goes,
-          what_is_too_long_is_lost_and_harms_nothing, a_part_ends_on_its_very_byte,
-          losses_do_not_wrap, without_keyframes_there_is_nothing_to_begin_with,
-          a_record_in_pieces_is_the_record, damaged_memory_is_safe_to_read,
-          beginnings_have_their_room);
+    a_keyframe_is_wanted_when_a_part_is_long_enough, the_oldest_part_goes,
+    what_is_too_long_is_lost_and_harms_nothing, a_part_ends_on_its_very_byte, losses_do_not_wrap,
+    without_keyframes_there_is_nothing_to_begin_with, a_record_in_pieces_is_the_record,
+    damaged_memory_is_safe_to_read, beginnings_have_their_room);

@@ -52,11 +52,16 @@ static const struct cell {
     uint8_t trigger;
     uint8_t to[EXH_STATES]; /* from off, arm, run, limit, release, fault */
 } cell[] = {
-    {EXH_ON_REFUSED, {0, 0, NO, NO, NO, NO}},   {EXH_ON_CUT, {0, 5, 5, 5, 5, 5}},
-    {EXH_ON_CAUSE, {0, 4, 4, 4, 4, 5}},         {EXH_ON_OFF, {0, 4, 4, 4, 4, 5}},
-    {EXH_ON_RELEASED, {NO, NO, NO, NO, 0, NO}}, {EXH_ON_LATCHED, {NO, NO, NO, NO, 5, NO}},
-    {EXH_ON_RUN, {1, 1, 2, 2, 4, 5}},           {EXH_ON_ARMED, {NO, 2, NO, NO, NO, NO}},
-    {EXH_ON_LIMITED, {NO, NO, 3, 3, NO, NO}},   {EXH_ON_CLEAR, {NO, NO, NO, NO, NO, 0}},
+    {EXH_ON_REFUSED, {0, 0, NO, NO, NO, NO}},
+    {EXH_ON_CUT, {0, 5, 5, 5, 5, 5}},
+    {EXH_ON_CAUSE, {0, 4, 4, 4, 4, 5}},
+    {EXH_ON_OFF, {0, 4, 4, 4, 4, 5}},
+    {EXH_ON_RELEASED, {NO, NO, NO, NO, 0, NO}},
+    {EXH_ON_LATCHED, {NO, NO, NO, NO, 5, NO}},
+    {EXH_ON_RUN, {1, 1, 2, 2, 4, 5}},
+    {EXH_ON_ARMED, {NO, 2, NO, NO, NO, NO}},
+    {EXH_ON_LIMITED, {NO, NO, 3, 3, NO, NO}},
+    {EXH_ON_CLEAR, {NO, NO, NO, NO, NO, 0}},
     {EXH_ON_NONE, {0, 1, 2, 2, 4, 5}},
 };
 
@@ -66,8 +71,8 @@ TEST(every_cell_is_what_it_should_be)
     for (size_t c = 0; c < LEN(cell); c++) {
         for (unsigned s = 0; s < EXH_STATES; s++) {
             CHECK(exh_safety_next[s][cell[c].trigger] == cell[c].to[s], "%s, %s: %d, want %d",
-                  exh_state_name(s), exh_trigger_name(cell[c].trigger),
-                  exh_safety_next[s][cell[c].trigger], cell[c].to[s]);
+                exh_state_name(s), exh_trigger_name(cell[c].trigger),
+                exh_safety_next[s][cell[c].trigger], cell[c].to[s]);
         }
     }
 }
@@ -103,8 +108,8 @@ TEST(every_state_is_reached)
         CHECK_EQ_I64(s.state, state);
         CHECK_EQ_I64(early.state, state);
         CHECK_EQ_I64(exh_safety_is_open(&s), state >= EXH_STATE_ARM && state <= EXH_STATE_RELEASE);
-        CHECK_EQ_I64(exh_safety_is_open(&early),
-                     state >= EXH_STATE_RUN && state <= EXH_STATE_RELEASE);
+        CHECK_EQ_I64(
+            exh_safety_is_open(&early), state >= EXH_STATE_RUN && state <= EXH_STATE_RELEASE);
     }
 }
 
@@ -128,7 +133,7 @@ TEST(every_fault_in_every_state)
             exh_safety_step(&s, &cfg, with_cause(fault, command[k / EXH_FAULTS / EXH_STATES / 2]));
         const int latches = open || state == EXH_STATE_FAULT;
         CHECK(s.state == want, "%s in %s: %s", exh_fault_name(k % EXH_FAULTS),
-              exh_state_name(state), exh_state_name(s.state));
+            exh_state_name(state), exh_state_name(s.state));
         CHECK_EQ_I64(s.present, fault);
         CHECK_EQ_I64(s.faults, latches ? before | fault : 0);
         if (open) { CHECK(s.first == fault && s.first_tick == tick, "first"); }
@@ -173,7 +178,7 @@ TEST(each_step_is_named_where_it_does_not_hold)
             if (k == 5) { s.limits = EXH_LIMIT_FORCE | EXH_LIMIT_GATE; }
             (void)exh_safety_step(&s, &cfg, in);
             CHECK(s.state == EXH_STATE_OFF && s.faults == 0, "%s: %s", exh_arm_name(k),
-                  exh_state_name(s.state));
+                exh_state_name(s.state));
             CHECK_EQ_I64(exh_safety_arm_step(&s), 1u << k);
             CHECK_EQ_I64(s.refusals, 1);
             CHECK_EQ_I64(s.trigger, EXH_ON_REFUSED);
@@ -244,8 +249,8 @@ TEST(arming_takes_its_time_at_every_rate)
         int64_t last = 0;
         struct exh_permit p = exh_safety_step(&s, &cfg, healthy(EXH_CMD_RUN));
         for (uint32_t k = 1; k < small; k++) {
-            CHECK(p.mode == EXH_PERMIT_CLOSED && p.small_N_q20 == 1 << 20, "early, tick %" PRIu32,
-                  k);
+            CHECK(
+                p.mode == EXH_PERMIT_CLOSED && p.small_N_q20 == 1 << 20, "early, tick %" PRIu32, k);
             p = exh_safety_step(&s, &cfg, healthy(EXH_CMD_NONE));
         }
         for (int64_t k = 1; k <= ramp; k++) {
@@ -292,11 +297,8 @@ TEST(missed_ticks_are_tolerated_up_to_the_limit)
         int32_t max;
         uint32_t missed;
         uint8_t want;
-    } row[] = {{0, 0, EXH_STATE_RUN},
-               {0, 1, EXH_STATE_RELEASE},
-               {1, 1, EXH_STATE_RUN},
-               {1, 2, EXH_STATE_RELEASE},
-               {1, UINT32_MAX, EXH_STATE_RELEASE}};
+    } row[] = {{0, 0, EXH_STATE_RUN}, {0, 1, EXH_STATE_RELEASE}, {1, 1, EXH_STATE_RUN},
+        {1, 2, EXH_STATE_RELEASE}, {1, UINT32_MAX, EXH_STATE_RELEASE}};
     for (size_t i = 0; i < LEN(row); i++) {
         struct exh_safety_par p = par;
         struct exh_safety_cfg cfg;
@@ -363,8 +365,8 @@ TEST(only_drives_in_use_count)
             in.fingers = n;
             in.din &= ~((uint32_t)EXH_DIN_DRIVE0 << d);
             (void)exh_safety_step(&s, &cfg, in);
-            CHECK(s.state == (d < n ? EXH_STATE_FAULT : EXH_STATE_RUN), "%u fingers, drive %u", n,
-                  d);
+            CHECK(
+                s.state == (d < n ? EXH_STATE_FAULT : EXH_STATE_RUN), "%u fingers, drive %u", n, d);
         }
     }
 }
@@ -393,8 +395,8 @@ TEST(release_ends_at_every_rate)
             in.missed = missed;
             (void)exh_safety_step(&s, &cfg, in);
         } while (s.state == EXH_STATE_RELEASE && n++ < 10000);
-        CHECK(n == (missed ? (want + 1) / 2 : want), "%" PRIu32 " Hz: %" PRIu32 " ticks", rate_Hz,
-              n);
+        CHECK(
+            n == (missed ? (want + 1) / 2 : want), "%" PRIu32 " Hz: %" PRIu32 " ticks", rate_Hz, n);
         CHECK_EQ_I64(s.state, fault ? EXH_STATE_FAULT : EXH_STATE_OFF);
     }
 }
@@ -477,7 +479,7 @@ TEST(a_state_that_cannot_be_is_a_fault)
             s.opened = 1;
             (void)exh_safety_step(&s, &cfg, healthy(EXH_CMD_CLEAR));
             CHECK((s.state == EXH_STATE_FAULT && (s.faults & EXH_FAULT_LOGIC)) == !sane,
-                  "%u with %" PRIu32, v, faults);
+                "%u with %" PRIu32, v, faults);
         }
     }
 }
@@ -561,8 +563,8 @@ TEST(setup_refuses_what_is_out_of_range)
 
 TEST(names_are_all_there)
 {
-    static const char *(*const of[])(unsigned) = {exh_state_name, exh_trigger_name, exh_fault_name,
-                                                  exh_limit_name, exh_arm_name};
+    static const char *(*const of[])(unsigned) = {
+        exh_state_name, exh_trigger_name, exh_fault_name, exh_limit_name, exh_arm_name};
     static const unsigned n[] = {EXH_STATES, EXH_TRIGGERS, EXH_FAULTS, EXH_LIMITS, EXH_ARMS};
     for (size_t k = 0; k < LEN(of); k++) {
         for (unsigned i = 0; i < n[k]; i++) { CHECK(of[k](i)[0] != '\0', "%zu %u", k, i); }
@@ -583,7 +585,7 @@ TEST(a_buffer_too_short_changes_no_state)
         struct exh_bytes c = exh_bytes_writer(buf, cap);
         exh_safety_serialize(&c, &s);
         CHECK(s.state == EXH_STATE_RUN && s.faults == 0 && s.opened == opened, "%" PRIu32 " bytes",
-              cap);
+            cap);
     }
 }
 
@@ -601,13 +603,13 @@ TEST(damage_forgets_no_fault)
 }
 
 TEST_MAIN("unit/safety", every_cell_is_what_it_should_be, every_state_is_reached,
-          every_fault_in_every_state, several_causes_cut_if_one_of_them_does, power_on_is_off,
-          each_step_is_named_where_it_does_not_hold, the_first_of_several_steps_is_named,
-          a_refusal_is_forgotten_once_it_runs, a_step_lost_in_the_ramp_releases, off_while_arming,
-          arming_takes_its_time_at_every_rate, limits_are_told_and_counted,
-          missed_ticks_are_tolerated_up_to_the_limit, late_too_often_is_an_overrun,
-          an_overrun_is_gone_in_time, only_drives_in_use_count, release_ends_at_every_rate,
-          clearing_in_every_order, a_cause_that_comes_back_asks_for_the_hand_again,
-          a_fault_never_clears_by_itself, a_state_that_cannot_be_is_a_fault,
-          no_byte_of_a_state_opens_the_gate, state_round_trip, setup_refuses_what_is_out_of_range,
-          names_are_all_there, a_buffer_too_short_changes_no_state, damage_forgets_no_fault);
+    every_fault_in_every_state, several_causes_cut_if_one_of_them_does, power_on_is_off,
+    each_step_is_named_where_it_does_not_hold, the_first_of_several_steps_is_named,
+    a_refusal_is_forgotten_once_it_runs, a_step_lost_in_the_ramp_releases, off_while_arming,
+    arming_takes_its_time_at_every_rate, limits_are_told_and_counted,
+    missed_ticks_are_tolerated_up_to_the_limit, late_too_often_is_an_overrun,
+    an_overrun_is_gone_in_time, only_drives_in_use_count, release_ends_at_every_rate,
+    clearing_in_every_order, a_cause_that_comes_back_asks_for_the_hand_again,
+    a_fault_never_clears_by_itself, a_state_that_cannot_be_is_a_fault,
+    no_byte_of_a_state_opens_the_gate, state_round_trip, setup_refuses_what_is_out_of_range,
+    names_are_all_there, a_buffer_too_short_changes_no_state, damage_forgets_no_fault);

@@ -12,15 +12,9 @@
 
 static int calls, wrong; /* how many results there were, which of them is spoiled */
 
-static int64_t spoiled(int64_t v)
-{
-    return v + (++calls == wrong);
-}
+static int64_t spoiled(int64_t v) { return v + (++calls == wrong); }
 
-static int64_t bad_shr_round(int64_t v, unsigned n)
-{
-    return spoiled(exh_shr_round(v, n));
-}
+static int64_t bad_shr_round(int64_t v, unsigned n) { return spoiled(exh_shr_round(v, n)); }
 
 static int32_t bad_sat32(int64_t v)
 {
@@ -42,15 +36,9 @@ static int64_t bad_mul_shr(int32_t x, int32_t y, unsigned n)
     return spoiled(exh_mul_shr(x, y, n));
 }
 
-static int32_t bad_mul_hi(int32_t x, int32_t y)
-{
-    return (int32_t)spoiled(exh_mul_hi(x, y));
-}
+static int32_t bad_mul_hi(int32_t x, int32_t y) { return (int32_t)spoiled(exh_mul_hi(x, y)); }
 
-static int64_t bad_mul64_q31(int64_t x, int32_t y)
-{
-    return spoiled(exh_mul64_q31(x, y));
-}
+static int64_t bad_mul64_q31(int64_t x, int32_t y) { return spoiled(exh_mul64_q31(x, y)); }
 
 static uint64_t bad_udiv64(uint64_t n, uint64_t d, uint64_t *rem)
 {
@@ -67,10 +55,7 @@ static int bad_gain_set(struct exh_gain *g, uint64_t n, uint64_t d)
     return (int)spoiled(err);
 }
 
-static int64_t bad_gain_mul(struct exh_gain g, int32_t x)
-{
-    return spoiled(exh_gain_mul(g, x));
-}
+static int64_t bad_gain_mul(struct exh_gain g, int32_t x) { return spoiled(exh_gain_mul(g, x)); }
 
 static int64_t bad_gain_floor(struct exh_gain g, int32_t x)
 {
@@ -89,14 +74,14 @@ static void bad_sincos(int32_t angle_turn_q32, struct exh_sincos *y)
     y->cos_q30 = (int32_t)spoiled(y->cos_q30);
 }
 
-static int bad_filter_setup(struct exh_filter_cfg *cfg, const struct exh_filter_par *par,
-                            struct exh_period T)
+static int bad_filter_setup(
+    struct exh_filter_cfg *cfg, const struct exh_filter_par *par, struct exh_period T)
 {
     return (int)(exh_filter_setup(cfg, par, T) - (++calls == wrong));
 }
 
 static void bad_filter_step(struct exh_filter *s, const struct exh_filter_cfg *cfg,
-                            const int32_t *x, int32_t *y, unsigned n)
+    const int32_t *x, int32_t *y, unsigned n)
 {
     exh_filter_step(s, cfg, x, y, n);
     *y = (int32_t)spoiled(*y);

@@ -47,7 +47,7 @@ static void check_active(const struct fixture *f, const int32_t *want, const cha
 {
     for (size_t i = 0; i < VALUES; i++) {
         CHECK(f->active[i] == want[i], "%s: value %zu is %" PRId32 ", want %" PRId32, when, i,
-              f->active[i], want[i]);
+            f->active[i], want[i]);
     }
     CHECK(f->active[VALUES] == 0x5A5A && f->staged[VALUES] == 0x5A5A, "%s: fence gone", when);
 }
@@ -58,8 +58,8 @@ TEST(rows_and_instances_in_order)
 {
     static const struct {
         uint16_t id, instance;
-    } want[VALUES] = {{0x7101, 0}, {0x7102, 0}, {0x7201, 0}, {0x7202, 0},
-                      {0x7203, 0}, {0x7201, 1}, {0x7202, 1}, {0x7203, 1}};
+    } want[VALUES] = {{0x7101, 0}, {0x7102, 0}, {0x7201, 0}, {0x7202, 0}, {0x7203, 0}, {0x7201, 1},
+        {0x7202, 1}, {0x7203, 1}};
     uint16_t k = 9;
     CHECK_EQ_I64(exh_signal_count(&table), VALUES);
     for (uint32_t i = 0; i < VALUES; i++) {
@@ -147,10 +147,14 @@ TEST(refusals_stage_nothing)
         int32_t raw;
         int locked, want;
     } row[] = {
-        {0x7101, 0, 11, 0, -EXH_E_RANGE},        {0x7101, 0, -11, 0, -EXH_E_RANGE},
-        {0x7101, 0, INT32_MIN, 0, -EXH_E_RANGE}, {0x7202, 1, 4, 0, -EXH_E_RANGE},
-        {0x7202, 1, 6, 0, -EXH_E_RANGE},         {0x7101, 1, 0, 0, -EXH_E_UNKNOWN},
-        {0x0000, 0, 0, 0, -EXH_E_UNKNOWN},       {0x7102, 0, 499, 1, -EXH_E_STATE},
+        {0x7101, 0, 11, 0, -EXH_E_RANGE},
+        {0x7101, 0, -11, 0, -EXH_E_RANGE},
+        {0x7101, 0, INT32_MIN, 0, -EXH_E_RANGE},
+        {0x7202, 1, 4, 0, -EXH_E_RANGE},
+        {0x7202, 1, 6, 0, -EXH_E_RANGE},
+        {0x7101, 1, 0, 0, -EXH_E_UNKNOWN},
+        {0x0000, 0, 0, 0, -EXH_E_UNKNOWN},
+        {0x7102, 0, 499, 1, -EXH_E_STATE},
         {0x7101, 0, 11, 1, -EXH_E_RANGE},
     };
     for (size_t i = 0; i < LEN(row); i++) {
@@ -158,7 +162,7 @@ TEST(refusals_stage_nothing)
         setup(&f);
         f.p.locked = (uint8_t)row[i].locked;
         CHECK(exh_params_stage(&f.p, row[i].id, row[i].instance, row[i].raw) == row[i].want,
-              "row %zu", i);
+            "row %zu", i);
         CHECK(exh_params_apply(&f.p) == 0, "row %zu: something is pending", i);
         check_active(&f, defaults, "refused");
     }
@@ -292,8 +296,11 @@ TEST(honest_image_with_bad_values)
         int32_t v;
         int locked, want;
     } row[] = {
-        {0, 11, 0, -EXH_E_RANGE},  {7, 101, 0, -EXH_E_RANGE}, {3, INT32_MIN, 0, -EXH_E_RANGE},
-        {1, 499, 1, -EXH_E_STATE}, {6, 6, 1, -EXH_E_RANGE},
+        {0, 11, 0, -EXH_E_RANGE},
+        {7, 101, 0, -EXH_E_RANGE},
+        {3, INT32_MIN, 0, -EXH_E_RANGE},
+        {1, 499, 1, -EXH_E_STATE},
+        {6, 6, 1, -EXH_E_RANGE},
     };
     for (size_t k = 0; k < LEN(row); k++) {
         uint8_t image[IMAGE_B] = {0};
@@ -327,9 +334,12 @@ TEST(locked_image_without_setup_changes)
 /* --- the library's own rows --- */
 
 static const struct exh_signal_group lib_groups[] = {
-    {exh_quad_rows, EXH_QUAD_ROWS, 1},       {exh_velocity_rows, EXH_VELOCITY_ROWS, 1},
-    {exh_contact_rows, EXH_CONTACT_ROWS, 1}, {exh_drive_rows, EXH_DRIVE_ROWS, 1},
-    {exh_safety_rows, EXH_SAFETY_ROWS, 1},   {exh_tracking_rows, EXH_TRACKING_ROWS, 1},
+    {exh_quad_rows, EXH_QUAD_ROWS, 1},
+    {exh_velocity_rows, EXH_VELOCITY_ROWS, 1},
+    {exh_contact_rows, EXH_CONTACT_ROWS, 1},
+    {exh_drive_rows, EXH_DRIVE_ROWS, 1},
+    {exh_safety_rows, EXH_SAFETY_ROWS, 1},
+    {exh_tracking_rows, EXH_TRACKING_ROWS, 1},
     {exh_tune_rows, EXH_TUNE_ROWS, 1},
 };
 static const struct exh_signal_table lib_table = {lib_groups, 7};
@@ -389,8 +399,8 @@ TEST(library_rows_match_their_structs)
 }
 
 TEST_MAIN("unit/signal", rows_and_instances_in_order, empty_table, crc_tells_tables_apart,
-          crc_sees_how_rows_are_grouped, staging_waits_for_apply, refusals_stage_nothing,
-          ends_of_the_range_are_allowed, lock_spares_what_may_change, image_layout,
-          image_round_trip_and_short_buffers, truncated_at_every_byte, every_flipped_bit_is_refused,
-          honest_image_with_bad_values, locked_image_without_setup_changes,
-          library_rows_are_well_formed, library_rows_match_their_structs);
+    crc_sees_how_rows_are_grouped, staging_waits_for_apply, refusals_stage_nothing,
+    ends_of_the_range_are_allowed, lock_spares_what_may_change, image_layout,
+    image_round_trip_and_short_buffers, truncated_at_every_byte, every_flipped_bit_is_refused,
+    honest_image_with_bad_values, locked_image_without_setup_changes, library_rows_are_well_formed,
+    library_rows_match_their_structs);

@@ -17,10 +17,7 @@
 static uint8_t slot[2][SLOT];
 static uint8_t buf[SLOT];
 
-static void erase(unsigned to)
-{
-    memset(slot[to], 0xFF, SLOT);
-}
+static void erase(unsigned to) { memset(slot[to], 0xFF, SLOT); }
 
 /* Erased, and the first `cut` bytes of what is to be programmed. */
 static void program(unsigned to, uint32_t n, uint32_t cut)
@@ -53,7 +50,7 @@ static void counts(int at, unsigned value, uint32_t sequence)
     CHECK_EQ_I64(exh_slots_find(&is, slot[0], slot[1], SLOT), at);
     CHECK(is.len_B == IMAGE_B && is.image == slot[at] + EXH_SLOT_HEAD_B && is.image[0] == value &&
               is.image[IMAGE_B - 1] == value && is.sequence == sequence,
-          "%lu bytes, sequence %lu", (unsigned long)is.len_B, (unsigned long)is.sequence);
+        "%lu bytes, sequence %lu", (unsigned long)is.len_B, (unsigned long)is.sequence);
 }
 
 /* A slot as a box with this sequence would have written it, by a list of its own. */
@@ -80,8 +77,8 @@ static void begin(void)
 
 TEST(a_worked_example)
 {
-    static const uint8_t want[] = {'E', 'X', 'H', 'S', 1,   0,   0,   0,   9,   0,  0,
-                                   0,   '1', '2', '3', '4', '5', '6', '7', '8', '9'};
+    static const uint8_t want[] = {
+        'E', 'X', 'H', 'S', 1, 0, 0, 0, 9, 0, 0, 0, '1', '2', '3', '4', '5', '6', '7', '8', '9'};
     const uint32_t crc = exh_crc32(0, want, sizeof want);
     unsigned to = 9;
     begin();
@@ -131,8 +128,8 @@ TEST(what_stands_there_is_not_saved_again)
     CHECK_EQ_I64(to, 0);
     for (uint32_t n = IMAGE_B - 1; n <= IMAGE_B + 1; n += 2) { /* the same but for its length */
         memset(buf + EXH_SLOT_HEAD_B, 2, n);
-        CHECK_EQ_I64(exh_slots_encode(&to, slot[0], slot[1], SLOT, buf, sizeof buf, n),
-                     EXH_SLOT_B(n));
+        CHECK_EQ_I64(
+            exh_slots_encode(&to, slot[0], slot[1], SLOT, buf, sizeof buf, n), EXH_SLOT_B(n));
     }
     memset(buf + EXH_SLOT_HEAD_B, 2, IMAGE_B);
     buf[EXH_SLOT_HEAD_B + IMAGE_B - 1] = 3;
@@ -141,8 +138,8 @@ TEST(what_stands_there_is_not_saved_again)
 
 TEST(the_sequence_goes_round)
 {
-    static const uint32_t from[] = {1,           0x7FFFFFFEu, 0x7FFFFFFFu, 0x80000000u,
-                                    0x80000001u, 0xFFFFFFFCu, 0xFFFFFFFDu, 0xFFFFFFFEu};
+    static const uint32_t from[] = {1, 0x7FFFFFFEu, 0x7FFFFFFFu, 0x80000000u, 0x80000001u,
+        0xFFFFFFFCu, 0xFFFFFFFDu, 0xFFFFFFFEu};
     for (unsigned i = 0; i < sizeof from / sizeof from[0]; i++) {
         uint32_t sequence = from[i];
         begin();
@@ -161,9 +158,9 @@ TEST(the_one_ahead_counts)
     static const struct {
         uint32_t a, b;
         int at;
-    } v[] = {{5, 6, 1},           {6, 5, 0},           {5, 5, 0},           {0xFFFFFFFEu, 1, 1},
-             {1, 0xFFFFFFFEu, 0}, {1, 0x80000000u, 1}, {1, 0x80000001u, 0}, {0x80000001u, 1, 0},
-             {1, 0x80000002u, 0}, {0x80000002u, 1, 1}};
+    } v[] = {{5, 6, 1}, {6, 5, 0}, {5, 5, 0}, {0xFFFFFFFEu, 1, 1}, {1, 0xFFFFFFFEu, 0},
+        {1, 0x80000000u, 1}, {1, 0x80000001u, 0}, {0x80000001u, 1, 0}, {1, 0x80000002u, 0},
+        {0x80000002u, 1, 1}};
     for (unsigned i = 0; i < sizeof v / sizeof v[0]; i++) {
         forge(0, v[i].a, 10);
         forge(1, v[i].b, 11);
@@ -225,7 +222,7 @@ TEST(cut_off_at_every_byte)
             whole = memcmp(slot[0], buf, WHOLE) == 0; /* the last bytes may have been there */
             CHECK(whole || cut < WHOLE, "never whole");
             counts(!whole, whole ? 3 : 2,
-                   whole ? (sequence == 0xFFFFFFFEu ? 1 : sequence + 1) : sequence);
+                whole ? (sequence == 0xFFFFFFFEu ? 1 : sequence + 1) : sequence);
         }
     }
 }
@@ -255,12 +252,12 @@ TEST(what_does_not_fit_is_refused)
     unsigned to = 9;
     begin();
     memset(big, 0xAA, sizeof big);
-    CHECK_EQ_I64(exh_slots_encode(&to, slot[0], slot[1], SLOT, big, sizeof big, SLOT - 19),
-                 -EXH_E_SHORT);
+    CHECK_EQ_I64(
+        exh_slots_encode(&to, slot[0], slot[1], SLOT, big, sizeof big, SLOT - 19), -EXH_E_SHORT);
     CHECK_EQ_I64(exh_slots_encode(&to, slot[0], slot[1], SLOT, big, 30, 11), -EXH_E_SHORT);
     CHECK_EQ_I64(exh_slots_encode(&to, slot[0], slot[1], SLOT, big, 19, 0), -EXH_E_SHORT);
-    CHECK_EQ_I64(exh_slots_encode(&to, slot[0], slot[1], SLOT, big, sizeof big, SIZE_MAX),
-                 -EXH_E_SHORT);
+    CHECK_EQ_I64(
+        exh_slots_encode(&to, slot[0], slot[1], SLOT, big, sizeof big, SIZE_MAX), -EXH_E_SHORT);
     CHECK_EQ_I64(exh_slots_encode(&to, slot[0], slot[1], SIZE_MAX, big, SIZE_MAX, 1), -EXH_E_SHORT);
     for (uint32_t i = 0; i < sizeof big; i++) { CHECK_EQ_I64(big[i], 0xAA); }
     CHECK_EQ_I64(to, 9);
@@ -322,15 +319,15 @@ TEST(a_calibration_comes_back)
 {
     static uint8_t flash[2][EXH_SLOT_B(EXH_CALIB_IMAGE_B)], out[sizeof flash[0]];
     struct exh_calib_point point[2] = {{EXH_Q(1, 1, 20), EXH_Q(1, 10, 26), EXH_Q(1, 10, 26), 0},
-                                       {EXH_Q(2, 1, 20), EXH_Q(2, 10, 26), EXH_Q(2, 10, 26), 0}};
+        {EXH_Q(2, 1, 20), EXH_Q(2, 10, 26), EXH_Q(2, 10, 26), 0}};
     struct exh_calib c = {.device_id = 7,
-                          .valid_days = 30,
-                          .dac_rawpA_q16 = 65536,
-                          .mon_A_q40 = 1 << 20,
-                          .end_A_q26 = EXH_Q(5, 1, 26),
-                          .point = point,
-                          .points = 2,
-                          .cap = 2};
+        .valid_days = 30,
+        .dac_rawpA_q16 = 65536,
+        .mon_A_q40 = 1 << 20,
+        .end_A_q26 = EXH_Q(5, 1, 26),
+        .point = point,
+        .points = 2,
+        .cap = 2};
     struct exh_slot is;
     unsigned to;
     memset(flash, 0xFF, sizeof flash);
@@ -369,15 +366,15 @@ TEST(the_longest_slot)
     unsigned to = 9;
     begin();
     memset(buf, 1, sizeof buf);
-    CHECK_EQ_I64(exh_slots_encode(&to, slot[0], slot[1], INT32_MAX, buf, INT32_MAX, IMAGE_B),
-                 WHOLE);
+    CHECK_EQ_I64(
+        exh_slots_encode(&to, slot[0], slot[1], INT32_MAX, buf, INT32_MAX, IMAGE_B), WHOLE);
     CHECK_EQ_I64(exh_slots_encode(&to, slot[0], slot[1], (size_t)INT32_MAX + 1, buf,
-                                  (size_t)INT32_MAX + 1, IMAGE_B),
-                 -EXH_E_SHORT);
+                     (size_t)INT32_MAX + 1, IMAGE_B),
+        -EXH_E_SHORT);
 }
 
 TEST_MAIN("slots", a_worked_example, blank_slots_have_nothing, each_goes_to_the_other,
-          what_stands_there_is_not_saved_again, the_sequence_goes_round, the_one_ahead_counts,
-          two_sequences_are_none, each_bit_of_one_slot, cut_off_at_every_byte,
-          cut_off_in_the_erasure, what_does_not_fit_is_refused, parameters_come_back,
-          a_calibration_comes_back, the_byte_behind_the_image_says_nothing, the_longest_slot);
+    what_stands_there_is_not_saved_again, the_sequence_goes_round, the_one_ahead_counts,
+    two_sequences_are_none, each_bit_of_one_slot, cut_off_at_every_byte, cut_off_in_the_erasure,
+    what_does_not_fit_is_refused, parameters_come_back, a_calibration_comes_back,
+    the_byte_behind_the_image_says_nothing, the_longest_slot);

@@ -13,10 +13,7 @@
 static const struct exh_supply_par par = {V(20), V(28), QUARTER, 10};
 static const struct exh_period kHz = {1, 1000};
 
-static int16_t code(int32_t mV)
-{
-    return (int16_t)(mV * INT64_C(32768) / 40000);
-}
+static int16_t code(int32_t mV) { return (int16_t)(mV * INT64_C(32768) / 40000); }
 
 TEST(limits_become_codes)
 {
@@ -30,10 +27,10 @@ TEST(limits_become_codes)
 /* Each code of the converter, against the exact voltage. */
 TEST(a_code_is_within_the_limits_exactly_when_its_voltage_is)
 {
-    static const struct exh_supply_par row[] = {
-        {V(20), V(28), QUARTER, 1}, {1, V(100), EXH_Q(1, 100, EXH_Q_VPRAW), 1},
-        {V(20), V(20), QUARTER, 1}, {V(12) + 1, V(12) + 2000, 1000000, 1},
-        {V(1), V(9), 327680, 1},    {V(24) - 7, V(24) + 999, 1234567, 1}};
+    static const struct exh_supply_par row[] = {{V(20), V(28), QUARTER, 1},
+        {1, V(100), EXH_Q(1, 100, EXH_Q_VPRAW), 1}, {V(20), V(20), QUARTER, 1},
+        {V(12) + 1, V(12) + 2000, 1000000, 1}, {V(1), V(9), 327680, 1},
+        {V(24) - 7, V(24) + 999, 1234567, 1}};
     for (size_t i = 0; i < LEN(row); i++) {
         struct exh_supply_cfg cfg;
         CHECK_EQ_I64(exh_supply_setup(&cfg, &row[i], (struct exh_period){1, 1}), 0);
@@ -43,7 +40,7 @@ TEST(a_code_is_within_the_limits_exactly_when_its_voltage_is)
             const int out = V_q30 < (int64_t)row[i].min_V_q20 * 1024 ||
                             V_q30 > (int64_t)row[i].max_V_q20 * 1024;
             CHECK(exh_supply_step(&s, &cfg, (int16_t)raw, 0) == out, "row %zu, code %ld", i,
-                  (long)raw);
+                (long)raw);
         }
     }
 }
@@ -54,9 +51,9 @@ TEST(it_is_told_after_its_time_and_not_before)
         struct exh_period T;
         int32_t ms;
         uint32_t ticks;
-    } row[] = {{{1, 1}, 10, 1},           {{1, 90}, 10, 1},        {{1, 90}, 100, 10},
-               {{1, 1000}, 10, 11},       {{1, 2000}, 10, 21},     {{1, 20000}, 10, 201},
-               {{1, 20000}, 1000, 20001}, {{597, 1193182}, 10, 20}};
+    } row[] = {{{1, 1}, 10, 1}, {{1, 90}, 10, 1}, {{1, 90}, 100, 10}, {{1, 1000}, 10, 11},
+        {{1, 2000}, 10, 21}, {{1, 20000}, 10, 201}, {{1, 20000}, 1000, 20001},
+        {{597, 1193182}, 10, 20}};
     for (size_t i = 0; i < LEN(row); i++) {
         const struct exh_supply_par p = {V(20), V(28), QUARTER, row[i].ms};
         struct exh_supply_cfg cfg;
@@ -114,15 +111,10 @@ TEST(without_a_least_voltage_nothing_is_judged)
 
 TEST(what_cannot_be_judged_is_refused)
 {
-    static const struct exh_supply_par bad[] = {
-        {-1, V(28), QUARTER, 10},
-        {V(100) + 1, V(100) + 1, QUARTER, 10},
-        {V(28), V(20), QUARTER, 10},
-        {V(20), V(101), QUARTER, 10},
-        {V(20), V(28), 0, 10},
-        {V(20), V(28), -1, 10},
-        {V(20), V(28), QUARTER, 0},
-        {V(20), V(28), QUARTER, 1001},
+    static const struct exh_supply_par bad[] = {{-1, V(28), QUARTER, 10},
+        {V(100) + 1, V(100) + 1, QUARTER, 10}, {V(28), V(20), QUARTER, 10},
+        {V(20), V(101), QUARTER, 10}, {V(20), V(28), 0, 10}, {V(20), V(28), -1, 10},
+        {V(20), V(28), QUARTER, 0}, {V(20), V(28), QUARTER, 1001},
         {V(20), V(40), QUARTER, 10},                            /* the converter ends there */
         {V(20), V(20) + 100, EXH_Q(1, 1, EXH_Q_VPRAW) / 3, 10}, /* no code between them */
         {V(20), INT32_MIN, QUARTER, 10}};
@@ -142,7 +134,7 @@ TEST(its_rows_are_its_parameters)
     for (unsigned i = 0; i < EXH_SUPPLY_ROWS; i++) {
         CHECK(exh_supply_rows[i].min <= exh_supply_rows[i].dflt &&
                   exh_supply_rows[i].dflt <= exh_supply_rows[i].max,
-              "row %u", i);
+            "row %u", i);
         at[i] = exh_supply_rows[i].dflt;
     }
     CHECK_EQ_I64(exh_supply_setup(&cfg, &p, kHz), 0);
@@ -187,8 +179,8 @@ TEST(what_comes_of_refusals_and_damage)
 TEST(the_highest_limits)
 {
     const struct exh_supply_par most = {V(100), V(100), INT32_C(1) << (EXH_Q_VPRAW - 6), 10};
-    const struct exh_supply_par more = {V(100) + 1, V(100) + 1, INT32_C(1) << (EXH_Q_VPRAW - 6),
-                                        10};
+    const struct exh_supply_par more = {
+        V(100) + 1, V(100) + 1, INT32_C(1) << (EXH_Q_VPRAW - 6), 10};
     struct exh_supply_cfg cfg;
     CHECK_EQ_I64(exh_supply_setup(&cfg, &most, kHz), 0);
     CHECK(cfg.min_raw == 6400 && cfg.max_raw == 6400, "%d .. %d", cfg.min_raw, cfg.max_raw);
@@ -196,7 +188,7 @@ TEST(the_highest_limits)
 }
 
 TEST_MAIN("supply", limits_become_codes, a_code_is_within_the_limits_exactly_when_its_voltage_is,
-          it_is_told_after_its_time_and_not_before, one_tick_within_the_limits_begins_anew,
-          missed_ticks_count, without_a_least_voltage_nothing_is_judged,
-          what_cannot_be_judged_is_refused, its_rows_are_its_parameters,
-          its_state_goes_through_a_cursor, what_comes_of_refusals_and_damage, the_highest_limits);
+    it_is_told_after_its_time_and_not_before, one_tick_within_the_limits_begins_anew,
+    missed_ticks_count, without_a_least_voltage_nothing_is_judged, what_cannot_be_judged_is_refused,
+    its_rows_are_its_parameters, its_state_goes_through_a_cursor, what_comes_of_refusals_and_damage,
+    the_highest_limits);

@@ -87,9 +87,8 @@ TEST(table_rejections)
         {0, 0, INT32_MAX - 1, 1, INT32_MAX, 2, 3, 0},
     };
     for (size_t i = 0; i < LEN(row); i++) {
-        struct exh_knot k[3] = {{row[i].x0, row[i].y0, {0, 1}},
-                                {row[i].x1, row[i].y1, {0, 1}},
-                                {row[i].x2, row[i].y2, {0, 1}}};
+        struct exh_knot k[3] = {{row[i].x0, row[i].y0, {0, 1}}, {row[i].x1, row[i].y1, {0, 1}},
+            {row[i].x2, row[i].y2, {0, 1}}};
         const int err = exh_table_setup(k, row[i].n);
         CHECK(err == row[i].want, "row %zu: %d, want %d", i, err, row[i].want);
     }
@@ -137,5 +136,5 @@ TEST(inverse_refuses_what_set_refuses)
 }
 
 TEST_MAIN("unit/table", table_is_exact_at_knots_and_clamps_outside, table_between_knots,
-          table_is_monotone_around_every_knot, table_rejections, steepest_table_is_accepted,
-          inverse_round_trip, inverse_refuses_what_set_refuses);
+    table_is_monotone_around_every_knot, table_rejections, steepest_table_is_accepted,
+    inverse_round_trip, inverse_refuses_what_set_refuses);

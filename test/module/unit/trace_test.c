@@ -41,9 +41,9 @@ static void holds(const struct exh_trace *of, uint32_t number, uint32_t tick, in
     const struct exh_trace_frame *f = &of->frame[number & of->mask];
     const int32_t is = (int32_t)(10 * tick);
     CHECK(f->number == number && f->tick == tick, "frame %lu: %lu of tick %lu",
-          (unsigned long)number, (unsigned long)f->number, (unsigned long)f->tick);
+        (unsigned long)number, (unsigned long)f->number, (unsigned long)f->tick);
     CHECK(f->raw[0] == is + first && f->raw[1] == is + 1 && f->raw[2] == is + 5 && f->raw[3] == is,
-          "frame %lu: other values", (unsigned long)number);
+        "frame %lu: other values", (unsigned long)number);
 }
 
 TEST(what_cannot_be_is_refused)
@@ -135,8 +135,8 @@ TEST(passed_on_whole)
     ticks(105, 4);
     trace(&shown, 1, 4); /* two frames were not passed on */
     exh_trace_copy(&t, &shown);
-    CHECK(shown.head == 53 && exh_trace_oldest(&shown) == 53 && t.head == 53,
-          "of the trace before");
+    CHECK(
+        shown.head == 53 && exh_trace_oldest(&shown) == 53 && t.head == 53, "of the trace before");
     ticks(200, 2);
     exh_trace_copy(&t, &shown);
     CHECK_EQ_I64(shown.head, 55);
@@ -183,8 +183,8 @@ TEST(set_and_read_by_registers)
     begin(EXH_TRACE_FRAMES);
     r = box();
     CHECK_EQ_I64(writes(&r, EXH_REGS_TRACE_AT, 10, set), 0);
-    CHECK(t.run == 1 && t.what.every == 2 && t.what.index[0] == 3 && t.what.index[2] == 5,
-          "not set");
+    CHECK(
+        t.run == 1 && t.what.every == 2 && t.what.index[0] == 3 && t.what.index[2] == 5, "not set");
     ticks(0, 300);
     CHECK_EQ_I64(input(&r, EXH_REGS_TRACE_AT + 2 * EXH_TRACE_HEAD_FRAMES), 128);
     CHECK_EQ_I64(input(&r, EXH_REGS_TRACE_AT + 2 * EXH_TRACE_HEAD_NEXT), 150);
@@ -215,20 +215,20 @@ TEST(halves_and_edges_of_its_registers)
     CHECK_EQ_I64(t.run, 3);
     CHECK_EQ_I64(writes(&r, EXH_REGS_TRACE_AT + 9, 1, one), 0);
     CHECK_EQ_I64(t.what.index[3], 4);
-    CHECK_EQ_I64(writes(&r, EXH_REGS_TRACE_AT + 3, 2, many),
-                 EXH_MODBUS_VALUE); /* a signal that is none */
+    CHECK_EQ_I64(
+        writes(&r, EXH_REGS_TRACE_AT + 3, 2, many), EXH_MODBUS_VALUE); /* a signal that is none */
     CHECK_EQ_I64(writes(&r, EXH_REGS_TRACE_AT + 9, 2, many), EXH_MODBUS_ADDRESS);
     CHECK(t.run == 4 && t.what.index[0] == 2, "a refused write did something");
     CHECK_EQ_I64(exh_regs_read(&r, EXH_REGS_HOLDING, EXH_REGS_TRACE_AT, 10, b), 0);
     CHECK(b[0] == 0x12 && b[3] == 4 && b[19] == 4, "what is set is not read back");
     CHECK_EQ_I64(exh_regs_read(&r, EXH_REGS_INPUT, EXH_REGS_TRACE_AT, 2 * EXH_TRACE_HEADS, b), 0);
     CHECK_EQ_I64(exh_regs_read(&r, EXH_REGS_INPUT, EXH_REGS_TRACE_AT, 2 * EXH_TRACE_HEADS + 1, b),
-                 EXH_MODBUS_ADDRESS);
-    CHECK_EQ_I64(exh_regs_read(&r, EXH_REGS_INPUT, EXH_REGS_FRAMES_AT - 1, 2, b),
-                 EXH_MODBUS_ADDRESS);
+        EXH_MODBUS_ADDRESS);
+    CHECK_EQ_I64(
+        exh_regs_read(&r, EXH_REGS_INPUT, EXH_REGS_FRAMES_AT - 1, 2, b), EXH_MODBUS_ADDRESS);
     CHECK_EQ_I64(exh_regs_read(&r, EXH_REGS_INPUT, EXH_REGS_FRAMES_AT, 12 * FRAMES, b), 0);
     CHECK_EQ_I64(exh_regs_read(&r, EXH_REGS_INPUT, EXH_REGS_FRAMES_AT, 12 * FRAMES + 1, b),
-                 EXH_MODBUS_ADDRESS);
+        EXH_MODBUS_ADDRESS);
     r.trace = NULL;
     CHECK_EQ_I64(exh_regs_read(&r, EXH_REGS_INPUT, EXH_REGS_TRACE_AT, 2, b), EXH_MODBUS_ADDRESS);
     CHECK_EQ_I64(exh_regs_read(&r, EXH_REGS_INPUT, EXH_REGS_FRAMES_AT, 2, b), EXH_MODBUS_ADDRESS);
@@ -250,12 +250,12 @@ TEST(state_there_and_back_and_brought_into_range)
     CHECK(memcmp(frame, shown_frame, FRAMES * sizeof frame[0]) == 0 && shown.head == t.head &&
               shown.first == t.first && shown.left == t.left && shown.run == t.run &&
               memcmp(&shown.what, &t.what, sizeof t.what) == 0,
-          "not what was written");
+        "not what was written");
     memset(hostile, 0xFF, sizeof hostile);
     c = exh_bytes_reader(hostile, sizeof hostile);
     exh_trace_serialize(&c, &t);
     CHECK(t.mask == FRAMES - 1 && t.signals == SIGNALS && t.frame == frame,
-          "what is set up is no state");
+        "what is set up is no state");
     for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) { CHECK_EQ_I64(t.what.index[i], 0); }
     CHECK_EQ_I64(t.left, UINT32_MAX - 1);
     memset(hostile, 0, 4); /* none is traced */
@@ -271,7 +271,7 @@ TEST(the_least_ring)
     trace(&t, 1, 0);
     ticks(0, 5);
     CHECK(t.head == 5 && exh_trace_oldest(&t) <= 4 && exh_trace_oldest(&t) >= 3, "oldest %lu",
-          (unsigned long)exh_trace_oldest(&t));
+        (unsigned long)exh_trace_oldest(&t));
     holds(&t, 4, 4, 0);
 }
 
@@ -316,7 +316,7 @@ TEST(the_signal_behind_the_last)
 }
 
 TEST_MAIN("trace", what_cannot_be_is_refused, every_nth_tick_from_the_next_on, the_newest_are_held,
-          numbers_go_on_and_wrap, a_frame_that_never_was_has_another_number, passed_on_whole,
-          state_there_and_back_and_brought_into_range, set_and_read_by_registers,
-          halves_and_edges_of_its_registers, the_least_ring, a_frame_is_passed_on_once,
-          the_signal_behind_the_last);
+    numbers_go_on_and_wrap, a_frame_that_never_was_has_another_number, passed_on_whole,
+    state_there_and_back_and_brought_into_range, set_and_read_by_registers,
+    halves_and_edges_of_its_registers, the_least_ring, a_frame_is_passed_on_once,
+    the_signal_behind_the_last);

@@ -20,8 +20,8 @@ static struct exh_tracking_cfg config(uint32_t rate_Hz)
 }
 
 /* A tick: what is monitored, then what is coded. */
-static int tick(struct exh_tracking *s, const struct exh_tracking_cfg *cfg, int32_t mon,
-                int32_t coded)
+static int tick(
+    struct exh_tracking *s, const struct exh_tracking_cfg *cfg, int32_t mon, int32_t coded)
 {
     const int astray = exh_tracking_step(s, cfg, mon);
     exh_tracking_update(s, coded);
@@ -34,9 +34,9 @@ TEST(ticks_are_the_time_and_four_more)
         struct exh_period T;
         int32_t ms;
         uint32_t ticks;
-    } row[] = {{{1, 1}, 20, 5},         {{1, 1}, 100, 5},         {{1, 90}, 20, 6},
-               {{1, 1000}, 20, 25},     {{1, 2000}, 20, 45},      {{1, 20000}, 20, 405},
-               {{1, 20000}, 100, 2005}, {{597, 1193182}, 20, 44}, {{1, 1000}, 1, 6}};
+    } row[] = {{{1, 1}, 20, 5}, {{1, 1}, 100, 5}, {{1, 90}, 20, 6}, {{1, 1000}, 20, 25},
+        {{1, 2000}, 20, 45}, {{1, 20000}, 20, 405}, {{1, 20000}, 100, 2005},
+        {{597, 1193182}, 20, 44}, {{1, 1000}, 1, 6}};
     for (size_t i = 0; i < LEN(row); i++) {
         const struct exh_tracking_par p = {TOL, row[i].ms};
         struct exh_tracking_cfg cfg = {0, 0};
@@ -48,29 +48,26 @@ TEST(ticks_are_the_time_and_four_more)
 /* Neither can be set so that it is off. */
 TEST(what_is_outside_its_range_is_refused)
 {
-    static const struct exh_tracking_par bad[] = {
-        {0, 20},          {EXH_Q(1, 10, EXH_Q_CUR) - 1, 20},
-        {AMPERE + 1, 20}, {INT32_MAX, 20},
-        {-1, 20},         {TOL, 0},
-        {TOL, 101},       {TOL, INT32_MAX},
+    static const struct exh_tracking_par bad[] = {{0, 20}, {EXH_Q(1, 10, EXH_Q_CUR) - 1, 20},
+        {AMPERE + 1, 20}, {INT32_MAX, 20}, {-1, 20}, {TOL, 0}, {TOL, 101}, {TOL, INT32_MAX},
         {TOL, INT32_MIN}};
     static const struct exh_tracking_par good[] = {
         {EXH_Q(1, 10, EXH_Q_CUR), 1}, {AMPERE, 100}, {TOL, 20}};
     struct exh_tracking_cfg cfg;
     for (size_t i = 0; i < LEN(bad); i++) {
         CHECK(exh_tracking_setup(&cfg, &bad[i], (struct exh_period){1, 1000}) == -EXH_E_RANGE,
-              "%zu", i);
+            "%zu", i);
     }
     for (size_t i = 0; i < LEN(good); i++) {
         CHECK(exh_tracking_setup(&cfg, &good[i], (struct exh_period){1, 1000}) == 0, "%zu", i);
         CHECK(exh_tracking_setup(&cfg, &good[i], (struct exh_period){0, 1}) == -EXH_E_RATE &&
                   exh_tracking_setup(&cfg, &good[i], (struct exh_period){1, 30000}) == -EXH_E_RATE,
-              "%zu", i);
+            "%zu", i);
     }
     CHECK(exh_tracking_rows[0].min == good[0].tol_A_q26 && exh_tracking_rows[0].max == AMPERE &&
               exh_tracking_rows[0].dflt == TOL && exh_tracking_rows[1].min == 1 &&
               exh_tracking_rows[1].max == 100 && exh_tracking_rows[1].dflt == 20,
-          "the rows are not the ranges");
+        "the rows are not the ranges");
 }
 
 /* The D/A stands at 1 A and the command goes on to 2 A: told after so many ticks, not before. */
@@ -84,7 +81,7 @@ TEST(a_current_that_stands_is_told_in_time)
         CHECK_EQ_I64(tick(&s, &cfg, AMPERE, 2 * AMPERE), 0);
         for (uint32_t n = 1; n <= cfg.ticks + 5; n++) {
             CHECK(tick(&s, &cfg, AMPERE, 2 * AMPERE) == (n >= cfg.ticks),
-                  "%" PRIu32 " Hz, tick %" PRIu32, rate[i], n);
+                "%" PRIu32 " Hz, tick %" PRIu32, rate[i], n);
         }
         CHECK_EQ_I64(s.off_ticks, cfg.ticks);
         CHECK_EQ_I64(tick(&s, &cfg, 2 * AMPERE, 0), 0); /* the cause is gone, at once */
@@ -161,18 +158,18 @@ TEST(state_through_bytes)
     struct exh_bytes c = exh_bytes_writer(b, sizeof b);
     exh_tracking_serialize(&c, &s);
     CHECK(c.at == sizeof b && b[0] == 0xFB && b[4] == 4 && b[8] == 7, "%" PRIu32 " bytes",
-          (uint32_t)c.at);
+        (uint32_t)c.at);
     c = exh_bytes_reader(b, sizeof b);
     exh_tracking_serialize(&c, &back);
     CHECK(back.lo_A_q26 == was.lo_A_q26 && back.hi_A_q26 == was.hi_A_q26 &&
               back.off_ticks == was.off_ticks,
-          "not the same");
+        "not the same");
     back = (struct exh_tracking){AMPERE, -AMPERE, UINT32_MAX}; /* damaged: told, until it is met */
     CHECK_EQ_I64(tick(&back, &cfg, 2 * AMPERE, AMPERE), 1);
     CHECK_EQ_I64(tick(&back, &cfg, AMPERE, AMPERE), 0);
 }
 
 TEST_MAIN("unit/tracking", ticks_are_the_time_and_four_more, what_is_outside_its_range_is_refused,
-          a_current_that_stands_is_told_in_time, both_ways_and_at_rest,
-          the_tolerance_is_met_to_the_last_bit, late_by_so_many_ticks_follows,
-          forgetting_the_code_is_a_fault, state_through_bytes);
+    a_current_that_stands_is_told_in_time, both_ways_and_at_rest,
+    the_tolerance_is_met_to_the_last_bit, late_by_so_many_ticks_follows,
+    forgetting_the_code_is_a_fault, state_through_bytes);

@@ -61,15 +61,25 @@ static const struct {
     uint32_t arg;
     int settle; /* ticks after which it stands */
 } every[] = {
-    {WINDOW, 0, 2}, {WINDOW, 1, 3},   {WINDOW, 2, 5},     {WINDOW, 3, 9}, {WINDOW, 4, 17},
-    {POLE, 0, 3},   {POLE, 500, 80},  {POLE, 5000, 600},  {FOAW, 1, 3},   {FOAW, 16, 20},
-    {TRACK, 0, 4},  {TRACK, 500, 90}, {TRACK, 5000, 900},
+    {WINDOW, 0, 2},
+    {WINDOW, 1, 3},
+    {WINDOW, 2, 5},
+    {WINDOW, 3, 9},
+    {WINDOW, 4, 17},
+    {POLE, 0, 3},
+    {POLE, 500, 80},
+    {POLE, 5000, 600},
+    {FOAW, 1, 3},
+    {FOAW, 16, 20},
+    {TRACK, 0, 4},
+    {TRACK, 500, 90},
+    {TRACK, 5000, 900},
 };
 
 /* |got - num/den counts per tick| <= slack_num/den counts per tick + lsb, exactly:
  * one count per tick is step * T.den / (T.num * 2^15) LSB. */
 static int near(int32_t got, struct exh_velocity_scale s, int64_t num, int64_t den,
-                int64_t slack_num, int64_t lsb)
+    int64_t slack_num, int64_t lsb)
 {
     const int64_t unit = (int64_t)s.T.num * 32768 * den;
     const int64_t per_count = (int64_t)s.step_m_q42 * s.T.den;
@@ -110,7 +120,7 @@ TEST(constant_velocity_is_exact_across_the_wrap)
         for (int64_t k = 0; k < every[row].settle + 60; k++) {
             const int32_t got = any_step(&e, wrapped(start + v * k));
             CHECK(k < every[row].settle || near(got, scale_2k, v, 1, 0, 2),
-                  "row %zu, %" PRId64 " counts a tick, tick %" PRId64 ": %" PRId32, row, v, k, got);
+                "row %zu, %" PRId64 " counts a tick, tick %" PRId64 ": %" PRId32, row, v, k, got);
         }
     }
 }
@@ -132,8 +142,8 @@ TEST(quantisation_error_stays_in_its_bound)
             const int64_t scaled = num * k + 1000000 * den;
             const int32_t got = any_step(&e, (int32_t)(scaled / den));
             CHECK(k < 10 * every[row].settle || near(got, scale_pit, num * n, den * n, den, 2),
-                  "row %zu, %" PRId64 "/%" PRId64 " tick %" PRId64 ": %" PRId32, row, num, den, k,
-                  got);
+                "row %zu, %" PRId64 "/%" PRId64 " tick %" PRId64 ": %" PRId32, row, num, den, k,
+                got);
         }
     }
 }
@@ -146,8 +156,15 @@ TEST(lag_is_the_documented_one)
         uint32_t arg;
         int64_t lag_x10; /* tenths of a tick */
     } row[] = {
-        {WINDOW, 0, 5},    {WINDOW, 2, 20}, {WINDOW, 4, 80},  {POLE, 0, 5},       {POLE, 500, 15},
-        {POLE, 5000, 105}, {TRACK, 0, 5},   {TRACK, 500, 25}, {TRACK, 5000, 205},
+        {WINDOW, 0, 5},
+        {WINDOW, 2, 20},
+        {WINDOW, 4, 80},
+        {POLE, 0, 5},
+        {POLE, 500, 15},
+        {POLE, 5000, 105},
+        {TRACK, 0, 5},
+        {TRACK, 500, 25},
+        {TRACK, 5000, 205},
     };
     /* Fine counts, 0.157 um, so that 400 ticks of 8 counts per tick^2 reach 1 m/s. */
     const struct exh_velocity_scale s = {690493, {1, 2000}};
@@ -158,7 +175,7 @@ TEST(lag_is_the_documented_one)
         (void)any_setup(&e, row[i].kind, row[i].arg, s);
         for (int64_t k = 0; k <= last; k++) { got = any_step(&e, (int32_t)(a * k * k)); }
         CHECK(near(got, s, 2 * a * (10 * last - row[i].lag_x10), 10, 0, 8), "row %zu: %" PRId32, i,
-              got);
+            got);
     }
 }
 
@@ -207,7 +224,7 @@ TEST(slow_observer_rests_within_its_residual)
         for (int64_t k = 0; k < 2 * ticks; k++) { (void)any_step(&e, (int32_t)(k / 3)); }
         for (int64_t k = 0; k < 40 * ticks; k++) { got = any_step(&e, (int32_t)(2 * ticks / 3)); }
         CHECK(near(got, s, 0, INT64_C(1) << 32, ticks + 1, 1), "row %zu: %" PRId32 " LSB at rest",
-              i, got);
+            i, got);
     }
 }
 
@@ -337,8 +354,8 @@ TEST(ends_to_the_bit)
 {
     const int64_t most = INT64_C(16) << 55;
     struct exh_velocity_pole_cfg cfg;
-    CHECK_EQ_I64(exh_velocity_pole_setup(&cfg, (struct exh_velocity_scale){1, {1, 20000}}, 1000000),
-                 0);
+    CHECK_EQ_I64(
+        exh_velocity_pole_setup(&cfg, (struct exh_velocity_scale){1, {1, 20000}}, 1000000), 0);
     CHECK_EQ_I64(cfg.a_q31, 107369); /* 2^31 / 20001, rounded */
     for (int64_t more = -1; more <= 1; more++) {
         for (int sign = -1; sign <= 1; sign += 2) {
@@ -362,8 +379,7 @@ TEST(ends_to_the_bit)
 }
 
 TEST_MAIN("unit/velocity", first_call_returns_zero, constant_velocity_is_exact_across_the_wrap,
-          quantisation_error_stays_in_its_bound, lag_is_the_documented_one,
-          saturates_with_the_right_sign, rest_returns_to_zero,
-          slow_observer_rests_within_its_residual, foaw_acceptance_by_hand, setup_refuses,
-          state_survives_a_round_trip, damaged_state_is_harmless, sums_beyond_32_bits_are_exact,
-          ends_to_the_bit);
+    quantisation_error_stays_in_its_bound, lag_is_the_documented_one, saturates_with_the_right_sign,
+    rest_returns_to_zero, slow_observer_rests_within_its_residual, foaw_acceptance_by_hand,
+    setup_refuses, state_survives_a_round_trip, damaged_state_is_harmless,
+    sums_beyond_32_bits_are_exact, ends_to_the_bit);

@@ -5,9 +5,8 @@
 
 #include "check.h"
 
-static const int64_t corner[] = {
-    INT64_MIN, INT64_MIN + 1, -4294967296, -4294967295, -2147483648, -65536,        -1,       0,
-    1,         65535,         2147483647,  4294967295,  4294967296,  INT64_MAX - 1, INT64_MAX};
+static const int64_t corner[] = {INT64_MIN, INT64_MIN + 1, -4294967296, -4294967295, -2147483648,
+    -65536, -1, 0, 1, 65535, 2147483647, 4294967295, 4294967296, INT64_MAX - 1, INT64_MAX};
 #define CORNERS (sizeof corner / sizeof corner[0])
 
 TEST(known_products)
@@ -27,7 +26,7 @@ TEST(known_products)
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
         const struct wide w = wide_mul(row[i].a, row[i].b);
         CHECK(w.hi == row[i].hi && w.lo == row[i].lo, "row %zu: %016" PRIx64 " %016" PRIx64, i,
-              w.hi, w.lo);
+            w.hi, w.lo);
     }
 }
 
@@ -67,7 +66,7 @@ TEST(identities_hold_everywhere)
         CHECK(wide_cmp(left, right) == 0, "a %" PRId64 " c %" PRId64 " d %" PRId64, a, c, d);
         CHECK(wide_sat64(wide_shr_floor(up, n)) == a, "a %" PRId64 " n %u", a, n);
         CHECK(wide_cmp(wide_sub(wide_of(a), wide_of(b)), wide_of(0)) == (a > b) - (a < b),
-              "a %" PRId64 " b %" PRId64, a, b);
+            "a %" PRId64 " b %" PRId64, a, b);
     }
 }
 
@@ -108,10 +107,10 @@ static void against_compiler(int64_t a, int64_t b, int64_t c, unsigned n)
     CHECK(same(wide_abs(h), half < 0 ? -half : half), "|%" PRId64 " * %" PRId64 "|", a, b);
     if (n > 0 && n < 127) {
         CHECK(same(wide_shr_half_up(h, n), (half + ((i128)1 << (n - 1))) >> n),
-              "%" PRId64 " * %" PRId64 " / 2^%u rounded", a, b, n);
+            "%" PRId64 " * %" PRId64 " / 2^%u rounded", a, b, n);
     }
     CHECK(wide_cmp(p, wide_of(c)) == (q > c) - (q < c), "%" PRId64 " * %" PRId64 " ? %" PRId64, a,
-          b, c);
+        b, c);
 }
 
 TEST(agrees_with_the_compiler)
@@ -135,4 +134,4 @@ TEST(agrees_with_the_compiler)
 #endif
 
 TEST_MAIN("unit/wide", known_products, known_shifts, identities_hold_everywhere,
-          saturates_with_the_right_sign, agrees_with_the_compiler);
+    saturates_with_the_right_sign, agrees_with_the_compiler);

@@ -42,8 +42,8 @@ static struct exh_wire_packet sample(uint8_t type)
         p.u.planes.echo_stamp_us = 0xFFFFFFF0u;
         p.u.planes.fingers = 3;
         p.u.planes.plane[0] = (struct exh_wire_plane){EXH_PLANE_NONE, 0, 0, {0}, {0}, {0}};
-        p.u.planes.plane[1] = (struct exh_wire_plane){EXH_PLANE_HIT,   4,           0x1234,
-                                                      {0, 0, 1 << 30}, {0, 0, 100}, {5, -6, 100}};
+        p.u.planes.plane[1] = (struct exh_wire_plane){
+            EXH_PLANE_HIT, 4, 0x1234, {0, 0, 1 << 30}, {0, 0, 100}, {5, -6, 100}};
         break;
     case EXH_WIRE_PARAM: p.u.param = (struct exh_wire_param){0x0401, 3, -9}; break;
     case EXH_WIRE_TRACE_ASK:
@@ -97,9 +97,8 @@ static struct exh_wire_rx met(uint32_t session, uint32_t seq)
 
 TEST(bytes_are_those_of_the_document)
 {
-    static const uint8_t param[] = {0x58, 0x57, 2, 4, 8,    0,    0x0D, 0xF0, 0xAD,
-                                    0xBA, 2,    0, 0, 0,    0xE8, 3,    0,    0,
-                                    0x01, 0x04, 3, 0, 0xF7, 0xFF, 0xFF, 0xFF};
+    static const uint8_t param[] = {0x58, 0x57, 2, 4, 8, 0, 0x0D, 0xF0, 0xAD, 0xBA, 2, 0, 0, 0,
+        0xE8, 3, 0, 0, 0x01, 0x04, 3, 0, 0xF7, 0xFF, 0xFF, 0xFF};
     static const uint32_t sizes[] = {31, 236, 231, 30, 36, 34, 93};
     CHECK_EQ_I64(write_as(EXH_WIRE_PARAM, 0xBAADF00Du, 2), sizeof param + 4);
     CHECK(memcmp(buf, param, sizeof param) == 0, "head and payload");
@@ -117,7 +116,7 @@ TEST(there_and_back)
         const int32_t n = exh_wire_encode(&tx, &p, 0x12345678, buf, sizeof buf);
         CHECK_EQ_I64(exh_wire_decode(&rx, &back, buf, (size_t)n), t);
         CHECK(back.type == t && back.seq == 1 && back.stamp_us == 0x12345678 && rx.accepted == 2,
-              "type %d", t);
+            "type %d", t);
         tx.seq = 1;
         CHECK_EQ_I64(exh_wire_encode(&tx, &back, 0x12345678, again, sizeof again), n);
         CHECK(memcmp(buf, again, (size_t)n) == 0, "type %d", t);
@@ -137,7 +136,7 @@ TEST(every_bit_flipped_and_every_byte_cut_off)
             CHECK(exh_wire_decode(&rx, &p, buf, n) < 0 && rx.corrupt == 1, "bit %" PRIu32, bit);
             rx.corrupt = 0;
             CHECK(memcmp(&rx, &start, sizeof rx) == 0 && memcmp(&p, &before, sizeof p) == 0,
-                  "bit %" PRIu32 " changed a state", bit);
+                "bit %" PRIu32 " changed a state", bit);
             buf[bit / 8] = (uint8_t)(buf[bit / 8] ^ 1u << bit % 8);
         }
         for (uint32_t len = 0; len <= n + 1 && len <= sizeof buf; len++) {
@@ -158,14 +157,11 @@ TEST(values_that_cannot_be)
         {EXH_WIRE_HELLO, 18, 2, -EXH_E_CRC},              /* role */
         {EXH_WIRE_STATE, 18 + 4, 32, -EXH_E_CRC},         /* sixth finger */
         {EXH_WIRE_STATE, 18 + 5, EXH_STATES, -EXH_E_CRC}, /* no such state */
-        {EXH_WIRE_STATE, 18 + 5, 255, -EXH_E_CRC},
-        {EXH_WIRE_STATE, 18 + 6, 128, -EXH_E_CRC},
-        {EXH_WIRE_STATE, 18 + 7, 64, -EXH_E_CRC},
-        {EXH_WIRE_PLANES, 18 + 8, 35, -EXH_E_CRC},
+        {EXH_WIRE_STATE, 18 + 5, 255, -EXH_E_CRC}, {EXH_WIRE_STATE, 18 + 6, 128, -EXH_E_CRC},
+        {EXH_WIRE_STATE, 18 + 7, 64, -EXH_E_CRC}, {EXH_WIRE_PLANES, 18 + 8, 35, -EXH_E_CRC},
         {EXH_WIRE_PLANES, 18 + 9, 3, -EXH_E_CRC},          /* kind */
         {EXH_WIRE_PLANES, 18 + 9 + 2 * 40, 1, -EXH_E_CRC}, /* told of a finger not in the mask */
-        {EXH_WIRE_PARAM, 2, 1, -EXH_E_VERSION},
-        {EXH_WIRE_PARAM, 3, 0, -EXH_E_UNKNOWN},
+        {EXH_WIRE_PARAM, 2, 1, -EXH_E_VERSION}, {EXH_WIRE_PARAM, 3, 0, -EXH_E_UNKNOWN},
         {EXH_WIRE_TRACE, 18 + 8, 1, -EXH_E_CRC},    /* no result is positive */
         {EXH_WIRE_TRACE, 18 + 9, 0xFF, -EXH_E_CRC}, /* refused, and frames */
         {EXH_WIRE_TRACE, 18 + 10, 2, -EXH_E_CRC},   /* fewer frames than there are */
@@ -175,8 +171,7 @@ TEST(values_that_cannot_be)
         {EXH_WIRE_TRACE_ASK, 3, EXH_WIRE_PARAM, -EXH_E_CRC}, /* longer than that one */
         {EXH_WIRE_PARAM, 3, 8, -EXH_E_UNKNOWN},
         {EXH_WIRE_PARAM, 3, 5, -EXH_E_CRC}, /* another type of another length */
-        {EXH_WIRE_PARAM, 0, 0, -EXH_E_CRC},
-        {EXH_WIRE_PARAM, 4, 9, -EXH_E_SHORT},
+        {EXH_WIRE_PARAM, 0, 0, -EXH_E_CRC}, {EXH_WIRE_PARAM, 4, 9, -EXH_E_SHORT},
         {EXH_WIRE_PARAM, 6, 0, -EXH_E_CRC}, /* session 0, as 9 is the low byte */
     };
     for (size_t i = 0; i < LEN(bad); i++) {
@@ -225,10 +220,18 @@ TEST(only_what_is_newer)
         int ok;
         uint32_t missing, duplicate, reordered, old;
     } step[] = {
-        {11, 1, 0, 0, 0, 0},    {11, 0, 0, 1, 0, 0},    {14, 1, 2, 1, 0, 0},
-        {13, 0, 1, 1, 1, 0},    {13, 0, 1, 2, 1, 0},    {9, 0, 1, 3, 1, 0},
-        {77, 1, 63, 3, 1, 0},   {14, 0, 63, 4, 1, 0},   {12, 0, 63, 4, 1, 1},
-        {15, 0, 62, 4, 2, 1},   {200, 1, 184, 4, 2, 1}, {136, 0, 184, 4, 2, 2},
+        {11, 1, 0, 0, 0, 0},
+        {11, 0, 0, 1, 0, 0},
+        {14, 1, 2, 1, 0, 0},
+        {13, 0, 1, 1, 1, 0},
+        {13, 0, 1, 2, 1, 0},
+        {9, 0, 1, 3, 1, 0},
+        {77, 1, 63, 3, 1, 0},
+        {14, 0, 63, 4, 1, 0},
+        {12, 0, 63, 4, 1, 1},
+        {15, 0, 62, 4, 2, 1},
+        {200, 1, 184, 4, 2, 1},
+        {136, 0, 184, 4, 2, 2},
         {137, 0, 183, 4, 3, 2},
     };
     struct exh_wire_rx rx = met(9, 10);
@@ -241,8 +244,8 @@ TEST(only_what_is_newer)
         CHECK(r == (step[i].ok ? EXH_WIRE_PARAM : -EXH_E_STALE), "step %d", (int)i);
         CHECK(rx.missing == step[i].missing && rx.duplicate == step[i].duplicate &&
                   rx.reordered == step[i].reordered && rx.old == step[i].old,
-              "step %d: %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32, (int)i, rx.missing,
-              rx.duplicate, rx.reordered, rx.old);
+            "step %d: %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32, (int)i, rx.missing,
+            rx.duplicate, rx.reordered, rx.old);
     }
 }
 
@@ -301,8 +304,8 @@ TEST(no_packet_makes_it_deaf_for_good)
 {
     struct exh_wire_rx rx = met(8, 5);
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 9, 100)), EXH_WIRE_HELLO);
-    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 7, 3)),
-                 EXH_WIRE_HELLO); /* long gone, and late */
+    CHECK_EQ_I64(
+        take(&rx, write_as(EXH_WIRE_HELLO, 7, 3)), EXH_WIRE_HELLO); /* long gone, and late */
     recovers(&rx);
 
     rx = met(9, 100);
@@ -344,11 +347,11 @@ TEST(what_differs_is_said_by_name)
         struct exh_wire_hello theirs;
         uint32_t want;
     } c[] = {{{EXH_WIRE_WORLD, 0x100, 0xABCD}, 0},
-             {{EXH_WIRE_WORLD, 0x100, 0}, 0}, /* has no table */
-             {{EXH_WIRE_CONTROLLER, 0x100, 0xABCD}, EXH_WIRE_ROLE},
-             {{EXH_WIRE_WORLD, 0x101, 0xABCD}, EXH_WIRE_LIB},
-             {{EXH_WIRE_WORLD, 0x100, 0xABCE}, EXH_WIRE_TABLE},
-             {{EXH_WIRE_CONTROLLER, 0, 1}, EXH_WIRE_ROLE | EXH_WIRE_LIB | EXH_WIRE_TABLE}};
+        {{EXH_WIRE_WORLD, 0x100, 0}, 0}, /* has no table */
+        {{EXH_WIRE_CONTROLLER, 0x100, 0xABCD}, EXH_WIRE_ROLE},
+        {{EXH_WIRE_WORLD, 0x101, 0xABCD}, EXH_WIRE_LIB},
+        {{EXH_WIRE_WORLD, 0x100, 0xABCE}, EXH_WIRE_TABLE},
+        {{EXH_WIRE_CONTROLLER, 0, 1}, EXH_WIRE_ROLE | EXH_WIRE_LIB | EXH_WIRE_TABLE}};
     for (size_t i = 0; i < LEN(c); i++) {
         CHECK_EQ_I64(exh_wire_compare(&ours, &c[i].theirs), c[i].want);
     }
@@ -368,11 +371,11 @@ TEST(a_step_over_all_that_is_remembered)
         for (uint32_t late = 1; late < 63; late++) {
             CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, step - late)), -EXH_E_STALE);
             CHECK(rx.reordered == late && rx.duplicate == 0, "step %" PRIu32 ": %" PRIu32 " late",
-                  step, late);
+                step, late);
         }
         CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, step - 63)), -EXH_E_STALE);
         CHECK(rx.duplicate == (step == 63) && rx.missing == step - rx.reordered - 1,
-              "step %" PRIu32, step);
+            "step %" PRIu32, step);
     }
 }
 
@@ -420,23 +423,21 @@ TEST(planes_and_round_trip)
     CHECK_EQ_I64(none.kind, EXH_PLANE_NONE);
     CHECK(hit.kind == EXH_PLANE_HIT && hit.material == 4 && hit.object == 0x1234 &&
               hit.normal_q30.z == 1 << 30 && hit.point_m_q30.z == 100 && hit.point_m_q30.x == 0,
-          "hit");
+        "hit");
     CHECK_EQ_I64(exh_wire_round_trip_us(0x10, &p.u.planes), 0x20);
 }
 
 TEST(parameters_are_staged_and_answered)
 {
     static const struct exh_signal rows[] = {{0x0401, 10, EXH_WHEN_ANY, 0, 100, 5, "k", "", ""},
-                                             {0x0402, 10, EXH_WHEN_SETUP, 0, 100, 5, "b", "", ""}};
+        {0x0402, 10, EXH_WHEN_SETUP, 0, 100, 5, "b", "", ""}};
     static const struct exh_signal_group group[] = {{rows, 2, 2}};
     static const struct exh_signal_table table = {group, 1};
     static const struct {
         struct exh_wire_param ask;
         int want;
-    } c[] = {{{0x0401, 1, 100}, 0},
-             {{0x0401, 1, 101}, -EXH_E_RANGE},
-             {{0x0401, 2, 1}, -EXH_E_UNKNOWN},
-             {{0x0402, 0, 6}, -EXH_E_STATE}};
+    } c[] = {{{0x0401, 1, 100}, 0}, {{0x0401, 1, 101}, -EXH_E_RANGE},
+        {{0x0401, 2, 1}, -EXH_E_UNKNOWN}, {{0x0402, 0, 6}, -EXH_E_STATE}};
     int32_t active[4], staged[4];
     struct exh_params params;
     exh_params_setup(&params, &table, active, staged);
@@ -448,7 +449,7 @@ TEST(parameters_are_staged_and_answered)
         ack = exh_wire_stage(&params, &p);
         CHECK(ack.result == c[i].want && ack.request_seq == p.seq &&
                   memcmp(&ack.param, &c[i].ask, sizeof ack.param) == 0,
-              "case %d", (int)i);
+            "case %d", (int)i);
     }
     CHECK_EQ_I64(active[2], 5); /* instance 1 of k; applied between ticks, not here */
     CHECK(exh_params_apply(&params) == 1 && active[2] == 100 && active[0] == 5, "applied");
@@ -471,13 +472,13 @@ TEST(state_round_trip)
     exh_wire_tx_serialize(&c, &tx_back);
     CHECK(exh_bytes_ok(&c) && memcmp(&rx, &back, sizeof rx) == 0 &&
               memcmp(&tx, &tx_back, sizeof tx) == 0,
-          "the same");
+        "the same");
 }
 
 TEST_MAIN("unit/wire", bytes_are_those_of_the_document, there_and_back,
-          every_bit_flipped_and_every_byte_cut_off, values_that_cannot_be,
-          a_trace_fits_a_packet_whole_and_no_frame_is_missed_unseen, only_what_is_newer,
-          sequence_numbers_wrap, far_ahead_is_not_believed, no_packet_makes_it_deaf_for_good,
-          silence_is_only_what_is_heard_of_nobody, what_differs_is_said_by_name,
-          a_step_over_all_that_is_remembered, a_restart_is_seen_by_its_hello, writing_refuses,
-          planes_and_round_trip, parameters_are_staged_and_answered, state_round_trip);
+    every_bit_flipped_and_every_byte_cut_off, values_that_cannot_be,
+    a_trace_fits_a_packet_whole_and_no_frame_is_missed_unseen, only_what_is_newer,
+    sequence_numbers_wrap, far_ahead_is_not_believed, no_packet_makes_it_deaf_for_good,
+    silence_is_only_what_is_heard_of_nobody, what_differs_is_said_by_name,
+    a_step_over_all_that_is_remembered, a_restart_is_seen_by_its_hello, writing_refuses,
+    planes_and_round_trip, parameters_are_staged_and_answered, state_round_trip);

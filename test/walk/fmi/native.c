@@ -42,8 +42,8 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     const struct exh_scene *sc = &exh_scene_drop;
     (void)tick;
     printf("%lu %d %d %lu %lu %d %u %u %u", (unsigned long)in->drive.enc_raw[0],
-           in->drive.mon_raw[0], in->drive.supply_raw, (unsigned long)in->drive.din,
-           (unsigned long)in->missed, in->command, out->dac_raw[0], out->enable, out->alive);
+        in->drive.mon_raw[0], in->drive.supply_raw, (unsigned long)in->drive.din,
+        (unsigned long)in->missed, in->command, out->dac_raw[0], out->enable, out->alive);
     for (uint32_t i = 0; i < exh_signal_count(sc->signals); i++) {
         printf(" %ld", (long)sc->signal[i]);
     }

@@ -20,8 +20,8 @@ void exh_blackbox_memory(void *mem, size_t len_B, int alone);
 
 void exh_blackbox_start(const struct exh_scene *sc, struct exh_scene_board board);
 void exh_blackbox_before(uint32_t tick, struct exh_scene_in *in);
-void exh_blackbox_after(uint32_t tick, const struct exh_scene_in *in,
-                        const struct exh_drive_out *out);
+void exh_blackbox_after(
+    uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out);
 
 /* No tick comes any more. After a fault it freezes as it is; halted: so it does without one. */
 void exh_blackbox_stop(int halted);

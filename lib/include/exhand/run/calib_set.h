@@ -33,7 +33,7 @@ struct exh_calib_tables {
  * parameter, which a log's header has, as DRIVE parameters of instance `finger`. 0, or -EXH_E_…
  * with *k saying of which image and what, and nothing taken. */
 int exh_calib_set_load(struct exh_scene_calib *k, struct exh_params *params,
-                       const struct exh_calib_set_par *par, uint32_t fingers);
+    const struct exh_calib_set_par *par, uint32_t fingers);
 
 /* Then tables of a finger: those of its image, made with the scales in use (else -EXH_E_STALE, and
  * *k says so); or, of a finger without one, straight lines by kf, N/A, to the peak current, vouched
@@ -45,7 +45,7 @@ struct exh_calib_finger {
     int32_t kf_NpA_q20;
 };
 int exh_calib_set_tables(struct exh_calib_tables *t, struct exh_scene_calib *k,
-                         const struct exh_calib_set_par *par, const struct exh_calib_finger *of);
+    const struct exh_calib_set_par *par, const struct exh_calib_finger *of);
 
 static inline struct exh_table exh_calib_to_cur(const struct exh_calib_tables *t)
 {

@@ -37,7 +37,7 @@ uint32_t exh_log_images_B(void);
  * is read goes through the parameters' own checks; one that fails them is not ok.
  * A scene without signals, state or glove logs none. */
 void exh_log_frame_serialize(struct exh_bytes *c, const struct exh_scene *sc,
-                             struct exh_scene_in *in, struct exh_drive_out *out, int32_t *signal);
+    struct exh_scene_in *in, struct exh_drive_out *out, int32_t *signal);
 void exh_log_keyframe_serialize(struct exh_bytes *c, const struct exh_scene *sc);
 
 #endif

@@ -17,24 +17,17 @@ struct asked {
     double object_mps, slide_mm, radius_mm, d_lim_mm, ray_mm;
 };
 
-static int32_t raw(double si, unsigned frac)
-{
-    return (int32_t)floor(ldexp(si, (int)frac) + 0.5);
-}
+static int32_t raw(double si, unsigned frac) { return (int32_t)floor(ldexp(si, (int)frac) + 0.5); }
 
-static double mm(int32_t m_q30)
-{
-    return ldexp(1000.0 * m_q30, -EXH_Q_POS);
-}
+static double mm(int32_t m_q30) { return ldexp(1000.0 * m_q30, -EXH_Q_POS); }
 
 static struct exh_precontact_need need_of(const struct asked *a)
 {
     const double age_ms = 1000.0 / a->fps + a->link_ms + a->jitter_ms;
-    const struct exh_precontact_need n = {
-        raw(a->speed_mps, EXH_Q_VEL),       (int32_t)ceil(1000.0 * a->lag_ms),
-        raw(a->noise_mm / 1000, EXH_Q_POS), (int32_t)ceil(1000.0 * age_ms),
-        raw(a->object_mps, EXH_Q_VEL),      raw(a->slide_mm / 1000, EXH_Q_POS),
-        raw(a->radius_mm / 1000, EXH_Q_POS)};
+    const struct exh_precontact_need n = {raw(a->speed_mps, EXH_Q_VEL),
+        (int32_t)ceil(1000.0 * a->lag_ms), raw(a->noise_mm / 1000, EXH_Q_POS),
+        (int32_t)ceil(1000.0 * age_ms), raw(a->object_mps, EXH_Q_VEL),
+        raw(a->slide_mm / 1000, EXH_Q_POS), raw(a->radius_mm / 1000, EXH_Q_POS)};
     return n;
 }
 
@@ -50,18 +43,17 @@ static int judge(const char *what, int enough, double has_mm, double wants_mm)
 }
 
 static int print(const struct asked *a, const struct exh_precontact_need *n,
-                 const struct exh_precontact_advice *advice,
-                 const struct exh_precontact_advice *own)
+    const struct exh_precontact_advice *advice, const struct exh_precontact_advice *own)
 {
     /* To the micrometre, away from the finger, so that who takes the figure has enough. */
     const double d_lim_mm = floor(1000 * mm(advice->d_lim_m_q30)) / 1000;
     const double ray_mm = ceil(1000 * mm(own->ray_m_q30)) / 1000;
     int bad = 0;
     printf("d_lim_mm=%.3f ray_mm=%.3f age_ms=%.3f error_mm=%.3f speed_mps=%.4f\n", d_lim_mm, ray_mm,
-           n->age_us / 1000.0, mm(own->error_m_q30), ldexp(own->speed_mps_q27, -EXH_Q_VEL));
+        n->age_us / 1000.0, mm(own->error_m_q30), ldexp(own->speed_mps_q27, -EXH_Q_VEL));
     if (a->d_lim_mm < 0) {
         bad |= judge("d_lim", raw(a->d_lim_mm / 1000, EXH_Q_POS) <= advice->d_lim_m_q30,
-                     a->d_lim_mm, d_lim_mm);
+            a->d_lim_mm, d_lim_mm);
     }
     if (a->ray_mm > 0) {
         bad |= judge("ray", raw(a->ray_mm / 1000, EXH_Q_POS) >= own->ray_m_q30, a->ray_mm, ray_mm);
@@ -111,9 +103,7 @@ int advise_command(int argc, char **argv, const struct gains_study *study)
         {"d-lim", CLI_REAL, &a.d_lim_mm, -200, -0.1, "MM", "judge this one: exit 1 if too small"},
         {"ray", CLI_REAL, &a.ray_mm, 0.1, 1900, "MM", "judge this one: exit 1 if too short"},
     };
-    const struct cli_command c = {
-        "advise",
-        "freeze [options]",
+    const struct cli_command c = {"advise", "freeze [options]",
         "How far before contact q_lim must be frozen (d_lim), and how far the world must look "
         "(ray),\n"
         "so that no wall is late: |d_lim| >= v*(T + lag) + noise, ray >= |d_lim| + v*(T + age) + "
@@ -121,9 +111,7 @@ int advise_command(int argc, char **argv, const struct gains_study *study)
         "age = 1/fps + link + jitter. error is what moves or curves meanwhile: v_object*age +\n"
         "slide^2 / (2*radius). speed is the fastest approach that d_lim allows.\n"
         "Of stiffness and damping: exhand advise gains --help.",
-        option,
-        sizeof option / sizeof option[0],
-        1};
+        option, sizeof option / sizeof option[0], 1};
     int err;
     if (is_about(argc, argv, "gains")) { return gains_command(argc, argv, study); }
     err = cli_parse(&c, argc, argv, about);

@@ -30,7 +30,7 @@ static int take_rates(void *ctx, const char *text)
         at = end;
     }
     cli_complain("--rate: %s (1..20000 Hz, at most %d of them, with commas): e.g. --rate 500,2000",
-                 text, GAINS_RATES);
+        text, GAINS_RATES);
     return 2;
 }
 
@@ -83,7 +83,7 @@ static int refuse(struct gains_options *a)
          */
         if ((d->delay_tick / a->rate_Hz[i] + d->delay_s) * a->rate_Hz[i] > 200) {
             cli_complain("%.6g Hz: outputs are more than 200 ticks late: a lower --rate or delay",
-                         a->rate_Hz[i]);
+                a->rate_Hz[i]);
             return 2;
         }
     }
@@ -137,7 +137,7 @@ static void print_best(struct region *r)
                 found = has_room(r, i, j, room[n]);
                 if (!found) { continue; }
                 printf("%s x%.4g: k %.5g b %.3g", n ? "," : "", room[n], region_k(r, i + 1),
-                       (region_b(r, j) + region_b(r, j + 1)) / 2);
+                    (region_b(r, j) + region_b(r, j + 1)) / 2);
             }
         }
         if (!found) { printf("%s x%.4g: none", n ? "," : "", room[n]); }
@@ -175,30 +175,30 @@ static int print_pair(const struct gains_options *a, struct region *r)
     int i, j, ok;
     ok = region_find(r, k, b, &i, &j) && region_piece(r, i, j);
     printf("  k %.6g N/m, b %.6g Ns/m: %s (linear test alone: rho %.4f, %s; energy: %s)\n", k, b,
-           ok ? "allowed" : "NOT allowed", rho, rho >= 0 && rho < 1 ? "stable" : "not stable",
-           region_energy(&r->o, k, b) ? "stable" : "not stable");
+        ok ? "allowed" : "NOT allowed", rho, rho >= 0 && rho < 1 ? "stable" : "not stable",
+        region_energy(&r->o, k, b) ? "stable" : "not stable");
     if (ok) {
         const double k_up = region_k(r, i + 1 + along(r, i, j, 1, 0));
         const double b_up = region_b(r, j + 1 + along(r, i, j, 0, 1));
         printf("  margin: k %.6g .. %.6g N/m (x%.2f) at this b; b %.6g .. %.6g Ns/m (+%.3g) at "
                "this k; both "
                "together x%.2f\n",
-               region_k(r, i - along(r, i, j, -1, 0)), k_up, k > 0 ? k_up / k : 0,
-               region_b(r, j - along(r, i, j, 0, -1)), b_up, b_up - b, together(r, k, b));
+            region_k(r, i - along(r, i, j, -1, 0)), k_up, k > 0 ? k_up / k : 0,
+            region_b(r, j - along(r, i, j, 0, -1)), b_up, b_up - b, together(r, k, b));
         printf("  largest k at this b %.6g N/m, largest b at this k %.6g Ns/m\n", k_up, b_up);
     } else if (region_find(r, k < region_k(r, 0) ? region_k(r, 0) : k, b, &i, &j)) {
         printf("  largest k at this b %.6g N/m, largest b at this k %.6g Ns/m (0: none)\n",
-               first_run(r, i, j, 1), first_run(r, i, j, 0));
+            first_run(r, i, j, 1), first_run(r, i, j, 0));
     } else {
         printf("  beyond all that comes to rest: k < %.6g N/m, b < %.6g Ns/m\n", r->k_top_Npm,
-               r->b_top_Nspm);
+            r->b_top_Nspm);
     }
     return ok;
 }
 
 /* 0, or an exit status. */
 static int do_rate(const struct gains_options *a, struct gains_rate *x, int i,
-                   const struct gains_study *study, int *restless)
+    const struct gains_study *study, int *restless)
 {
     struct region_opt o = a->o;
     int err, ok = 1;
@@ -213,8 +213,8 @@ static int do_rate(const struct gains_options *a, struct gains_rate *x, int i,
         return !x->has_rule;
     }
     printf("%.6g Hz: k < %.6g N/m, b < %.6g Ns/m looked at, in pieces of %.4g N/m by %.3g Ns/m\n",
-           x->rate_Hz, x->region.k_top_Npm, x->region.b_top_Nspm, x->region.k_top_Npm / o.columns,
-           x->region.b_top_Nspm / o.rows);
+        x->rate_Hz, x->region.k_top_Npm, x->region.b_top_Nspm, x->region.k_top_Npm / o.columns,
+        x->region.b_top_Nspm / o.rows);
     if (a->k_Npm >= 0) { ok = print_pair(a, &x->region); }
     print_best(&x->region);
     return !ok;
@@ -252,23 +252,21 @@ int gains_command(int argc, char **argv, const struct gains_study *study)
     const struct cli_option option[] = {
         {"rate", CLI_CALL, &rates, 0, 0, "HZ[,HZ...]", "of the control loop (2000)"},
         {"k", CLI_REAL, &a.k_Npm, 0, 1e6, "N/M",
-         "judge this stiffness, with --b: exit 1 if not allowed"},
+            "judge this stiffness, with --b: exit 1 if not allowed"},
         {"b", CLI_REAL, &a.b_Nspm, 0, 1e3, "NS/M", "and this damping"},
         {"window", CLI_INT, &a.window, 1, 16, "N", "ticks of the velocity (2)"},
         {"device", CLI_CALL, &device, 0, 0, "NAME=VALUE",
-         "mass, rotor, step, decode, delay, mu_motor, ...: exhand drop --params"},
+            "mass, rotor, step, decode, delay, mu_motor, ...: exhand drop --params"},
         {"off", CLI_REAL, &a.off_percent, 0, 50, "PERCENT",
-         "also with masses so much more and less, and friction so much less (0)"},
+            "also with masses so much more and less, and friction so much less (0)"},
         {"margin", CLI_REAL, &a.margin_percent, 0, 50, "PERCENT",
-         "every second fall with so much less friction (3)"},
+            "every second fall with so much less friction (3)"},
         {"cases", CLI_INT, &a.cases, 2, 1000, "N", "falls of each node; more allow less (32)"},
         {"grid", CLI_TEXT, &a.grid, 0, 0, "KxB", "pieces along k and b (64x48)"},
         {"rule", CLI_FLAG, &a.rule, 0, 0, NULL, "print only the rule, as --set takes it and as C"},
         {"jobs", CLI_INT, &a.jobs, 1, 1024, "N", "processes at a time (one a core)"},
     };
-    const struct cli_command c = {
-        "advise",
-        "gains [options]",
+    const struct cli_command c = {"advise", "gains [options]",
         "Which stiffness k and damping b come to rest at a rate, margins, the best pairs. A model "
         "of the\n"
         "device (string, rotor, dry friction in proportion to the tension, encoder steps, delay, "
@@ -278,9 +276,7 @@ int gains_command(int argc, char **argv, const struct gains_study *study)
         "evenly; what lies between four nodes of which every fall comes to rest is allowed. It "
         "holds for\n"
         "the mass, friction and height told (--off: for some around them) and for nothing else.",
-        option,
-        (int)(sizeof option / sizeof option[0]),
-        1};
+        option, (int)(sizeof option / sizeof option[0]), 1};
     int err;
     defaults(&a);
     err = cli_parse_more(&c, &study->more, argc, argv, about);

@@ -28,10 +28,7 @@ static void scale_friction(struct sim_device *d, double by)
 /* Kinds of device that a case is run on in turn: as told, heavier and lighter with less friction;
  * every second time with a margin of friction less. Not always with it: what sticks later chatters
  * less. */
-static int kinds(const struct region_opt *o)
-{
-    return o->off > 0 ? 2 * VARIANTS : 2;
-}
+static int kinds(const struct region_opt *o) { return o->off > 0 ? 2 * VARIANTS : 2; }
 
 static struct sim_device kind(const struct region_opt *o, int v)
 {
@@ -123,7 +120,7 @@ int region_open(struct region *r, const struct region_opt *o)
     memset(r->node, -1, nodes);
     if (!reach(r) && !posix_interrupted()) {
         cli_complain("%.6g Hz: nothing comes to rest at any stiffness: another --rate or --device",
-                     1 / o->wall.T_s);
+            1 / o->wall.T_s);
         return 1;
     }
     return posix_interrupted() ? JOBS_INTERRUPTED : 0;
@@ -142,10 +139,7 @@ double region_k(const struct region *r, int i)
     return r->k_top_Npm * (i > 0 ? i : 0.25) / r->o.columns;
 }
 
-double region_b(const struct region *r, int j)
-{
-    return r->b_top_Nspm * j / r->o.rows;
-}
+double region_b(const struct region *r, int j) { return r->b_top_Nspm * j / r->o.rows; }
 
 static signed char *node_at(const struct region *r, int i, int j)
 {
@@ -173,10 +167,7 @@ int region_find(const struct region *r, double k_Npm, double b_Nspm, int *i, int
     return *i < r->o.columns && *j < r->o.rows;
 }
 
-static int on(double v, double edge)
-{
-    return v - edge <= 1e-9 * edge && edge - v <= 1e-9 * edge;
-}
+static int on(double v, double edge) { return v - edge <= 1e-9 * edge && edge - v <= 1e-9 * edge; }
 
 int region_allows(struct region *r, double k_Npm, double b_Nspm)
 {

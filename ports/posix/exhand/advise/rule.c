@@ -102,10 +102,7 @@ static double search(const struct profile *p, int *knots, int *end, int *level)
 
 /* --- in the library's formats --- */
 
-static int32_t down(double v, int frac)
-{
-    return (int32_t)(v * (double)(INT32_C(1) << frac));
-}
+static int32_t down(double v, int frac) { return (int32_t)(v * (double)(INT32_C(1) << frac)); }
 
 static void take(struct exh_gains_par *rule, const struct profile *p, int knots, int j, int level)
 {
@@ -142,21 +139,18 @@ int gains_rule(struct exh_gains_par *rule, struct region *r)
     return 1;
 }
 
-static double si(int32_t raw, int frac)
-{
-    return (double)raw / (double)(INT32_C(1) << frac);
-}
+static double si(int32_t raw, int frac) { return (double)raw / (double)(INT32_C(1) << frac); }
 
 void gains_rule_print(FILE *f, const struct exh_gains_par *rule)
 {
     fprintf(f, "--set rule_on=1 --set rule_rate=%.10g --set rule_n=%ld --set rule_k_min=%.10g",
-            si(rule->rate_Hz_q8, 8), (long)rule->knots, si(rule->k_min_Npm_q10, EXH_Q_K));
+        si(rule->rate_Hz_q8, 8), (long)rule->knots, si(rule->k_min_Npm_q10, EXH_Q_K));
     for (int i = 0; i < rule->knots; i++) {
         fprintf(f, " --set rule_b%d=%.10g --set rule_k%d=%.10g", i,
-                si(rule->b_Nspm_q20[i], EXH_Q_B), i, si(rule->k_Npm_q10[i], EXH_Q_K));
+            si(rule->b_Nspm_q20[i], EXH_Q_B), i, si(rule->k_Npm_q10[i], EXH_Q_K));
     }
     fprintf(f, "\n{%ld, %ld, %ld, {", (long)rule->rate_Hz_q8, (long)rule->knots,
-            (long)rule->k_min_Npm_q10);
+        (long)rule->k_min_Npm_q10);
     for (int i = 0; i < EXH_GAINS_KNOTS; i++) {
         fprintf(f, "%s%ld", i ? ", " : "", (long)rule->b_Nspm_q20[i]);
     }

@@ -43,26 +43,22 @@ int cli_bringup(int argc, char **argv)
     struct cli_call fault = {take_wrong, &c};
     const struct cli_option option[] = {
         {"boot", CLI_TEXT, &c.boot, 0, 0, "LINE",
-         "\"name=value ...\", as on the image's command line"},
+            "\"name=value ...\", as on the image's command line"},
         {"rate", CLI_INT, &rate_Hz, 20, 20000, "HZ", "loop rate (1000)"},
         {"seed", CLI_INT, &seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
         {"cards", CLI_FLAG, &cards, 0, 0, NULL,
-         "through the drivers and emulated cards: the same words"},
+            "through the drivers and emulated cards: the same words"},
         {"pace", CLI_FLAG, &pace, 0, 0, NULL, "follow the wall clock, for people who watch"},
         {"wrong", CLI_CALL, &fault, 0, 0, "NAME", "something is wrong"},
         {"phase", CLI_INT, &phase, 0, 9, "N",
-         "from 0.2 s into this phase on, the first is 0 (power-on)"},
+            "from 0.2 s into this phase on, the first is 0 (power-on)"},
         {"faults", CLI_FLAG, &faults, 0, 0, NULL,
-         "everything that may be wrong, in every stage: a table"},
+            "everything that may be wrong, in every stage: a table"},
         {"params", CLI_FLAG, &list, 0, 0, NULL, "list the parameters, and what may be wrong"},
     };
-    const struct cli_command command = {
-        "bringup",
-        "[options]",
-        "First power-up, a stage a run (docs/BRINGUP.md), on the simulated device.",
-        option,
-        (int)(sizeof option / sizeof option[0]),
-        0};
+    const struct cli_command command = {"bringup", "[options]",
+        "First power-up, a stage a run (docs/BRINGUP.md), on the simulated device.", option,
+        (int)(sizeof option / sizeof option[0]), 0};
 
     memset(&c, 0, sizeof c); /* a test calls more than once */
     c.boot = "stage=1";

@@ -8,8 +8,8 @@
 /* In which phase what is wrong begins; those that are so from the start first. */
 static int begins(enum bringup_wrong w, int stage)
 {
-    static const int busy[BRINGUP_STAGES] = {3, 1, 2, 3,
-                                             2}; /* output, load, polarity, force, force */
+    static const int busy[BRINGUP_STAGES] = {
+        3, 1, 2, 3, 2}; /* output, load, polarity, force, force */
     static const int hands[BRINGUP_STAGES] = {2, -1, 0, 0, 0}; /* the phase before the question */
     const int from_start = w <= BRINGUP_UNPLUGGED || w == BRINGUP_STUCK || w == BRINGUP_AWAY ||
                            (w == BRINGUP_NOT_READY && stage == 1);
@@ -43,7 +43,7 @@ static int wrong_is_of(enum bringup_wrong w, int stage)
 
 /* The numbers of a finger whose scales are the defaults. */
 static int stage_run(const struct bringup_run_cfg *cfg, int stage, uint32_t shown, const char *more,
-                     struct bringup_run *r)
+    struct bringup_run *r)
 {
     struct bringup_run_cfg c = *cfg;
     char boot[120];

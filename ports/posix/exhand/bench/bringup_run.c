@@ -43,15 +43,9 @@ static struct {
     int hooked, held, wrong;
 } run;
 
-static double now_s(void)
-{
-    return posix_time_s();
-}
+static double now_s(void) { return posix_time_s(); }
 
-static const struct bringup_own_par *own(void)
-{
-    return &bringup_config()->par->own;
-}
+static const struct bringup_own_par *own(void) { return &bringup_config()->par->own; }
 
 /* String at the motor, whatever the encoder says of it. */
 static double string_m(void)
@@ -60,10 +54,7 @@ static double string_m(void)
     return finger ? finger->plant.q_m : posix_plant()->q_m;
 }
 
-static double si(int32_t raw, int frac)
-{
-    return (double)raw / (double)(INT64_C(1) << frac);
-}
+static double si(int32_t raw, int frac) { return (double)raw / (double)(INT64_C(1) << frac); }
 
 /* --- the person --- */
 
@@ -74,10 +65,7 @@ static double hand_m(double t_s)
     return 0.025 * u * u * (3 - 2 * u);
 }
 
-static int between(double t_s, double from_s, double to_s)
-{
-    return t_s >= from_s && t_s < to_s;
-}
+static int between(double t_s, double from_s, double to_s) { return t_s >= from_s && t_s < to_s; }
 
 static void hook(void)
 {
@@ -137,7 +125,7 @@ static void look_for_wrong(void)
     if (run.wrong || run.cfg->wrong == BRINGUP_RIGHT) { return; }
     if (run.cfg->wrong_phase >= 0 &&
         (s->phase < run.cfg->wrong_phase ||
-         (s->phase == run.cfg->wrong_phase && (!s->busy || now_s() - run.since_s < 0.2)))) {
+            (s->phase == run.cfg->wrong_phase && (!s->busy || now_s() - run.since_s < 0.2)))) {
         return;
     }
     run.wrong = 1;
@@ -209,7 +197,7 @@ static void read_balance(void)
     run.out->balance_N[s->told_level] = (double)(int)((T_N > 0 ? T_N : 0) * 100 + 0.5) / 100;
     if (run.cfg->board.log) {
         fprintf(run.cfg->board.log, "        (the balance reads %.2f N)\n",
-                run.out->balance_N[s->told_level]);
+            run.out->balance_N[s->told_level]);
     }
 }
 
@@ -226,7 +214,7 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     for (unsigned i = 0; i < EXH_FINGERS; i++) { /* the others' drives */
         run.out->unsafe += (int32_t)i != own()->finger &&
                            (out->dac_raw[i] != bringup_config()->par->drive.dac_zero_raw ||
-                            (out->enable >> i & 1));
+                               (out->enable >> i & 1));
     }
     if (s->result == EXH_PROBE_BUSY) {
         if (out->enable && cur_A > run.out->most_A) { run.out->most_A = cur_A; }

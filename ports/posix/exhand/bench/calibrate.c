@@ -48,7 +48,7 @@ static int masses(const char *option, const char *text, double *kg, int rising)
         if (n == CALIBRATE_MASSES || end == from || !(v >= 0.001 && v <= 5) ||
             (rising && n > 0 && v <= kg[n - 1]) || (*end != ',' && *end != '\0')) {
             cli_complain("--%s: %s (0.001..5 kg%s, commas between, at most %d): e.g. --%s 0.1,0.5",
-                         option, text, rising ? ", rising" : "", CALIBRATE_MASSES, option);
+                option, text, rising ? ", rising" : "", CALIBRATE_MASSES, option);
             return 0;
         }
         kg[n++] = v;
@@ -61,8 +61,8 @@ static int take_masses(void *ctx, const char *text)
     struct calibrate_options *o = ctx;
     o->masses = masses("mass", text, o->mass_kg, 1);
     if (o->masses == 1) { /* any one point lies on its own line: nothing would be checked */
-        cli_complain("--mass: %s: one mass alone can't be checked against a line: give two or more",
-                     text);
+        cli_complain(
+            "--mass: %s: one mass alone can't be checked against a line: give two or more", text);
         return 2;
     }
     return o->masses ? 0 : 2;
@@ -130,7 +130,7 @@ static void print_params(void)
     for (int i = 0; i < sim_device_rows; i++) {
         const struct sim_device_row *r = &sim_device_row[i];
         printf("  %-13s %-8s %12.7g  %12.7g .. %-12.7g %-8s %s\n", r->name, r->unit, r->value,
-               r->min, r->max, r->sure, r->help);
+            r->min, r->max, r->sure, r->help);
     }
     printf("\nWhat may be wrong at the bench (--wrong NAME)\n");
     for (size_t i = 0; i < WRONGS; i++) { printf("  %-17s %s\n", wrong[i].name, wrong[i].what); }
@@ -167,25 +167,23 @@ static void write_pictures(FILE *f, const void *ctx)
 {
     const struct results *r = ctx;
     fprintf(f,
-            "# Made by exhand calibrate. In this directory: gnuplot -c pictures.gp PLOTS, where\n"
-            "# PLOTS is the path of ports/posix/exhand/plot.\n"
-            "out='calibration.png'; points='calibration.csv'; table='table.csv'\n"
-            "kf=%.9g; kf_mon=%.9g\nload ARG1.'/calibration.gp'\n",
-            (double)r->l->cur.kf_NpA_q20 / (1 << EXH_Q_FORCE),
-            (double)r->l->mon.kf_NpA_q20 / (1 << EXH_Q_FORCE));
+        "# Made by exhand calibrate. In this directory: gnuplot -c pictures.gp PLOTS, where\n"
+        "# PLOTS is the path of ports/posix/exhand/plot.\n"
+        "out='calibration.png'; points='calibration.csv'; table='table.csv'\n"
+        "kf=%.9g; kf_mon=%.9g\nload ARG1.'/calibration.gp'\n",
+        (double)r->l->cur.kf_NpA_q20 / (1 << EXH_Q_FORCE),
+        (double)r->l->mon.kf_NpA_q20 / (1 << EXH_Q_FORCE));
 }
 
 /* All of them or the first that fails. 0, or 1 after a line on stderr. */
-static int write_files(const char *dir, const struct exh_calib *c,
-                       const struct calibration_lines *l)
+static int write_files(
+    const char *dir, const struct exh_calib *c, const struct calibration_lines *l)
 {
     static const struct {
         const char *name;
         void (*write)(FILE *f, const void *ctx);
-    } file[] = {{"calibration.bin", write_image},
-                {"calibration.csv", write_points},
-                {"table.csv", write_table},
-                {"pictures.gp", write_pictures}};
+    } file[] = {{"calibration.bin", write_image}, {"calibration.csv", write_points},
+        {"table.csv", write_table}, {"pictures.gp", write_pictures}};
     struct results r = {.c = c, .l = l};
     struct exh_calib_error bad = {0, 0};
     const int32_t len = exh_calib_save(c, r.image, sizeof r.image, &bad);
@@ -221,7 +219,7 @@ static int judge(const struct calibrate_options *o, struct calibration *r)
     err = l.cur_worst_N > o->residual_N || l.mon_worst_N > o->residual_N;
     if (err) {
         cli_complain("residual: %.4g N (allowed 0..%.4g): weigh that mass again, or --residual",
-                     l.cur_worst_N > l.mon_worst_N ? l.cur_worst_N : l.mon_worst_N, o->residual_N);
+            l.cur_worst_N > l.mon_worst_N ? l.cur_worst_N : l.mon_worst_N, o->residual_N);
         return 1;
     }
     if (posix_interrupted()) {
@@ -230,7 +228,7 @@ static int judge(const struct calibrate_options *o, struct calibration *r)
     }
     if (o->out != NULL && write_files(o->out, &r->c, &l) != 0) { return 1; }
     printf("for the drop experiment, straight: exhand drop --set kf=%.6g --set f0=%.4g\n",
-           (double)l.cur.kf_NpA_q20 / (1 << EXH_Q_FORCE), l.f0_N);
+        (double)l.cur.kf_NpA_q20 / (1 << EXH_Q_FORCE), l.f0_N);
     return 0;
 }
 
@@ -318,15 +316,15 @@ int cli_calibrate(int argc, char **argv)
     struct cli_call hung = {take_hung, &o};
     const struct cli_option option[] = {
         {"glove", CLI_FLAG, &glove, 0, 0, NULL,
-         "the glove, from poses: --glove --help lists its options"},
+            "the glove, from poses: --glove --help lists its options"},
         {"mass", CLI_CALL, &known, 0, 0, "KG[,KG...]",
-         "known masses, rising (0.1,0.2,0.3,0.5,0.7)"},
+            "known masses, rising (0.1,0.2,0.3,0.5,0.7)"},
         {"hung", CLI_CALL, &hung, 0, 0, "KG[,KG...]",
-         "what really hangs on the string, as many (the same)"},
+            "what really hangs on the string, as many (the same)"},
         {"rate", CLI_INT, &o.rate_Hz, 20, 20000, "HZ", "loop rate (2000)"},
         {"out", CLI_TEXT, &o.out, 0, 0, "DIR", "write image, CSVs and a picture's script there"},
         {"check", CLI_TEXT, &o.check, 0, 0, "FILE",
-         "only say whether this image may be used here today"},
+            "only say whether this image may be used here today"},
         {"residual", CLI_REAL, &o.residual_N, 0, 100, "N", "no point farther from the line (0.1)"},
         {"id", CLI_INT, &o.id, 0, 4294967295.0, "N", "of the device (1)"},
         {"finger", CLI_INT, &o.finger, 0, EXH_FINGERS - 1, "N", "thumb 0 .. little 4 (0)"},
@@ -334,20 +332,16 @@ int cli_calibrate(int argc, char **argv)
         {"valid", CLI_INT, &o.valid_days, 0, 36525, "DAYS", "stale after that (90)"},
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
         {"cards", CLI_FLAG, &o.cards, 0, 0, NULL,
-         "through the drivers and emulated cards: the same bits"},
+            "through the drivers and emulated cards: the same bits"},
         {"pace", CLI_FLAG, &o.pace, 0, 0, NULL, "follow the wall clock, for people who watch"},
         {"set", CLI_CALL, &setting, 0, 0, "NAME=VALUE", "a parameter of the scene"},
         {"device", CLI_CALL, &device, 0, 0, "NAME=VALUE", "a value of the simulated device"},
         {"wrong", CLI_CALL, &fault, 0, 0, "NAME", "something that is wrong at the bench"},
         {"params", CLI_FLAG, &list, 0, 0, NULL, "list these three, with units and ranges"},
     };
-    const struct cli_command c = {
-        "calibrate",
-        "[options]",
+    const struct cli_command c = {"calibrate", "[options]",
         "Polarity, home, F0, then masses: tables from force to current and from monitor to force.",
-        option,
-        (int)(sizeof option / sizeof option[0]),
-        0};
+        option, (int)(sizeof option / sizeof option[0]), 0};
 
     defaults(&o);
     err = cli_parse(&c, argc, argv, NULL);

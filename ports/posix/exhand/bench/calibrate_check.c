@@ -20,18 +20,18 @@ int calibrate_complain(const char *what, int err, const struct exh_calib_error *
         snprintf(point, sizeof point, ", point %d", bad->at + 1);
     }
     cli_complain("%s: %s%s: %s: calibrate again", what, exh_calib_error_text(bad->what), point,
-                 exh_error_text(err));
+        exh_error_text(err));
     return 1;
 }
 
 /* what is written into the files */
 /* Whose, when, and the scales of the device as they are now. The monitor's zero is for
  * who uses the image to copy, so here it is the image's. */
-static struct exh_calib_target here_and_now(const struct calibrate_options *o,
-                                            const struct exh_calib *c)
+static struct exh_calib_target here_and_now(
+    const struct calibrate_options *o, const struct exh_calib *c)
 {
-    struct exh_calib_target here = {(uint32_t)o->id, (uint32_t)o->finger, (uint32_t)o->day, 0, 0, 0,
-                                    c->mon_zero_raw};
+    struct exh_calib_target here = {
+        (uint32_t)o->id, (uint32_t)o->finger, (uint32_t)o->day, 0, 0, 0, c->mon_zero_raw};
     struct exh_params *p = exh_scene_calibrate.params;
     uint32_t at;
     exh_scene_calibrate.defaults();
@@ -46,25 +46,25 @@ static struct exh_calib_target here_and_now(const struct calibrate_options *o,
 
 /* A sound image that may not be used: what it was made for, and what is here. */
 static int not_here(const struct calibrate_options *o, const struct exh_calib *c, int err,
-                    const struct exh_calib_error *bad)
+    const struct exh_calib_error *bad)
 {
     if (bad->what == EXH_CALIB_DEVICE) {
         cli_complain("%s: made for device %lu, this is %" PRId64
                      ": give its --id, or calibrate this one",
-                     o->check, (unsigned long)c->device_id, o->id);
+            o->check, (unsigned long)c->device_id, o->id);
     } else if (bad->what == EXH_CALIB_FINGER) {
         cli_complain("%s: made for finger %lu, this is %" PRId64
                      ": give its --finger, or calibrate this one",
-                     o->check, (unsigned long)c->finger, o->finger);
+            o->check, (unsigned long)c->finger, o->finger);
     } else if (bad->what == EXH_CALIB_AGE && (uint32_t)o->day < c->day) {
         cli_complain("%s: from the future: made on day %lu, today is day %" PRId64
                      ": set the clock right, or "
                      "give --day",
-                     o->check, (unsigned long)c->day, o->day);
+            o->check, (unsigned long)c->day, o->day);
     } else if (bad->what == EXH_CALIB_AGE) {
         cli_complain("%s: stale: made on day %lu, good for %lu days, today is day %" PRId64
                      ": calibrate again",
-                     o->check, (unsigned long)c->day, (unsigned long)c->valid_days, o->day);
+            o->check, (unsigned long)c->day, (unsigned long)c->valid_days, o->day);
     } else {
         return calibrate_complain(o->check, err, bad);
     }
@@ -79,17 +79,16 @@ int calibrate_check(const struct calibrate_options *o)
     struct calibration_lines l;
     struct exh_calib_error bad = {0, 0};
     uint8_t image[EXH_CALIB_IMAGE_B];
-    const long len =
-        outfile_read("check", o->check, "calibration.bin that `exhand calibrate --out` wrote",
-                     image, sizeof image);
+    const long len = outfile_read("check", o->check,
+        "calibration.bin that `exhand calibrate --out` wrote", image, sizeof image);
     int err;
     if (len < 0) { return (int)-len; }
     err = exh_calib_load(&c, image, (size_t)len, &bad);
     if (err < 0) { return calibrate_complain(o->check, err, &bad); }
     printf("%s: device %lu, finger %lu, made on day %lu, good for %lu days; today is day %" PRId64
            "\n",
-           o->check, (unsigned long)c.device_id, (unsigned long)c.finger, (unsigned long)c.day,
-           (unsigned long)c.valid_days, o->day);
+        o->check, (unsigned long)c.device_id, (unsigned long)c.finger, (unsigned long)c.day,
+        (unsigned long)c.valid_days, o->day);
     fflush(stdout);
     here = here_and_now(o, &c);
     err = exh_calib_check(&c, &here, &bad);

@@ -26,10 +26,7 @@ static struct {
     int busy;
 } run;
 
-static double si(int32_t raw, int frac)
-{
-    return (double)raw / (double)(INT64_C(1) << frac);
-}
+static double si(int32_t raw, int frac) { return (double)raw / (double)(INT64_C(1) << frac); }
 
 static struct calibrate_signals signals(void)
 {
@@ -56,9 +53,9 @@ static void before(uint32_t tick, struct exh_scene_in *in)
     if (tick == 0 || !s.waits) { return; }
     if (run.asked == s.step) {
         run.asked++;
-        posix_bench(calibrate_ask((unsigned)s.step) == CALIBRATE_ASK_MASS ? BENCH_MASS
-                                                                          : BENCH_SLACK,
-                    mass >= 0 && mass < run.cfg->masses ? hung_kg[mass] : 0);
+        posix_bench(
+            calibrate_ask((unsigned)s.step) == CALIBRATE_ASK_MASS ? BENCH_MASS : BENCH_SLACK,
+            mass >= 0 && mass < run.cfg->masses ? hung_kg[mass] : 0);
     } else if (posix_bench_ready()) {
         (void)exh_params_stage(exh_scene_calibrate.params, GO_ID, 0, s.step + 1);
     }
@@ -76,7 +73,7 @@ static void say_result(FILE *f, int32_t step, unsigned result)
         snprintf(name, sizeof name, "%s", calibrate_step_text((unsigned)step));
     }
     fprintf(f, "  %-14s %7.2f s  up to %6.1f mA  %6.1f mm   ", name, run.out->last_s,
-            run.out->last_most_A * 1e3, amount_m * 1e3);
+        run.out->last_most_A * 1e3, amount_m * 1e3);
     if (result > EXH_PROBE_DONE) {
         fprintf(f, "FAILED: %s\n", calibrate_result_text(result));
     } else if (step == CALIBRATE_ZERO) {
@@ -86,12 +83,12 @@ static void say_result(FILE *f, int32_t step, unsigned result)
     } else if (step == CALIBRATE_HOME) {
         fprintf(f, "its end lies %.2f mm in from where it was\n", -run.out->home_m * 1e3);
     } else if (step == CALIBRATE_F0) {
-        fprintf(f, "the slack string returns at %.1f mA\n",
-                si(run.out->c.f0_A_q26, EXH_Q_CUR) * 1e3);
+        fprintf(
+            f, "the slack string returns at %.1f mA\n", si(run.out->c.f0_A_q26, EXH_Q_CUR) * 1e3);
     } else {
         const struct exh_weigh *w = &s->weigh[step - CALIBRATE_MASS];
         fprintf(f, "lifts at %.1f mA, sinks at %.1f mA\n", si(w->lift_A_q26, EXH_Q_CUR) * 1e3,
-                si(w->sink_A_q26, EXH_Q_CUR) * 1e3);
+            si(w->sink_A_q26, EXH_Q_CUR) * 1e3);
     }
 }
 
@@ -161,42 +158,22 @@ static void names(char *to, size_t size, uint32_t bits, const char *const *name,
 
 void calibration_why(char to[CALIBRATION_WHY_B], const struct calibration *r)
 {
-    static const char *const fault[] = {"emergency stop",
-                                        "drive not ready",
-                                        "ticks missed",
-                                        "encoder",
-                                        "dead-man released",
-                                        "current tracking",
-                                        "encoder stands",
-                                        "too fast",
-                                        "glove",
-                                        "card",
-                                        "link",
-                                        "supply",
-                                        "watchdog",
-                                        "configuration",
-                                        "state of the box"};
-    static const char *const limit[] = {"pull",
-                                        "force: f_max, or i_max",
-                                        "slew",
-                                        "peak: i_peak",
-                                        "I2t: i_cont, i_peak, peak_time",
-                                        "D/A span",
-                                        "gate",
-                                        "ramp",
-                                        "release",
-                                        "speed",
-                                        "passivity"};
+    static const char *const fault[] = {"emergency stop", "drive not ready", "ticks missed",
+        "encoder", "dead-man released", "current tracking", "encoder stands", "too fast", "glove",
+        "card", "link", "supply", "watchdog", "configuration", "state of the box"};
+    static const char *const limit[] = {"pull", "force: f_max, or i_max", "slew", "peak: i_peak",
+        "I2t: i_cont, i_peak, peak_time", "D/A span", "gate", "ramp", "release", "speed",
+        "passivity"};
     char list[120] = "";
     if (r->result == CALIBRATE_OFF) {
         names(list, sizeof list, r->faults, fault, sizeof fault / sizeof fault[0]);
         if (list[0] == '\0') { snprintf(list, sizeof list, "by command"); }
     } else if (r->result == CALIBRATE_LIMITED) {
         names(list, sizeof list, r->limits & ~(uint32_t)EXH_LIMIT_SLEW, limit,
-              sizeof limit / sizeof limit[0]);
+            sizeof limit / sizeof limit[0]);
     }
     snprintf(to, CALIBRATION_WHY_B, "%s%s%s%s", calibrate_result_text(r->result),
-             list[0] ? " (" : "", list, list[0] ? ")" : "");
+        list[0] ? " (" : "", list, list[0] ? ")" : "");
 }
 
 static int set_parameters(const struct calibration_cfg *c)
@@ -218,8 +195,8 @@ static int set_parameters(const struct calibration_cfg *c)
         err = cli_param_set(p, c->setting[i].name, c->setting[i].value);
     }
     for (int i = 0; err == 0 && i < c->masses; i++) {
-        err = exh_params_stage(p, MASS_ID, (uint16_t)i,
-                               (int32_t)(c->mass_kg[i] * (1 << EXH_Q_FORCE) + 0.5));
+        err = exh_params_stage(
+            p, MASS_ID, (uint16_t)i, (int32_t)(c->mass_kg[i] * (1 << EXH_Q_FORCE) + 0.5));
     }
     return err;
 }
@@ -258,9 +235,8 @@ static int say_product(const struct exh_params *p)
 static void say_pair(void)
 {
     static const char *const pair[][2] = {{"home_min", "home_max"}, {"move", "travel"},
-                                          {"move", "home_max"},     {"slack_cur", "i_max"},
-                                          {"pol_max", "i_max"},     {"home_cur", "i_max"},
-                                          {"i_cont", "i_peak"}};
+        {"move", "home_max"}, {"slack_cur", "i_max"}, {"pol_max", "i_max"}, {"home_cur", "i_max"},
+        {"i_cont", "i_peak"}};
     const struct exh_params *p = exh_scene_calibrate.params;
     for (size_t i = 0; i < sizeof pair / sizeof pair[0]; i++) {
         uint32_t a = 0, b = 0;
@@ -268,13 +244,13 @@ static void say_pair(void)
         if (row == NULL || cli_signal_find(p->table, pair[i][1], &b) == NULL) { continue; }
         if (p->active[a] <= p->active[b]) { continue; }
         cli_complain("%s: %.9g (allowed up to %s: %.9g %s): choose a lower one", pair[i][0],
-                     cli_signal_value(row, p->active[a]), pair[i][1],
-                     cli_signal_value(row, p->active[b]), row->unit);
+            cli_signal_value(row, p->active[a]), pair[i][1], cli_signal_value(row, p->active[b]),
+            row->unit);
         return;
     }
     if (!say_product(p)) {
-        cli_complain("%s: `exhand calibrate --params` lists the ranges",
-                     exh_error_text(-EXH_E_RANGE));
+        cli_complain(
+            "%s: `exhand calibrate --params` lists the ranges", exh_error_text(-EXH_E_RANGE));
     }
 }
 
@@ -308,7 +284,7 @@ int calibration_run(const struct calibration_cfg *cfg, struct calibration *out)
         cli_complain("%s", exh_error_text(err));
     } else if (posix_interrupted() || run.out->result == EXH_PROBE_BUSY) {
         cli_complain("interrupted at step %d, %s: nothing was saved", (int)run.step,
-                     calibrate_step_text((unsigned)run.step));
+            calibrate_step_text((unsigned)run.step));
         err = -EXH_E_STATE;
     }
     return err;

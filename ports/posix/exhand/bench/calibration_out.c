@@ -6,10 +6,7 @@
 
 #include <string.h>
 
-static double si(int32_t raw, int frac)
-{
-    return (double)raw / (double)(INT64_C(1) << frac);
-}
+static double si(int32_t raw, int frac) { return (double)raw / (double)(INT64_C(1) << frac); }
 
 int calibration_lines(const struct exh_calib *c, struct calibration_lines *l)
 {
@@ -42,9 +39,7 @@ struct point_si {
 static struct point_si point_si(const struct exh_calib *c, const struct calibration_lines *l, int i)
 {
     const struct exh_calib_point *p = &c->point[i];
-    return (struct point_si){
-        si(p->force_N_q20, EXH_Q_FORCE),
-        si(p->cur_A_q26, EXH_Q_CUR),
+    return (struct point_si){si(p->force_N_q20, EXH_Q_FORCE), si(p->cur_A_q26, EXH_Q_CUR),
         si(p->mon_A_q26, EXH_Q_CUR),
         si(p->friction_A_q26, EXH_Q_CUR) * si(l->cur.kf_NpA_q20, EXH_Q_FORCE),
         si(exh_calib_residual_N_q20(&l->cur, p, EXH_CALIB_CURRENT), EXH_Q_FORCE),
@@ -58,10 +53,9 @@ void calibration_print(FILE *f, const struct exh_calib *c, const struct calibrat
     for (int i = 0; i < c->points; i++) {
         const struct point_si p = point_si(c, l, i);
         fprintf(f, "%8.4f %9.4f %10.1f %11.4f %10.1f %10.3f\n", p.force_N, p.cur_A,
-                p.cur_off_N * 1e3, p.mon_A, p.mon_off_N * 1e3, p.friction_N);
+            p.cur_off_N * 1e3, p.mon_A, p.mon_off_N * 1e3, p.friction_N);
     }
-    fprintf(
-        f,
+    fprintf(f,
         "\nforce over current %.4f N/A (worst residual %.1f mN), over monitored current %.4f N/A "
         "(%.1f mN)\n",
         si(l->cur.kf_NpA_q20, EXH_Q_FORCE), l->cur_worst_N * 1e3,
@@ -69,7 +63,7 @@ void calibration_print(FILE *f, const struct exh_calib *c, const struct calibrat
     fprintf(f, "F0 %.1f mA = %.3f N\n", si(c->f0_A_q26, EXH_Q_CUR) * 1e3, l->f0_N);
     if (c->points > 0 && c->end_A_q26 > c->point[c->points - 1].cur_A_q26) {
         fprintf(f, "the tables go straight on from %.3f A to %.3f A: not measured there\n",
-                si(c->point[c->points - 1].cur_A_q26, EXH_Q_CUR), si(c->end_A_q26, EXH_Q_CUR));
+            si(c->point[c->points - 1].cur_A_q26, EXH_Q_CUR), si(c->end_A_q26, EXH_Q_CUR));
     }
 }
 
@@ -79,7 +73,7 @@ void calibration_csv(FILE *f, const struct exh_calib *c, const struct calibratio
     for (int i = 0; i < c->points; i++) {
         const struct point_si p = point_si(c, l, i);
         fprintf(f, "%.7f,%.8f,%.8f,%.7f,%.7f,%.7f\n", p.force_N, p.cur_A, p.mon_A, p.friction_N,
-                p.cur_off_N, p.mon_off_N);
+            p.cur_off_N, p.mon_off_N);
     }
 }
 
@@ -93,7 +87,7 @@ int calibration_table_csv(FILE *f, const struct exh_calib *c)
     for (int i = 0; i < n; i++) { /* the monitor's from its middle on: it is odd */
         const struct exh_knot *k = &mon[m / 2 + i];
         fprintf(f, "%.8f,%.7f,%.8f,%.7f\n", si(cur[i].y, EXH_Q_CUR), si(cur[i].x, EXH_Q_FORCE),
-                si(k->x, EXH_Q_CUR), si(k->y, EXH_Q_FORCE));
+            si(k->x, EXH_Q_CUR), si(k->y, EXH_Q_FORCE));
     }
     return 0;
 }

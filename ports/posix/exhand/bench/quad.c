@@ -39,7 +39,7 @@ static void take_gaps(struct sums *sum, const struct samples_chunk *c)
 
 /* Counts a chunk from zero and adds it up. */
 static void take_counts(struct sums *sum, struct exh_quad_ab *lines, struct exh_quad_index *index,
-                        const struct exh_quad_mode *mode, const struct samples_chunk *c)
+    const struct exh_quad_mode *mode, const struct samples_chunk *c)
 {
     lines->cnt = 0;
     lines->edges = lines->illegal = 0;
@@ -74,7 +74,7 @@ static void print_us(double us)
 static void print_sums(const struct sums *sum, const struct samples *s)
 {
     printf("net=%" PRId64 " edges=%" PRIu64 " illegal=%" PRIu64 " min_gap_us=", sum->net,
-           sum->edges, sum->illegal);
+        sum->edges, sum->illegal);
     if (sum->min_gap > 0) {
         print_us(samples_us(s, sum->min_gap));
     } else {
@@ -93,7 +93,7 @@ static void print_sums(const struct sums *sum, const struct samples *s)
     if (sum->illegal > 0) {
         cli_complain("%" PRIu64 " of %" PRIu64 " changes were of both lines at once: sampled too "
                      "slowly, or broken; net is not to be trusted",
-                     sum->illegal, sum->changes);
+            sum->illegal, sum->changes);
     }
 }
 
@@ -132,7 +132,7 @@ static int check(const struct samples_opt *o, int raw)
         {raw && o->b < 0, "--raw: give --b BIT, where line B is"},
         {raw && o->a == o->b, "--a, --b: the same bit: give two"},
         {o->index >= 0 && (o->index == o->a || o->index == o->b),
-         "--index: the bit of a line: give another"},
+            "--index: the bit of a line: give another"},
         {!raw && own, "--a, --b, --index: CSV has columns: they are for --raw alone"},
     };
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
@@ -154,27 +154,23 @@ int cli_quad(int argc, char **argv)
         {"a", CLI_INT, &opt.a, 0, 7, "BIT", "where line A is in a byte"},
         {"b", CLI_INT, &opt.b, 0, 7, "BIT", "where line B is; 00 01 11 10 of AB counts up"},
         {"index", CLI_INT, &opt.index, 0, 7, "BIT",
-         "where an index is: prints also index_cnt=, net at its last rising edge, and indices="},
+            "where an index is: prints also index_cnt=, net at its last rising edge, and indices="},
         {"csv", CLI_TEXT, &opt.csv, 0, 0, "FILE",
-         "rows of time in s, a, b; with --rate of a, b; - is standard input"},
+            "rows of time in s, a, b; with --rate of a, b; - is standard input"},
         {"every", CLI_INT, &opt.every, 1, 1e9, "N",
-         "keep one sample in N: what a slower reader would have seen"},
+            "keep one sample in N: what a slower reader would have seen"},
         {"x4", CLI_FLAG, &x4, 0, 0, NULL, "count all edges (default)"},
         {"x2", CLI_FLAG, &x2, 0, 0, NULL, "count edges of A"},
         {"x1", CLI_FLAG, &x1, 0, 0, NULL, "count edges of A where B is 1"},
     };
-    const struct cli_command c = {
-        "quad",
-        "--raw|--csv FILE [options]",
+    const struct cli_command c = {"quad", "--raw|--csv FILE [options]",
         "Decodes the two lines of an encoder and prints one line: net count, edges (legal changes\n"
         "of either line, whatever counts), illegal steps (both lines at once), and the shortest\n"
         "time between two changes, - if there were no two. Illegal steps are a finding: exit\n"
         "status 0, and a word on standard error. A sigrok session holds samples in bytes:\n"
         "  unzip -p FILE.sr 'logic-1*' | exhand quad --raw --rate 1e6 --a 1 --b 2\n"
         "CSV may begin with a line of names; lines that begin with # or ; are left out.",
-        option,
-        sizeof option / sizeof option[0],
-        0};
+        option, sizeof option / sizeof option[0], 0};
     int err = cli_parse(&c, argc, argv, NULL);
 
     if (err) { return err == 1 ? 0 : err; }

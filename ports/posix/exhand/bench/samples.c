@@ -15,8 +15,8 @@ int samples_open(struct samples *s, const struct samples_opt *opt)
 {
     const int from_stdin = opt->csv == NULL || strcmp(opt->csv, "-") == 0;
     *s = (struct samples){.opt = opt,
-                          .from = from_stdin ? stdin : fopen(opt->csv, "r"),
-                          .name = from_stdin ? "standard input" : opt->csv};
+        .from = from_stdin ? stdin : fopen(opt->csv, "r"),
+        .name = from_stdin ? "standard input" : opt->csv};
     for (unsigned i = 0; i < 256 && opt->csv == NULL; i++) {
         s->of_byte[i] = (uint8_t)((i >> opt->a & 1) << 1 | (i >> opt->b & 1) |
                                   (opt->index < 0 ? 0 : (i >> opt->index & 1) << 2));
@@ -50,16 +50,13 @@ static int at_end(const struct samples *s)
     return 0;
 }
 
-static int is_zip(const char *begin, size_t n)
-{
-    return n >= 4 && memcmp(begin, "PK\3\4", 4) == 0;
-}
+static int is_zip(const char *begin, size_t n) { return n >= 4 && memcmp(begin, "PK\3\4", 4) == 0; }
 
 static int complain_zip(const struct samples *s)
 {
     cli_complain("%s: a zip archive, as sigrok sessions are: unzip -p FILE.sr 'logic-1*' | "
                  "exhand quad --raw ...",
-                 s->name);
+        s->name);
     return 2;
 }
 
@@ -88,17 +85,13 @@ static int next_bytes(struct samples *s, struct samples_chunk *c)
 static int bad_line(const struct samples *s, const char *what)
 {
     cli_complain("%s: line %llu: %s: wanted %s", s->name, (unsigned long long)s->line, what,
-                 s->opt->rate_Hz > 0
-                     ? "a,b, each 0 or 1 (with --rate there is no time)"
-                     : "time,a,b: seconds, then each 0 or 1 (without time: --rate)");
+        s->opt->rate_Hz > 0 ? "a,b, each 0 or 1 (with --rate there is no time)"
+                            : "time,a,b: seconds, then each 0 or 1 (without time: --rate)");
     return 2;
 }
 
 /* Past blanks. */
-static const char *blank(const char *p)
-{
-    return p + strspn(p, " \t");
-}
+static const char *blank(const char *p) { return p + strspn(p, " \t"); }
 
 /* One line, 0 or 1, and what ends it, past which *p moves; -1 else. */
 static int take_line(const char **p, char ends)

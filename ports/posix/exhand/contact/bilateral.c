@@ -32,7 +32,7 @@ static int load_scene(struct bilateral_options *o)
     o->run.board.exo.fingers &= world_scene(o->run.scene)->fingers;
     if (o->run.board.exo.fingers == 0) {
         cli_complain("--scene: %s: holds none of the fingers in use: choose others with --fingers",
-                     o->scene);
+            o->scene);
         return 2;
     }
     return 0;
@@ -194,60 +194,56 @@ static struct cli_call device = {bilateral_take_device, &is}, pose = {bilateral_
 static struct cli_call calibration = {images_take, &is.images};
 static const struct cli_option option[] = {
     {"speed", CLI_CALL, &speeds, 0, 0, "V[,V...]",
-     "slow, natural, fast or m/s of string (these three)"},
+        "slow, natural, fast or m/s of string (these three)"},
     {"fingers", CLI_CALL, &fingers, 0, 0, "F[,F...]",
-     "thumb, index, middle, ring, little or all (index)"},
+        "thumb, index, middle, ring, little or all (index)"},
     {"record", CLI_TEXT, &is.record, 0, 0, "FILE",
-     "the fingers do what a glove recorded, instead of approaches"},
+        "the fingers do what a glove recorded, instead of approaches"},
     {"record-rate", CLI_REAL, &is.record_Hz, 0.1, 10000, "HZ",
-     "of its rows, if they have no clock (100)"},
+        "of its rows, if they have no clock (100)"},
     {"approaches", CLI_INT, &is.approaches, 1, BILATERAL_CONTACTS_MAX, "N", "at each speed (5)"},
     {"at", CLI_REAL, &is.run.at_m, 0.008, 0.06, "M",
-     "the wall stands where so much string is out (0.030)"},
+        "the wall stands where so much string is out (0.030)"},
     {"pose", CLI_CALL, &pose, 0, 0, "NAME", "the hand, where no finger in use bends it (flat)"},
     {"scene", CLI_TEXT, &is.scene, 0, 0, "FILE", "a scene of the world simulator instead of walls"},
     {"rate", CLI_REAL, &asked.rate_Hz, 1, 20000, "HZ", "of the loop (2000)"},
     {"k", CLI_REAL, &is.run.k_Npm, 0, 1e6, "N/M", "stiffness (20000; with --scene its materials')"},
     {"b", CLI_REAL, &is.run.b_Nspm, 0, 1e3, "NS/M", "damping (60; with --scene its materials')"},
     {"link", CLI_CALL, &link, 0, 0, "SPEC",
-     "none, trace=FILE (round trips), delay=S,jitter=S,loss=SHARE,... (none)"},
+        "none, trace=FILE (round trips), delay=S,jitter=S,loss=SHARE,... (none)"},
     {"fps", CLI_REAL, &is.run.fps, 1, 2000, "N", "frames of the world a second (400)"},
     {"trace", CLI_INT, &is.run.trace_every, 1, 1e6, "N",
-     "the world asks for a trace of every N-th tick, over the link (none)"},
+        "the world asks for a trace of every N-th tick, over the link (none)"},
     {"ray", CLI_REAL, &is.run.ray_m, 0, 1, "M", "a wall is not seen from farther off (no limit)"},
     {"world-from", CLI_REAL, &is.run.from_s, 0, 1e9, "S", "the world is not there before (0)"},
     {"world-until", CLI_REAL, &is.run.until_s, 0, 1e30, "S", "it dies then (never)"},
     {"udp", CLI_TEXT, &is.udp, 0, 0, "HOST:PORT",
-     "the world is another process there; in real time"},
+        "the world is another process there; in real time"},
     {"cards", CLI_FLAG, &is.cards, 0, 0, NULL,
-     "through the drivers and emulated cards: the same bits"},
+        "through the drivers and emulated cards: the same bits"},
     {"seed", CLI_INT, &is.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
     {"out", CLI_TEXT, &is.out, 0, 0, "DIR", "write logs, CSVs and what pictures need there"},
     {"blackbox", CLI_TEXT, &is.run.blackbox, 0, 0, "FILE",
-     "the last seconds before a fault, a log (with --out beside the others)"},
+        "the last seconds before a fault, a log (with --out beside the others)"},
     {"let-go", CLI_REAL, &is.run.board.let_go_s, 0, 1e9, "S",
-     "the dead-man switch opens then: a fault (never)"},
+        "the dead-man switch opens then: a fault (never)"},
     {"set", CLI_CALL, &setting, 0, 0, "NAME=VALUE", "a parameter of the scene, of all fingers"},
     {"device", CLI_CALL, &device, 0, 0, "NAME=VALUE",
-     "a value of the simulated hand, glove or motors"},
+        "a value of the simulated hand, glove or motors"},
     PARAMS_FILE_OPTIONS(is.params),
     {"calibration", CLI_CALL, &calibration, 0, 0, "FILE[,FILE...]",
-     "of the fingers, or a directory of them (none: the simulated device as it is, "
-     "uncalibrated=1)"},
+        "of the fingers, or a directory of them (none: the simulated device as it is, "
+        "uncalibrated=1)"},
     {"params", CLI_FLAG, &asked.list, 0, 0, NULL, "list all values, with units and ranges"},
 };
 
-static const struct cli_command command = {
-    "bilateral",
-    "[options]",
+static const struct cli_command command = {"bilateral", "[options]",
     "The paper's second experiment: a hand in glove and exoskeleton approaches a virtual "
     "object at\n"
     "three speeds. A world simulator at the other end of a link says where its surface is; "
     "the\n"
     "contact is frozen before it is touched and rendered here alone, whatever the link does.",
-    option,
-    (int)(sizeof option / sizeof option[0]),
-    0};
+    option, (int)(sizeof option / sizeof option[0]), 0};
 
 int bilateral_command(int argc, char **argv, const struct bilateral_study *study)
 {

@@ -35,22 +35,22 @@ void bilateral_print_session(FILE *f, const struct bilateral_run *r, unsigned fi
 void bilateral_csv_head(FILE *f);
 void bilateral_csv(FILE *f, const struct bilateral_result *r);
 /* Whether d_lim is far enough off for these speeds; and what it should be. */
-void bilateral_print_advice(FILE *f, const struct bilateral_options *o,
-                            const struct bilateral_result *r, int n);
+void bilateral_print_advice(
+    FILE *f, const struct bilateral_options *o, const struct bilateral_result *r, int n);
 
 /* After a run: what the advice for d_lim and the ray goes by, over a perfect link. */
-struct exh_precontact_need bilateral_need(const struct bilateral_options *o, double scale,
-                                          double mps);
+struct exh_precontact_need bilateral_need(
+    const struct bilateral_options *o, double scale, double mps);
 
 /* out.c: DIR. 0, or 1 or 2 after a line on stderr. */
 int bilateral_out_open(const char *dir);
 FILE *bilateral_out_file(const char *dir, const char *name);
-void bilateral_out_name(char *to, size_t cap_B, const char *dir, const char *speed, int finger,
-                        const char *suffix);
-int bilateral_out_csv(const char *dir, const struct bilateral_run *r, unsigned f,
-                      const char *speed);
+void bilateral_out_name(
+    char *to, size_t cap_B, const char *dir, const char *speed, int finger, const char *suffix);
+int bilateral_out_csv(
+    const char *dir, const struct bilateral_run *r, unsigned f, const char *speed);
 int bilateral_out_pictures(const char *dir, const struct bilateral_result *r, int n, double k_Npm,
-                           double b_Nspm, const char *link);
+    double b_Nspm, const char *link);
 
 /* What the lab does with the options besides. */
 struct bilateral_study {

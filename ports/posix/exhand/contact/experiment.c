@@ -16,8 +16,8 @@ static int by_size(const void *a, const void *b)
     return d < 0 ? -1 : d > 0;
 }
 
-static void judge(const struct bilateral_run *r, unsigned f, const char *plot,
-                  struct bilateral_result *out)
+static void judge(
+    const struct bilateral_run *r, unsigned f, const char *plot, struct bilateral_result *out)
 {
     static double settle[BILATERAL_CONTACTS_MAX];
     const int n = bilateral_judge(r, f, out->contact, BILATERAL_CONTACTS_MAX);
@@ -50,8 +50,8 @@ static double local_Npm(const struct bilateral_options *o)
 }
 
 /* The same approaches over a perfect link: which fingers had every bit of theirs. */
-static void print_beside_perfect(const struct bilateral_run_cfg *given,
-                                 const struct bilateral_run *r)
+static void print_beside_perfect(
+    const struct bilateral_run_cfg *given, const struct bilateral_run *r)
 {
     struct bilateral_run_cfg c = *given;
     struct bilateral_run perfect;
@@ -67,9 +67,9 @@ static void print_beside_perfect(const struct bilateral_run_cfg *given,
             const struct bilateral_track *a = &r->finger[f], *b = &perfect.finger[f];
             if (!(c.board.exo.fingers >> f & 1)) { continue; }
             printf(" %s %s;", bilateral_finger_name[f],
-                   a->freezes == 0          ? "felt nothing"
-                   : a->digest == b->digest ? "the same bits from the first freeze on"
-                                            : "not the same");
+                a->freezes == 0          ? "felt nothing"
+                : a->digest == b->digest ? "the same bits from the first freeze on"
+                                         : "not the same");
         }
         printf("\n");
     }
@@ -78,7 +78,7 @@ static void print_beside_perfect(const struct bilateral_run_cfg *given,
 
 /* The files of a speed: its log, and a black box should it fault. */
 static int open_log(const struct bilateral_options *o, int i, struct bilateral_run_cfg *c,
-                    char *path, char *fault, size_t cap)
+    char *path, char *fault, size_t cap)
 {
     if (o->out == NULL) { return 0; }
     if (c->blackbox == NULL) {
@@ -97,7 +97,7 @@ static int open_log(const struct bilateral_options *o, int i, struct bilateral_r
 
 /* Each finger in use: judged, printed, its table written. */
 static int judge_fingers(const struct bilateral_options *o, int i, const struct bilateral_run *r,
-                         unsigned fingers, struct bilateral_result *result, int *n)
+    unsigned fingers, struct bilateral_result *result, int *n)
 {
     char path[1024];
     int err = 0;
@@ -113,7 +113,7 @@ static int judge_fingers(const struct bilateral_options *o, int i, const struct 
         if (o->out) { err = bilateral_out_csv(o->out, r, f, o->speed[i].name); }
         if (r->finger[f].unfrozen) {
             cli_complain("%s, %s: %ld ticks of contact before its freeze", to->speed->name,
-                         bilateral_finger_name[f], r->finger[f].unfrozen);
+                bilateral_finger_name[f], r->finger[f].unfrozen);
             err = 1;
         }
         ++*n;
@@ -123,18 +123,17 @@ static int judge_fingers(const struct bilateral_options *o, int i, const struct 
 
 /* What the run was like beside its contacts. */
 static void print_run(const struct bilateral_options *o, const struct bilateral_run_cfg *c,
-                      const struct bilateral_run *r)
+    const struct bilateral_run *r)
 {
     printf("  packets: %d came, %d missing, %d reordered, %d duplicate, %d too old, %d "
            "refused; newest trip "
            "%.1f ms\n",
-           r->box.accepted, r->box.missing, r->box.reordered, r->box.duplicate, r->box.old,
-           r->box.corrupt + r->box.version + r->box.unknown + r->box.stranger,
-           r->box.trip_us / 1e3);
+        r->box.accepted, r->box.missing, r->box.reordered, r->box.duplicate, r->box.old,
+        r->box.corrupt + r->box.version + r->box.unknown + r->box.stranger, r->box.trip_us / 1e3);
     if (c->trace_every) {
         printf("  trace: %lu frames of every %d ticks, ticks %lu to %lu; %lu missed\n",
-               (unsigned long)r->trace.frames, c->trace_every, (unsigned long)r->trace.first_tick,
-               (unsigned long)r->trace.last_tick, (unsigned long)r->trace.missed);
+            (unsigned long)r->trace.frames, c->trace_every, (unsigned long)r->trace.first_tick,
+            (unsigned long)r->trace.last_tick, (unsigned long)r->trace.missed);
     }
     if (o->scene || o->record || o->udp) {
         bilateral_print_session(stdout, r, c->board.exo.fingers);
@@ -145,8 +144,8 @@ static void print_run(const struct bilateral_options *o, const struct bilateral_
 }
 
 /* One speed: its results of all fingers in use behind the others'. */
-static int one_speed(const struct bilateral_options *o, int i, struct bilateral_result *result,
-                     int *n)
+static int one_speed(
+    const struct bilateral_options *o, int i, struct bilateral_result *result, int *n)
 {
     struct bilateral_run_cfg c = bilateral_at_speed(o, o->speed[i].mps);
     struct bilateral_run r;
@@ -162,8 +161,8 @@ static int one_speed(const struct bilateral_options *o, int i, struct bilateral_
     if (err == 0) { err = judge_fingers(o, i, &r, c.board.exo.fingers, result, n); }
     if (err == 0 && r.faults) {
         names_faults(what, sizeof what, r.faults);
-        cli_complain("%s: the box stopped with faults %#x: %s", o->speed[i].name,
-                     (unsigned)r.faults, what);
+        cli_complain(
+            "%s: the box stopped with faults %#x: %s", o->speed[i].name, (unsigned)r.faults, what);
         err = 1;
     }
     if (err == 0) { print_run(o, &c, &r); }
@@ -182,7 +181,7 @@ int bilateral_experiment(const struct bilateral_options *o)
         printf("%.6g Hz, %s's own k and b", (double)o->run.rate_Hz, o->scene);
     } else {
         printf("%.6g Hz, k %.6g N/m, b %.6g Ns/m", (double)o->run.rate_Hz, o->run.k_Npm,
-               o->run.b_Nspm);
+            o->run.b_Nspm);
     }
     printf(", link %s, world at %.6g frames/s\n\n", o->udp ? o->udp : o->link, o->run.fps);
     bilateral_print_head(stdout);

@@ -11,21 +11,18 @@
 
 static int bad(const char *text, const char *why)
 {
-    cli_complain("--link: %s: %s: e.g. none, trace=FILE, delay=0.02,jitter=0.005,loss=0.1", text,
-                 why);
+    cli_complain(
+        "--link: %s: %s: e.g. none, trace=FILE, delay=0.02,jitter=0.005,loss=0.1", text, why);
     return 2;
 }
 
-static int is_log(const char *path)
-{
-    return strstr(path, ".csv") != NULL;
-}
+static int is_log(const char *path) { return strstr(path, ".csv") != NULL; }
 
 static int take_trace(struct bilateral_options *o, const char *path)
 {
     char why[256];
-    if (sim_trace_read(&o->trace, path, is_log(path) ? SIM_TRACE_ROUND : SIM_TRACE_MS, why,
-                       sizeof why) < 0) {
+    if (sim_trace_read(
+            &o->trace, path, is_log(path) ? SIM_TRACE_ROUND : SIM_TRACE_MS, why, sizeof why) < 0) {
         return bad(path, why);
     }
     for (int w = 0; w < SIM_LINK_WAYS; w++) {
@@ -51,7 +48,7 @@ static int take_value(struct bilateral_options *o, const char *name, const char 
     }
     if (err && row) {
         cli_complain("--link: %s: %.12g (allowed %.12g..%.12g%s%s): choose a value in that range",
-                     name, v, row->min, row->max, row->unit[0] ? " " : "", row->unit);
+            name, v, row->min, row->max, row->unit[0] ? " " : "", row->unit);
     }
     return err == 0 ? 0 : row ? 2 : bad(name, "no such property of a link: --params lists them");
 }

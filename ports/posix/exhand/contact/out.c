@@ -14,9 +14,8 @@
 int bilateral_out_open(const char *dir)
 {
     static const char *const made[] = {"contact.png", "force.png", "sweep.png", "contacts.csv",
-                                       "crisp.png",   "hands.png", "crisp.csv", "hands.csv",
-                                       "crisp.gp",    "hands.gp",  "sweep.csv", "bilateral.gp",
-                                       "sweep.gp"};
+        "crisp.png", "hands.png", "crisp.csv", "hands.csv", "crisp.gp", "hands.gp", "sweep.csv",
+        "bilateral.gp", "sweep.gp"};
     const int err = outfile_dir(dir, "bilateral_natural_index_raw.csv");
     if (err) { return err; }
     for (size_t i = 0; i < sizeof made / sizeof made[0]; i++) {
@@ -43,11 +42,11 @@ FILE *bilateral_out_file(const char *dir, const char *name)
     return f;
 }
 
-void bilateral_out_name(char *to, size_t cap_B, const char *dir, const char *speed, int finger,
-                        const char *suffix)
+void bilateral_out_name(
+    char *to, size_t cap_B, const char *dir, const char *speed, int finger, const char *suffix)
 {
     snprintf(to, cap_B, "%s%sbilateral_%s%s%s%s", dir ? dir : "", dir ? "/" : "", speed,
-             finger < 0 ? "" : "_", finger < 0 ? "" : bilateral_finger_name[finger], suffix);
+        finger < 0 ? "" : "_", finger < 0 ? "" : bilateral_finger_name[finger], suffix);
 }
 
 static int done(FILE *f, const char *name)
@@ -72,7 +71,7 @@ int bilateral_out_csv(const char *dir, const struct bilateral_run *r, unsigned f
         const struct fall_sample s = bilateral_si(&t->at[i], i, r->T);
         const struct bilateral_paper *p = &t->at[i].raw;
         fprintf(to, "%.9f,%.9g,%.9g,%.9g,%.9g,%d,%.9g,", s.t_s, s.q_m, s.qd_mps, s.f_des_N,
-                s.i_des_A, s.c, s.f_mon_N);
+            s.i_des_A, s.c, s.f_mon_N);
         if (p->d_m_q30 != INT32_MIN) { fprintf(to, "%.9g", ldexp(p->d_m_q30, -EXH_Q_POS)); }
         fputc(',', to);
         if (p->q_lim_m_q30 != EXH_PRECONTACT_NO_LIM) {
@@ -92,19 +91,15 @@ static const struct bilateral_contact *shown(const struct bilateral_result *r)
     return NULL;
 }
 
-static void list(FILE *f, const char *name)
-{
-    fprintf(f, "'\n%s='", name);
-}
+static void list(FILE *f, const char *name) { fprintf(f, "'\n%s='", name); }
 
 int bilateral_out_pictures(const char *dir, const struct bilateral_result *r, int n, double k_Npm,
-                           double b_Nspm, const char *link)
+    double b_Nspm, const char *link)
 {
     FILE *f = bilateral_out_file(dir, "bilateral.gp");
     char name[PATH_B];
     if (f == NULL) { return 1; }
-    fprintf(
-        f,
+    fprintf(f,
         "# Made by exhand bilateral. Inside this directory, PLOTS the way to "
         "ports/posix/exhand/plot:\n"
         "#   gnuplot -c bilateral.gp PLOTS\nplots=ARG1\nk='%.6g'; b='%.6g'; link=\"%s\"; names='",
@@ -124,7 +119,7 @@ int bilateral_out_pictures(const char *dir, const struct bilateral_result *r, in
     list(f, "settles");
     for (int i = 0; i < n; i++) {
         fprintf(f, " %.1f",
-                shown(&r[i]) && shown(&r[i])->settle_s >= 0 ? 1e3 * shown(&r[i])->settle_s : -1);
+            shown(&r[i]) && shown(&r[i])->settle_s >= 0 ? 1e3 * shown(&r[i])->settle_s : -1);
     }
     list(f, "stiffnesses");
     for (int i = 0; i < n; i++) { fprintf(f, " %.0f", r[i].stiffness_Npm); }

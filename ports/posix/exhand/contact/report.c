@@ -56,8 +56,8 @@ void bilateral_print(FILE *f, const struct bilateral_result *r)
     }
 }
 
-static void beside(FILE *f, const char *what, double ours, double paper, const char *unit,
-                   int digits)
+static void beside(
+    FILE *f, const char *what, double ours, double paper, const char *unit, int digits)
 {
     fprintf(f, "  %-34s", what);
     number(f, 9, digits, ours, ours > 0);
@@ -68,30 +68,29 @@ void bilateral_print_paper(FILE *f, const struct bilateral_result *r, int n, dou
 {
     for (int i = 0; i < n; i++) {
         fprintf(f, "\n%s, %s: %d approaches, %d missed, %d early, %d settled\n", r[i].speed->name,
-                bilateral_finger_name[r[i].finger], r[i].contacts, r[i].missed, r[i].early,
-                r[i].settled);
+            bilateral_finger_name[r[i].finger], r[i].contacts, r[i].missed, r[i].early,
+            r[i].settled);
         beside(f, "settled within 5 % of F_mon held", 1e3 * r[i].settle_s, 1e3 * PAPER_SETTLING_S,
-               "ms", 1);
+            "ms", 1);
         beside(f, "stiffness, all approaches", r[i].stiffness_Npm, PAPER_STIFFNESS_NPM, "N/m", 0);
         beside(f, "bilateral / local stiffness", local_Npm > 0 ? r[i].stiffness_Npm / local_Npm : 0,
-               PAPER_STIFFNESS_NPM / PAPER_LOCAL_NPM, "", 3);
+            PAPER_STIFFNESS_NPM / PAPER_LOCAL_NPM, "", 3);
     }
     fprintf(f,
-            "\nLocal: ten falls of 0.5 kg at the same rate and gains, %.0f N/m (paper %.0f).\n"
-            "settled: F_mon stays within 5 %% of its mean over the last 0.2 s of the hold; rest: "
-            "position\n"
-            "within 0.2 mm and F_mon within 1.5 N of it. place: q_lim less the string at which pad "
-            "and\n"
-            "object touch. No data of a hand in this device exist: finger and hand are guesses, "
-            "and the\n"
-            "spread over them is wider than the distance to the paper.\n",
-            local_Npm, PAPER_LOCAL_NPM);
+        "\nLocal: ten falls of 0.5 kg at the same rate and gains, %.0f N/m (paper %.0f).\n"
+        "settled: F_mon stays within 5 %% of its mean over the last 0.2 s of the hold; rest: "
+        "position\n"
+        "within 0.2 mm and F_mon within 1.5 N of it. place: q_lim less the string at which pad "
+        "and\n"
+        "object touch. No data of a hand in this device exist: finger and hand are guesses, "
+        "and the\n"
+        "spread over them is wider than the distance to the paper.\n",
+        local_Npm, PAPER_LOCAL_NPM);
 }
 
 void bilateral_csv_head(FILE *f)
 {
-    fprintf(
-        f,
+    fprintf(f,
         "speed,finger,approach,t_s,speed_m_per_s,settle_s,rest_s,place_m,f_des_max_n,f_mon_held_n,"
         "stiffness_n_per_m,frozen,missed,early\n");
 }
@@ -122,10 +121,7 @@ void bilateral_csv(FILE *f, const struct bilateral_result *r)
 
 /* --- a session --- */
 
-static double deg(int32_t turn_q32)
-{
-    return ldexp(360.0 * turn_q32, -EXH_Q_TURN);
-}
+static double deg(int32_t turn_q32) { return ldexp(360.0 * turn_q32, -EXH_Q_TURN); }
 
 void bilateral_print_session(FILE *f, const struct bilateral_run *r, unsigned fingers)
 {
@@ -136,18 +132,15 @@ void bilateral_print_session(FILE *f, const struct bilateral_run *r, unsigned fi
         const struct bilateral_range *g = &t->range;
         if (!(fingers >> i & 1)) { continue; }
         fprintf(f, "  %-7s %6.1f ..%6.1f %6.1f ..%6.1f %6.1f ..%6.1f %9ld %12.2f %18.2f\n",
-                bilateral_finger_name[i], 1e3 * g->lo_m, 1e3 * g->hi_m, deg(g->lo_turn_q32[1]),
-                deg(g->hi_turn_q32[1]), deg(g->lo_turn_q32[2]), deg(g->hi_turn_q32[2]), t->contacts,
-                (double)g->touched * r->T.num / r->T.den, ldexp(g->f_max_N_q20, -EXH_Q_FORCE));
+            bilateral_finger_name[i], 1e3 * g->lo_m, 1e3 * g->hi_m, deg(g->lo_turn_q32[1]),
+            deg(g->hi_turn_q32[1]), deg(g->lo_turn_q32[2]), deg(g->hi_turn_q32[2]), t->contacts,
+            (double)g->touched * r->T.num / r->T.den, ldexp(g->f_max_N_q20, -EXH_Q_FORCE));
     }
 }
 
 /* --- d_lim --- */
 
-static int32_t fixed(double v, int frac)
-{
-    return (int32_t)floor(ldexp(v, frac) + 0.5);
-}
+static int32_t fixed(double v, int frac) { return (int32_t)floor(ldexp(v, frac) + 0.5); }
 
 /* Parameters as the scene has them after the run. */
 static const struct bilateral_par *par(void)
@@ -155,8 +148,8 @@ static const struct bilateral_par *par(void)
     return (const struct bilateral_par *)(const void *)exh_scene_bilateral.params->active;
 }
 
-struct exh_precontact_need bilateral_need(const struct bilateral_options *o, double scale,
-                                          double mps)
+struct exh_precontact_need bilateral_need(
+    const struct bilateral_options *o, double scale, double mps)
 {
     const struct exh_glove_par *g = &par()->glove;
     const double fc_Hz = g->fc_Hz_q16 / 65536.0;
@@ -178,8 +171,8 @@ struct exh_precontact_need bilateral_need(const struct bilateral_options *o, dou
     return n;
 }
 
-void bilateral_print_advice(FILE *f, const struct bilateral_options *o,
-                            const struct bilateral_result *r, int n)
+void bilateral_print_advice(
+    FILE *f, const struct bilateral_options *o, const struct bilateral_result *r, int n)
 {
     for (int i = 0; i < n; i++) {
         const struct exh_period T = {1, o->run.rate_Hz};
@@ -189,11 +182,11 @@ void bilateral_print_advice(FILE *f, const struct bilateral_options *o,
         struct exh_precontact_advice a;
         if (exh_precontact_advise(&a, &need, T, d_lim) < 0) { continue; }
         fprintf(f,
-                "%sd_lim %.2f mm, %s at %.2f m/s: %s %.2f mm (fingertip %.2f m/s, lag %.2f ms, "
-                "noise %.2f mm)\n",
-                i ? "" : "\n", ldexp(1e3 * d_lim, -30), bilateral_finger_name[r[i].finger], fastest,
-                d_lim <= a.d_lim_m_q30 ? "enough; wanted" : "TOO SMALL: make it",
-                floor(ldexp(1e5 * a.d_lim_m_q30, -30)) / 100, ldexp(need.speed_mps_q27, -27),
-                need.lag_us / 1e3, ldexp(1e3 * need.noise_m_q30, -30));
+            "%sd_lim %.2f mm, %s at %.2f m/s: %s %.2f mm (fingertip %.2f m/s, lag %.2f ms, "
+            "noise %.2f mm)\n",
+            i ? "" : "\n", ldexp(1e3 * d_lim, -30), bilateral_finger_name[r[i].finger], fastest,
+            d_lim <= a.d_lim_m_q30 ? "enough; wanted" : "TOO SMALL: make it",
+            floor(ldexp(1e5 * a.d_lim_m_q30, -30)) / 100, ldexp(need.speed_mps_q27, -27),
+            need.lag_us / 1e3, ldexp(1e3 * need.noise_m_q30, -30));
     }
 }

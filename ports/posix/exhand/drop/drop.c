@@ -141,7 +141,7 @@ int drop_command(int argc, char **argv, struct drop_options *o, const struct dro
     const struct cli_option option[] = {
         {"rate", CLI_CALL, &rates, 0, 0, "HZ[,HZ...]", "loop rates, 1..20000 (the paper's six)"},
         {"period", CLI_CALL, &period, 0, 0, "N/D",
-         "one exact period in s, as a timer makes it; not with --rate"},
+            "one exact period in s, as a timer makes it; not with --rate"},
         {"k", CLI_REAL, &o->k_Npm, 0, 1e6, "N/M", "stiffness (the paper's at that rate)"},
         {"b", CLI_REAL, &o->b_Nspm, 0, 1e3, "NS/M", "damping (the paper's at that rate)"},
         {"scale", CLI_REAL, &o->scale, 0, 100, "G", "multiplies both (1)"},
@@ -149,36 +149,32 @@ int drop_command(int argc, char **argv, struct drop_options *o, const struct dro
         {"seed", CLI_INT, &o->seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
         {"out", CLI_TEXT, &o->out, 0, 0, "DIR", "write logs, CSVs of the falls and tables there"},
         {"blackbox", CLI_TEXT, &o->blackbox, 0, 0, "FILE",
-         "the last seconds before a fault, a log (with --out beside the others)"},
+            "the last seconds before a fault, a log (with --out beside the others)"},
         {"let-go", CLI_REAL, &o->let_go_s, 0, 1e9, "S",
-         "the dead-man switch opens then: a fault (never)"},
+            "the dead-man switch opens then: a fault (never)"},
         {"jobs", CLI_INT, &o->jobs, 1, 1024, "N", "processes at a time (one a core)"},
         {"cards", CLI_FLAG, &o->cards, 0, 0, NULL,
-         "through the drivers and emulated cards: the same bits"},
+            "through the drivers and emulated cards: the same bits"},
         {"pace", CLI_FLAG, &o->pace, 0, 0, NULL, "follow the wall clock, for people who watch"},
         {"gpio", CLI_CALL, &gpio, 0, 0, CONTACTS_ARG, CONTACTS_HELP},
         {"set", CLI_CALL, &setting, 0, 0, "NAME=VALUE", "a parameter of the scene"},
         {"device", CLI_CALL, &device, 0, 0, "NAME=VALUE", "a value of the simulated device"},
         PARAMS_FILE_OPTIONS(o->params),
         {"calibration", CLI_CALL, &calibration, 0, 0, "FILE",
-         "of finger 0, by `exhand calibrate` (none: the simulated device as it is, "
-         "uncalibrated=1)"},
+            "of finger 0, by `exhand calibrate` (none: the simulated device as it is, "
+            "uncalibrated=1)"},
         {"guarded", CLI_FLAG, &o->guarded, 0, 0, NULL,
-         "the scene with passivity, and what that takes away"},
+            "the scene with passivity, and what that takes away"},
         {"custom", CLI_FLAG, &o->custom, 0, 0, NULL,
-         "the scene with a controller of your own (examples/custom)"},
+            "the scene with a controller of your own (examples/custom)"},
         {"params", CLI_FLAG, &list, 0, 0, NULL, "list both, with units and ranges"},
     };
-    const struct cli_command c = {
-        "drop",
-        "[options]",
+    const struct cli_command c = {"drop", "[options]",
         "The paper's experiment: 0.5 kg falls 7 cm onto a virtual wall, ten times, at each rate.\n"
         "A fall oscillates when in the last 0.5 s of its observation position moves by more than\n"
         "0.25 mm or the monitored force by more than 4 N; else it has come to rest. Buzz is rest\n"
         "in which the encoder still moves, by one or two counts.",
-        option,
-        (int)(sizeof option / sizeof option[0]),
-        0};
+        option, (int)(sizeof option / sizeof option[0]), 0};
 
     defaults(o);
     err = cli_parse_more(&c, &study->more, argc, argv, NULL);

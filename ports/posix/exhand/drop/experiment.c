@@ -93,8 +93,8 @@ int drop_check(const struct drop_options *o, const struct table2_result *r, int 
         if (r[i].faults) {
             char what[NAMES_B];
             names_faults(what, sizeof what, r[i].faults);
-            cli_complain("%.6g Hz: the box stopped with faults %#x: %s", r[i].rate_Hz, r[i].faults,
-                         what);
+            cli_complain(
+                "%.6g Hz: the box stopped with faults %#x: %s", r[i].rate_Hz, r[i].faults, what);
             err = 1;
         }
         if (i < o->rates && r[i].incomplete) {
@@ -154,9 +154,8 @@ void drop_report_guard(const struct drop_options *o, const struct table2_result 
     for (int i = 0; i < o->rates; i++) {
         const struct table2_result off = observed(o, i);
         if (!r[i].done || !off.done) { continue; }
-        row[rows++] = (struct guard_row){r[i].rate_Hz,     r[i].k_Npm,     r[i].b_Nspm, r[i].guard,
-                                         off.guard,        r[i].b_Npm,     off.b_Npm,   r[i].falls,
-                                         r[i].oscillating, off.oscillating};
+        row[rows++] = (struct guard_row){r[i].rate_Hz, r[i].k_Npm, r[i].b_Nspm, r[i].guard,
+            off.guard, r[i].b_Npm, off.b_Npm, r[i].falls, r[i].oscillating, off.oscillating};
     }
     guard_print(stdout, row, rows);
 }
@@ -164,8 +163,8 @@ void drop_report_guard(const struct drop_options *o, const struct table2_result 
 int drop_experiment(const struct drop_options *o)
 {
     static struct table2_result r[DROP_RATES_MAX];
-    const struct jobs jobs = {o->rates, (int)o->jobs, sizeof *r,      r, work,
-                              o,        "runs",       posix_interrupt};
+    const struct jobs jobs = {
+        o->rates, (int)o->jobs, sizeof *r, r, work, o, "runs", posix_interrupt};
     int ran, err;
     memset(r, 0, sizeof r);
     ran = jobs_run(&jobs);
@@ -173,7 +172,7 @@ int drop_experiment(const struct drop_options *o)
     if (ran == 0 && o->guarded) { drop_report_guard(o, r); }
     if (ran == JOBS_INTERRUPTED) {
         cli_complain("interrupted: %d of %d rates were finished%s%s", drop_done(r, o->rates),
-                     o->rates, o->out ? ", what they wrote is kept in " : "", o->out ? o->out : "");
+            o->rates, o->out ? ", what they wrote is kept in " : "", o->out ? o->out : "");
     }
     return ran ? ran : err;
 }

@@ -10,8 +10,8 @@
 
 #define NAME_B 64 /* room for the longest name of a file in the directory */
 
-static const char *const made[] = {"table2.csv", "spread.csv", "pictures.gp", "force_position.png",
-                                   "fall.png"};
+static const char *const made[] = {
+    "table2.csv", "spread.csv", "pictures.gp", "force_position.png", "fall.png"};
 
 static void path(char to[TABLE2_PATH_B], const char *dir, const char *name)
 {
@@ -42,7 +42,7 @@ int outdir_open(const char *dir)
     FILE *f;
     if (strlen(dir) + NAME_B > TABLE2_PATH_B) {
         cli_complain("--out: %.40s...: longer than %d bytes: choose a shorter path", dir,
-                     TABLE2_PATH_B - NAME_B);
+            TABLE2_PATH_B - NAME_B);
         return 2;
     }
     if (mkdir(dir, 0777) != 0 && errno != EEXIST) {
@@ -87,17 +87,17 @@ int outdir_table(const char *dir, const struct table2_result *r, int rows)
 static void panel(FILE *f, const char *name, const struct table2_result *r, double q0_m)
 {
     fprintf(f,
-            "%s_raw='drop_%gHz_raw.csv'; %s_avg='drop_%gHz_averaged.csv'; "
-            "%s_line='drop_%gHz_line.csv'\n",
-            name, r->rate_Hz, name, r->rate_Hz, name, r->rate_Hz);
+        "%s_raw='drop_%gHz_raw.csv'; %s_avg='drop_%gHz_averaged.csv'; "
+        "%s_line='drop_%gHz_line.csv'\n",
+        name, r->rate_Hz, name, r->rate_Hz, name, r->rate_Hz);
     fprintf(f, "%s_rate=%.6g; %s_k=%.6g; %s_b=%.6g; %s_stiffness='", name, r->rate_Hz, name,
-            r->k_Npm, name, r->b_Nspm, name);
+        r->k_Npm, name, r->b_Nspm, name);
     if (r->b_Npm > 0) { fprintf(f, "%.0f", r->b_Npm); }
     fprintf(f, "'; %s_q0=%.9g\n", name, q0_m);
 }
 
 static void list(FILE *f, const char *name, const struct table2_result *r, int rows,
-                 void (*item)(FILE *f, const struct table2_result *r))
+    void (*item)(FILE *f, const struct table2_result *r))
 {
     fprintf(f, "%s='", name);
     for (int i = 0; i < rows; i++) {
@@ -111,18 +111,9 @@ static void item_file(FILE *f, const struct table2_result *r)
 {
     fprintf(f, "drop_%gHz_fall.csv", r->rate_Hz);
 }
-static void item_rate(FILE *f, const struct table2_result *r)
-{
-    fprintf(f, "%.6g", r->rate_Hz);
-}
-static void item_k(FILE *f, const struct table2_result *r)
-{
-    fprintf(f, "%.6g", r->k_Npm);
-}
-static void item_b(FILE *f, const struct table2_result *r)
-{
-    fprintf(f, "%.6g", r->b_Nspm);
-}
+static void item_rate(FILE *f, const struct table2_result *r) { fprintf(f, "%.6g", r->rate_Hz); }
+static void item_k(FILE *f, const struct table2_result *r) { fprintf(f, "%.6g", r->k_Npm); }
+static void item_b(FILE *f, const struct table2_result *r) { fprintf(f, "%.6g", r->b_Nspm); }
 static void item_stiffness(FILE *f, const struct table2_result *r)
 {
     if (r->b_Npm > 0) {
@@ -132,13 +123,12 @@ static void item_stiffness(FILE *f, const struct table2_result *r)
     }
 }
 
-int outdir_pictures(const char *dir, const struct sim_device *d, const struct table2_result *r,
-                    int rows)
+int outdir_pictures(
+    const char *dir, const struct sim_device *d, const struct table2_result *r, int rows)
 {
     FILE *f = outdir_create(dir, "pictures.gp");
     if (f == NULL) { return 1; }
-    fprintf(
-        f,
+    fprintf(f,
         "# Made by exhand drop. Inside this directory, PLOTS the way to ports/posix/exhand/plot:\n"
         "#   gnuplot -c pictures.gp PLOTS\n"
         "plots=ARG1\n"
@@ -146,9 +136,9 @@ int outdir_pictures(const char *dir, const struct sim_device *d, const struct ta
     panel(f, "a", &r[0], d->height_m);
     panel(f, "b", &r[rows - 1], d->height_m);
     fprintf(f,
-            "load plots.'/force_position.gp'\nreset\n"
-            "out='fall.png'; q_lim_m=%.9g; observe_s=%.9g\n",
-            d->height_m, d->observe_s);
+        "load plots.'/force_position.gp'\nreset\n"
+        "out='fall.png'; q_lim_m=%.9g; observe_s=%.9g\n",
+        d->height_m, d->observe_s);
     list(f, "files", r, rows, item_file);
     list(f, "rates", r, rows, item_rate);
     list(f, "ks", r, rows, item_k);

@@ -23,7 +23,7 @@ int outdir_table(const char *dir, const struct table2_result *r, int rows);
 
 /* pictures.gp: what gnuplot needs to draw the pictures, run inside the directory.
  * 0, or 1 after a line on stderr. rows > 0. */
-int outdir_pictures(const char *dir, const struct sim_device *d, const struct table2_result *r,
-                    int rows);
+int outdir_pictures(
+    const char *dir, const struct sim_device *d, const struct table2_result *r, int rows);
 
 #endif

@@ -83,17 +83,16 @@ static void print_run(FILE *f, const struct table2_result *r)
     const int line = r->b_Npm > 0;
     struct text b, interval, r2, theirs, ratio;
     fprintf(f, "%6.6g %6.6g %6.6g %11s %17s %7s %7d of %-3d %5d %7s %12s\n", r->rate_Hz, r->k_Npm,
-            r->b_Nspm, text(&b, line, 0, r->b_Npm),
-            range(&interval, r->ci_low_Npm, r->ci_bounded ? r->ci_high_Npm : 0),
-            text(&r2, line, 2, r->r2), r->oscillating, r->falls, r->buzzing,
-            text(&theirs, paper != NULL, 0, theirs_Npm),
-            text(&ratio, paper != NULL && line, 2, r->b_Npm / theirs_Npm));
+        r->b_Nspm, text(&b, line, 0, r->b_Npm),
+        range(&interval, r->ci_low_Npm, r->ci_bounded ? r->ci_high_Npm : 0),
+        text(&r2, line, 2, r->r2), r->oscillating, r->falls, r->buzzing,
+        text(&theirs, paper != NULL, 0, theirs_Npm),
+        text(&ratio, paper != NULL && line, 2, r->b_Npm / theirs_Npm));
 }
 
 void table2_print_runs(FILE *f, const struct table2_result *r, int rows)
 {
-    fprintf(
-        f,
+    fprintf(f,
         "\nOne run of %d falls a rate, beside the paper's Table II "
         "(B: position over force, monitor paired to the tick it answers)\n\n"
         "  rate      k      b   stiffness     95 %% interval      r2   oscillating  buzz   paper   "
@@ -138,11 +137,10 @@ static void print_deviations(FILE *f, const struct table2_result *r, int rows)
             fprintf(f, "\nWhere ours differs from the paper by more than a tenth, and why:\n");
         }
         fprintf(f, "  %.6g Hz: ours %.2f k, the paper's %.2f k: %s.\n", r->rate_Hz,
-                r->b_Npm / r->k_Npm, paper->stiffness_Npm / paper->k_Npm, why);
+            r->b_Npm / r->k_Npm, paper->stiffness_Npm / paper->k_Npm, why);
     }
     if (n > 0) {
-        fprintf(
-            f,
+        fprintf(f,
             "  All: the device is simulated; its friction, inertia and delay were fitted so that "
             "the paper's points rest and 1.5x does not.\n");
     }

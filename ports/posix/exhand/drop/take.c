@@ -48,10 +48,7 @@ int drop_take_rates(void *ctx, const char *text)
     }
 }
 
-static int is_digit(char c)
-{
-    return c >= '0' && c <= '9';
-}
+static int is_digit(char c) { return c >= '0' && c <= '9'; }
 
 int drop_take_period(void *ctx, const char *text)
 {
@@ -63,7 +60,7 @@ int drop_take_period(void *ctx, const char *text)
     if (den == 0 || *end != '\0' || num < 1 || num > den || den > UINT32_MAX || den > 20000 * num) {
         cli_complain("--period: %s (N/D seconds, 1/20000..1, both whole and below 2^32): "
                      "e.g. --period 597/1193182",
-                     text);
+            text);
         return 2;
     }
     o->T = (struct exh_period){(uint32_t)num, (uint32_t)den};
@@ -108,6 +105,6 @@ void drop_print_params(const struct exh_scene *scene)
     for (int i = 0; i < sim_device_rows; i++) {
         const struct sim_device_row *r = &sim_device_row[i];
         printf("  %-13s %-8s %14.12g  %14.12g .. %-14.12g %-8s %s\n", r->name, r->unit, r->value,
-               r->min, r->max, r->sure, r->help);
+            r->min, r->max, r->sure, r->help);
     }
 }

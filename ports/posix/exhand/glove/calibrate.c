@@ -50,7 +50,7 @@ static int take_fault(void *ctx, const char *text)
     cli_complain("--wrong: %s: give SENSOR=open, short or stuck: `exhand calibrate --glove "
                  "--params` lists the "
                  "sensors",
-                 text);
+        text);
     return 2;
 }
 
@@ -71,7 +71,7 @@ static void print_params(void)
     for (int i = 0; i < sim_glove_rows; i++) {
         const struct sim_device_row *r = &sim_glove_row[i];
         printf("  %-13s %-8s %12.7g  %12.7g .. %-12.7g %-8s %s\n", r->name, r->unit, r->value,
-               r->min, r->max, r->sure, r->help);
+            r->min, r->max, r->sure, r->help);
     }
     printf("\nIts sensors, in the order of the codes (--wrong SENSOR=open, short or stuck)\n");
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
@@ -85,32 +85,32 @@ static int refused(const char *path, int err, const struct exh_glove_error *bad)
 {
     const int of_sensor = bad->what >= EXH_GLOVE_GAIN;
     cli_complain("%s: %s%s%s: %s: calibrate again", path, exh_glove_error_text(bad->what),
-                 of_sensor ? " of " : "", of_sensor ? exh_glove_sensor_text(bad->at) : "",
-                 exh_error_text(err));
+        of_sensor ? " of " : "", of_sensor ? exh_glove_sensor_text(bad->at) : "",
+        exh_error_text(err));
     return 1;
 }
 
 /* A sound image that may not be used: whose it is, and who is here. */
 static int not_here(const struct poses_options *o, const struct exh_glove_cal *c, int err,
-                    const struct exh_glove_error *bad)
+    const struct exh_glove_error *bad)
 {
     if (bad->what == EXH_GLOVE_USER) {
         cli_complain("%s: made for user %" PRIu32 ", this is %" PRId64
                      ": give their --user, or calibrate this one",
-                     o->check, c->user_id, o->user);
+            o->check, c->user_id, o->user);
     } else if (bad->what == EXH_GLOVE_GLOVE) {
         cli_complain("%s: made for glove %" PRIu32 ", this is %" PRId64
                      ": give its --id, or calibrate this one",
-                     o->check, c->glove_id, o->id);
+            o->check, c->glove_id, o->id);
     } else if (bad->what == EXH_GLOVE_AGE && (uint32_t)o->day < c->day) {
         cli_complain("%s: from the future: made on day %" PRIu32 ", today is day %" PRId64
                      ": set the clock right, "
                      "or give --day",
-                     o->check, c->day, o->day);
+            o->check, c->day, o->day);
     } else if (bad->what == EXH_GLOVE_AGE) {
         cli_complain("%s: stale: made on day %" PRIu32 ", good for %" PRIu32
                      " days, today is day %" PRId64 ": calibrate again",
-                     o->check, c->day, c->valid_days, o->day);
+            o->check, c->day, c->valid_days, o->day);
     } else {
         return refused(o->check, err, bad);
     }
@@ -129,7 +129,7 @@ static int check_image(const struct poses_options *o)
     if (err < 0) { return refused(o->check, err, &bad); }
     printf("%s: user %" PRIu32 ", glove %" PRIu32 ", made on day %" PRIu32 ", good for %" PRIu32
            " days; today is day %" PRId64 "\n",
-           o->check, c.user_id, c.glove_id, c.day, c.valid_days, o->day);
+        o->check, c.user_id, c.glove_id, c.day, c.valid_days, o->day);
     fflush(stdout);
     err = exh_glove_cal_check(&c, (uint32_t)o->user, (uint32_t)o->id, (uint32_t)o->day, &bad);
     if (err < 0) { return not_here(o, &c, err, &bad); }
@@ -157,14 +157,14 @@ static void say_bad(const struct poses_options *o, const struct glove_result *r,
     if (at_rail(r, i)) {
         cli_complain("%s: at the end of the card in every pose: open or short: mend its wire, and "
                      "calibrate again",
-                     name);
+            name);
     } else if (f->what == EXH_GLOVE_MOVE) {
         cli_complain("%s: %s: under %" PRId64 " codes: take the poses as told, or see to its wire",
-                     name, what, o->move_raw);
+            name, what, o->move_raw);
     } else if (f->what == EXH_GLOVE_NOISE) {
         cli_complain("%s: %s: %" PRId32 " codes in pose %s (allowed 0..%" PRId64
                      "): hold still, and calibrate again",
-                     name, what, r->pose[f->pose].noise_raw[i], pose, o->noise_raw);
+            name, what, r->pose[f->pose].noise_raw[i], pose, o->noise_raw);
     } else if (f->what == EXH_GLOVE_RESIDUAL) {
         cli_complain(
             "%s: %s: %.2f deg in pose %s (allowed 0..%.4g): take that pose again, or --residual",
@@ -173,14 +173,14 @@ static void say_bad(const struct poses_options *o, const struct glove_result *r,
         cli_complain("%s: %s: %d say its angle, too few or too much alike: take all that `exhand "
                      "calibrate --glove "
                      "--list` lists",
-                     name, what, f->poses);
+            name, what, f->poses);
     } else if (f->what == EXH_GLOVE_CROSS) {
         cli_complain(
             "%s: %s: beyond +-2, or of a sensor that did not come out: see to that one first", name,
             what);
     } else {
-        cli_complain("%s: %s: implausible: see that it is worn right, and calibrate again", name,
-                     what);
+        cli_complain(
+            "%s: %s: implausible: see that it is worn right, and calibrate again", name, what);
     }
 }
 
@@ -191,11 +191,11 @@ static void topology(struct glove_result *r, const struct poses_options *o)
     static const struct {
         uint8_t sensor, of[2];
     } bent[] = {{EXH_GLOVE_THUMB_AB, {EXH_GLOVE_THUMB_ROTATE, EXH_GLOVE_NONE}},
-                {EXH_GLOVE_MIDDLE_INDEX_AB, {EXH_GLOVE_INDEX_MPJ, EXH_GLOVE_MIDDLE_MPJ}},
-                {EXH_GLOVE_RING_MIDDLE_AB, {EXH_GLOVE_MIDDLE_MPJ, EXH_GLOVE_RING_MPJ}},
-                {EXH_GLOVE_LITTLE_RING_AB, {EXH_GLOVE_RING_MPJ, EXH_GLOVE_LITTLE_MPJ}}};
-    static const uint8_t last[] = {EXH_GLOVE_INDEX_DIJ, EXH_GLOVE_MIDDLE_DIJ, EXH_GLOVE_RING_DIJ,
-                                   EXH_GLOVE_LITTLE_DIJ};
+        {EXH_GLOVE_MIDDLE_INDEX_AB, {EXH_GLOVE_INDEX_MPJ, EXH_GLOVE_MIDDLE_MPJ}},
+        {EXH_GLOVE_RING_MIDDLE_AB, {EXH_GLOVE_MIDDLE_MPJ, EXH_GLOVE_RING_MPJ}},
+        {EXH_GLOVE_LITTLE_RING_AB, {EXH_GLOVE_RING_MPJ, EXH_GLOVE_LITTLE_MPJ}}};
+    static const uint8_t last[] = {
+        EXH_GLOVE_INDEX_DIJ, EXH_GLOVE_MIDDLE_DIJ, EXH_GLOVE_RING_DIJ, EXH_GLOVE_LITTLE_DIJ};
     r->cal.present = (1u << EXH_GLOVE_SENSORS) - 1u;
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
         r->cal.sensor[i].of[0] = r->cal.sensor[i].of[1] = EXH_GLOVE_NONE;
@@ -214,8 +214,8 @@ static void topology(struct glove_result *r, const struct poses_options *o)
 static int calibrate(const struct poses_options *o)
 {
     static struct glove_result r;
-    const struct exh_glove_fit_par par = {(int32_t)o->move_raw, (int32_t)o->noise_raw,
-                                          (int32_t)(o->residual_deg / DEG_OF_TURN_Q32)};
+    const struct exh_glove_fit_par par = {
+        (int32_t)o->move_raw, (int32_t)o->noise_raw, (int32_t)(o->residual_deg / DEG_OF_TURN_Q32)};
     struct exh_glove_error bad;
     int err;
     memset(&r, 0, sizeof r);
@@ -272,14 +272,14 @@ int cli_calibrate_glove(int argc, char **argv)
     const struct cli_option option[] = {
         {"glove", CLI_FLAG, &glove, 0, 0, NULL, "the glove, not a finger's motor"},
         {"poses", CLI_TEXT, &o.poses, 0, 0, "FILE",
-         "recorded: CSV of pose,22 codes; - standard input"},
+            "recorded: CSV of pose,22 codes; - standard input"},
         {"list", CLI_FLAG, &list, 0, 0, NULL, "the poses and what to do in each"},
         {"sensors", CLI_INT, &o.sensors, 18, 22, "N",
-         "of the glove: 18 (no last joints) or 22 (22)"},
+            "of the glove: 18 (no last joints) or 22 (22)"},
         {"out", CLI_TEXT, &o.out, 0, 0, "DIR",
-         "write " IMAGE_NAME ", glove.csv and poses.csv there"},
+            "write " IMAGE_NAME ", glove.csv and poses.csv there"},
         {"check", CLI_TEXT, &o.check, 0, 0, "FILE",
-         "only say whether this image may be used here today"},
+            "only say whether this image may be used here today"},
         {"user", CLI_INT, &o.user, 0, 4294967295.0, "N", "whose hand (1)"},
         {"id", CLI_INT, &o.id, 0, 4294967295.0, "N", "of the glove (1)"},
         {"day", CLI_INT, &o.day, 0, 4294967295.0, "N", "today, in days since 1970 (the clock's)"},
@@ -288,23 +288,20 @@ int cli_calibrate_glove(int argc, char **argv)
         {"noise", CLI_INT, &o.noise_raw, 0, 65535, "CODES", "peak to peak in a pose at most (128)"},
         {"residual", CLI_REAL, &o.residual_deg, 0, 90, "DEG", "no pose farther from the line (6)"},
         {"rate", CLI_REAL, &o.bench.rate_Hz, 1, 20000, "HZ",
-         "of the simulated glove's frames (1000)"},
+            "of the simulated glove's frames (1000)"},
         {"frames", CLI_INT, &o.bench.frames, 1, 100000, "N", "taken in each pose (200)"},
         {"miss", CLI_REAL, &o.bench.miss_deg, 0, 20, "DEG",
-         "by how much the simulated person misses each angle (1)"},
+            "by how much the simulated person misses each angle (1)"},
         {"seed", CLI_INT, &o.bench.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
         {"device", CLI_CALL, &device, 0, 0, "NAME=VALUE", "a value of the simulated glove"},
         {"wrong", CLI_CALL, &fault, 0, 0, "SENSOR=KIND",
-         "a fault of the simulated glove: open, short, stuck"},
+            "a fault of the simulated glove: open, short, stuck"},
         {"params", CLI_FLAG, &params, 0, 0, NULL, "list these values and sensors"},
     };
-    const struct cli_command c = {"calibrate --glove",
-                                  "[options]",
-                                  "Offset, gain and cross-coupling of each sensor for one user, "
-                                  "from poses with known angles.",
-                                  option,
-                                  (int)(sizeof option / sizeof option[0]),
-                                  0};
+    const struct cli_command c = {"calibrate --glove", "[options]",
+        "Offset, gain and cross-coupling of each sensor for one user, "
+        "from poses with known angles.",
+        option, (int)(sizeof option / sizeof option[0]), 0};
 
     defaults(&o);
     err = cli_parse(&c, argc, argv, NULL);

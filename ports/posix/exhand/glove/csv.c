@@ -22,7 +22,7 @@ struct exh_period glove_period(double rate_Hz)
 /* --- parameters --- */
 
 int glove_ready(const struct glove_options *o, struct glove_par *par, struct glove_cfg *cfg,
-                struct exh_period T)
+    struct exh_period T)
 {
     struct exh_params *p = exh_scene_glove.params;
     const double rate_Hz = (double)T.den / T.num;
@@ -31,12 +31,12 @@ int glove_ready(const struct glove_options *o, struct glove_par *par, struct glo
     if (!o->fc_given && par->glove.order > 0 && par->glove.fc_Hz_q16 / 65536.0 > rate_Hz / 4) {
         par->glove.fc_Hz_q16 = (int32_t)(rate_Hz / 4 * 65536);
         cli_complain("at %.6g Hz the low-pass is at %.6g Hz: --set glove_fc=... says another",
-                     rate_Hz, par->glove.fc_Hz_q16 / 65536.0);
+            rate_Hz, par->glove.fc_Hz_q16 / 65536.0);
     }
     err = glove_setup(cfg, par, T);
     if (err < 0) {
         cli_complain("%.6g Hz with these parameters: %s: see --rate and --set", rate_Hz,
-                     exh_error_text(err));
+            exh_error_text(err));
         return 2;
     }
     return 0;
@@ -45,8 +45,8 @@ int glove_ready(const struct glove_options *o, struct glove_par *par, struct glo
 /* --- angles backwards to codes --- */
 
 /* Codes that a calibrated glove gives at these angles, not rounded. */
-static void codes_of(const struct exh_glove_cal *cal, const double rad[SENSORS],
-                     double code[SENSORS])
+static void codes_of(
+    const struct exh_glove_cal *cal, const double rad[SENSORS], double code[SENSORS])
 {
     for (int i = 0; i < SENSORS; i++) {
         const struct exh_glove_sensor *s = &cal->sensor[i];
@@ -151,8 +151,8 @@ void glove_line(const struct glove_options *o, double t_s, const struct glove_si
         printf(",%ld", (long)s->clamped);
         for (int f = 0; f < EXH_FINGERS; f++) {
             const struct exh_vec3 *p = &s->tip_m_q30[f];
-            printf(",%.9g,%.9g,%.9g", p->x / 1073741824.0, p->y / 1073741824.0,
-                   p->z / 1073741824.0);
+            printf(
+                ",%.9g,%.9g,%.9g", p->x / 1073741824.0, p->y / 1073741824.0, p->z / 1073741824.0);
         }
     }
     putchar('\n');

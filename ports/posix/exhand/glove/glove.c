@@ -67,7 +67,7 @@ static void print_params(void)
     for (int i = 0; i < sim_glove_rows; i++) {
         const struct sim_device_row *r = &sim_glove_row[i];
         printf("  %-13s %-8s %14.12g  %14.12g .. %-14.12g %-8s %s\n", r->name, r->unit, r->value,
-               r->min, r->max, r->sure, r->help);
+            r->min, r->max, r->sure, r->help);
     }
 }
 
@@ -88,15 +88,15 @@ static int check_rest(const struct glove_options *o)
     } row[] = {
         {o->play && !o->record, "--play: goes with --record"},
         {o->serial && (o->play || o->does || o->cards),
-         "--serial: a hand is in that glove: leave --play, --does and --cards out"},
+            "--serial: a hand is in that glove: leave --play, --does and --cards out"},
         {o->serial && o->pose && (o->record || o->tips || o->deg || o->calibration || o->settings),
-         "--pose: with --serial its rows are codes as they come: leave --record, --tips, --deg, "
-         "--calibration and --set out"},
+            "--pose: with --serial its rows are codes as they come: leave --record, --tips, --deg, "
+            "--calibration and --set out"},
         {o->glove_Hz > 0 && !o->serial, "--glove-rate: goes with --serial"},
         {(o->does && !o->record) || (o->pose && !o->record && !o->serial),
-         "--does and --pose: go with --record, --pose with --serial, too"},
+            "--does and --pose: go with --record, --pose with --serial, too"},
         {(o->does || o->pose) && o->play,
-         "--play: says what the hand does: leave --does and --pose out"},
+            "--play: says what the hand does: leave --does and --pose out"},
         {o->seconds > 0 && o->csv, "--seconds: a recording is as long as it is"},
     };
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
@@ -154,40 +154,37 @@ int glove_command(int argc, char **argv, const struct glove_study *study)
     struct cli_call set = {take_setting, &o}, device = {take_device, &o};
     const struct cli_option option[] = {
         {"csv", CLI_TEXT, &o.csv, 0, 0, "FILE",
-         "a recording: 22 codes or angles a line; - is standard input"},
+            "a recording: 22 codes or angles a line; - is standard input"},
         {"rate", CLI_REAL, &o.rate_Hz, 1, RATE_TOP, "HZ", "of the rows, or of the loop (2000)"},
         {"tips", CLI_FLAG, &o.tips, 0, 0, NULL, "joints and fingertips of the robot hand too"},
         {"deg", CLI_FLAG, &o.deg, 0, 0, NULL, "angles in degrees, not radians"},
         {"unit", CLI_TEXT, &o.unit, 0, 0, "UNIT",
-         "of the rows: codes, rad, deg, turn; else guessed"},
+            "of the rows: codes, rad, deg, turn; else guessed"},
         {"calibration", CLI_TEXT, &o.calibration, 0, 0, "FILE", "instead of nobody's"},
         {"record", CLI_TEXT, &o.record, 0, 0, "FILE",
-         "run the scene on the simulated glove, or --serial, log it there"},
+            "run the scene on the simulated glove, or --serial, log it there"},
         {"serial", CLI_TEXT, &o.serial, 0, 0, "DEVICE",
-         "a stock glove of 22 sensors on this line; rows like --csv's, or --record"},
+            "a stock glove of 22 sensors on this line; rows like --csv's, or --record"},
         {"glove-rate", CLI_REAL, &o.glove_Hz, GLOVE_TTY_RATE_MIN_HZ, GLOVE_TTY_RATE_MAX_HZ, "HZ",
-         "with --serial: its frames (90)"},
+            "with --serial: its frames (90)"},
         {"play", CLI_TEXT, &o.play, 0, 0, "FILE",
-         "with --record: the hand does what this recording says"},
+            "with --record: the hand does what this recording says"},
         {"does", CLI_TEXT, &o.does, 0, 0, "WHAT", "with --record: rest, poses, grasp or wave"},
         {"pose", CLI_TEXT, &o.pose, 0, 0, "NAME",
-         "with --record: begin in this pose; with --serial: rows of codes for `exhand calibrate "
-         "--glove`, named so"},
+            "with --record: begin in this pose; with --serial: rows of codes for `exhand calibrate "
+            "--glove`, named so"},
         {"seconds", CLI_REAL, &o.seconds, 0.001, 100000, "S",
-         "how long the board is asked (10, or all of --play; --serial: until Ctrl-C)"},
+            "how long the board is asked (10, or all of --play; --serial: until Ctrl-C)"},
         {"cards", CLI_FLAG, &o.cards, 0, 0, NULL,
-         "the board's codes through the drivers and emulated cards: the same bits"},
+            "the board's codes through the drivers and emulated cards: the same bits"},
         {"seed", CLI_INT, &o.seed, 0, 9e15, "N", "of the simulation"},
         {"set", CLI_CALL, &set, 0, 0, "NAME=VALUE", "a parameter of the scene"},
         {"device", CLI_CALL, &device, 0, 0, "NAME=VALUE", "one of the simulation"},
         {"params", CLI_FLAG, &params, 0, 0, NULL, "list both"},
     };
-    const struct cli_command c = {"glove",
-                                  "--csv FILE --rate HZ | --record FILE | --serial DEVICE",
-                                  "Glove codes to stable angles and fingertips.",
-                                  option,
-                                  (int)(sizeof option / sizeof option[0]),
-                                  0};
+    const struct cli_command c = {"glove", "--csv FILE --rate HZ | --record FILE | --serial DEVICE",
+        "Glove codes to stable angles and fingertips.", option,
+        (int)(sizeof option / sizeof option[0]), 0};
     int err;
     memset(&o, 0, sizeof o);
     o.seed = 1;

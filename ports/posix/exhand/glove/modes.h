@@ -43,7 +43,7 @@ struct exh_period glove_period(double rate_Hz);
 /* The scene's parameters as they are staged, and set up from them. A filter that nobody asked
  * for goes down to a quarter of the rate where it must. 0, or 2 after a line on stderr. */
 int glove_ready(const struct glove_options *o, struct glove_par *par, struct glove_cfg *cfg,
-                struct exh_period T);
+    struct exh_period T);
 
 /* The codes of a recording; angles through the calibration, backwards. If angles come without
  * --calibration, a glove is staged whose 65536 codes are one turn, so that each has its code.

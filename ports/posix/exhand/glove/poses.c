@@ -31,44 +31,33 @@ static const struct {
     } group[GROUPS];
 } text[GLOVE_POSES] = {
     {"flat", "hand flat on the table, fingers and thumb together, wrist straight", {{EVERY, 0}}},
-    {"spread",
-     "flat on the template: fingers 20 degrees apart, thumb 45 degrees out",
-     {{ABS, 20}, {S(THUMB_AB), 45}, {EVERY, 0}}},
-    {"knuckles",
-     "fingers together and straight, bent 80 degrees at the knuckles over the block",
-     {{MPJS, 80}, {PIJS | DIJS | ABS, 0}}},
-    {"hook",
-     "knuckles straight, fingers hooked: middle joints 90, last joints 60 degrees",
-     {{PIJS, 90}, {DIJS, 60}, {MPJS, 0}}},
-    {"index",
-     "flat, fingers together; the index alone bent 60 degrees at its knuckle",
-     {{S(INDEX_MPJ), 60}, {S(MIDDLE_MPJ) | S(MIDDLE_INDEX_AB), 0}}},
-    {"middle",
-     "the middle finger alone bent 60 degrees at its knuckle",
-     {{S(MIDDLE_MPJ), 60},
-      {S(INDEX_MPJ) | S(RING_MPJ) | S(MIDDLE_INDEX_AB) | S(RING_MIDDLE_AB), 0}}},
-    {"ring",
-     "the ring finger alone bent 60 degrees at its knuckle",
-     {{S(RING_MPJ), 60},
-      {S(MIDDLE_MPJ) | S(LITTLE_MPJ) | S(RING_MIDDLE_AB) | S(LITTLE_RING_AB), 0}}},
-    {"little",
-     "the little finger alone bent 60 degrees at its knuckle",
-     {{S(LITTLE_MPJ), 60}, {S(RING_MPJ) | S(LITTLE_RING_AB), 0}}},
-    {"thumb",
-     "flat; the thumb bent 30 degrees at its knuckle, 70 at its last joint",
-     {{S(THUMB_MPJ), 30}, {S(THUMB_IJ), 70}, {S(THUMB_ROTATE) | S(THUMB_AB), 0}}},
-    {"across",
-     "the thumb turned 50 degrees across the palm and lying on it",
-     {{S(THUMB_ROTATE), 50}, {S(THUMB_AB), 0}}},
-    {"opposed",
-     "the thumb turned 50 degrees across the palm and standing 45 degrees off it",
-     {{S(THUMB_ROTATE), 50}, {S(THUMB_AB), 45}}},
+    {"spread", "flat on the template: fingers 20 degrees apart, thumb 45 degrees out",
+        {{ABS, 20}, {S(THUMB_AB), 45}, {EVERY, 0}}},
+    {"knuckles", "fingers together and straight, bent 80 degrees at the knuckles over the block",
+        {{MPJS, 80}, {PIJS | DIJS | ABS, 0}}},
+    {"hook", "knuckles straight, fingers hooked: middle joints 90, last joints 60 degrees",
+        {{PIJS, 90}, {DIJS, 60}, {MPJS, 0}}},
+    {"index", "flat, fingers together; the index alone bent 60 degrees at its knuckle",
+        {{S(INDEX_MPJ), 60}, {S(MIDDLE_MPJ) | S(MIDDLE_INDEX_AB), 0}}},
+    {"middle", "the middle finger alone bent 60 degrees at its knuckle",
+        {{S(MIDDLE_MPJ), 60},
+            {S(INDEX_MPJ) | S(RING_MPJ) | S(MIDDLE_INDEX_AB) | S(RING_MIDDLE_AB), 0}}},
+    {"ring", "the ring finger alone bent 60 degrees at its knuckle",
+        {{S(RING_MPJ), 60},
+            {S(MIDDLE_MPJ) | S(LITTLE_MPJ) | S(RING_MIDDLE_AB) | S(LITTLE_RING_AB), 0}}},
+    {"little", "the little finger alone bent 60 degrees at its knuckle",
+        {{S(LITTLE_MPJ), 60}, {S(RING_MPJ) | S(LITTLE_RING_AB), 0}}},
+    {"thumb", "flat; the thumb bent 30 degrees at its knuckle, 70 at its last joint",
+        {{S(THUMB_MPJ), 30}, {S(THUMB_IJ), 70}, {S(THUMB_ROTATE) | S(THUMB_AB), 0}}},
+    {"across", "the thumb turned 50 degrees across the palm and lying on it",
+        {{S(THUMB_ROTATE), 50}, {S(THUMB_AB), 0}}},
+    {"opposed", "the thumb turned 50 degrees across the palm and standing 45 degrees off it",
+        {{S(THUMB_ROTATE), 50}, {S(THUMB_AB), 45}}},
     {"cup", "the palm cupped around the bowl: 30 degrees", {{S(PALM_ARCH), 30}}},
     {"up", "the wrist bent 30 degrees up", {{S(WRIST_PITCH), 30}, {S(WRIST_YAW), 0}}},
     {"down", "the wrist bent 25 degrees down", {{S(WRIST_PITCH), -25}, {S(WRIST_YAW), 0}}},
-    {"side",
-     "the wrist turned 20 degrees to the little finger's side",
-     {{S(WRIST_YAW), -20}, {S(WRIST_PITCH), 0}}},
+    {"side", "the wrist turned 20 degrees to the little finger's side",
+        {{S(WRIST_YAW), -20}, {S(WRIST_PITCH), 0}}},
 };
 
 const char *glove_pose_name(unsigned pose)
@@ -122,13 +111,13 @@ void glove_poses_take(struct glove_taken *t, const struct glove_bench *b, FILE *
         for (int64_t n = 0; n < b->frames; n++) {
             const double tick_s = (double)(n + 1) / b->rate_Hz;
             for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
-                take_code(&t->code[p][i],
-                          sim_glove_convert(&g, i, sim_glove_held_s(&b->par, i, tick_s)));
+                take_code(
+                    &t->code[p][i], sim_glove_convert(&g, i, sim_glove_held_s(&b->par, i, tick_s)));
             }
             t->frames[p]++;
         }
         fprintf(progress, "pose %2u of %d, %-9s %s: taken\n", p + 1, GLOVE_POSES, text[p].name,
-                text[p].todo);
+            text[p].todo);
     }
 }
 
@@ -169,18 +158,18 @@ static int take_line(struct glove_taken *t, char *line, const char *path, unsign
     if (pose < 0) {
         cli_complain("--poses: %s: line %lu: %.40s: no such pose: `exhand calibrate --glove "
                      "--list` lists them",
-                     path, at, line);
+            path, at, line);
         return 2;
     }
     n = comma != NULL ? codes_of(comma + 1, code) : 0;
     if (n != EXH_GLOVE_SENSORS) {
         cli_complain("--poses: %s: line %lu: %s: give the pose and %d codes of -32768..32767, "
                      "commas between",
-                     path, at,
-                     n < 0                   ? "no code"
-                     : n < EXH_GLOVE_SENSORS ? "too few codes"
-                                             : "too many codes",
-                     EXH_GLOVE_SENSORS);
+            path, at,
+            n < 0                   ? "no code"
+            : n < EXH_GLOVE_SENSORS ? "too few codes"
+                                    : "too many codes",
+            EXH_GLOVE_SENSORS);
         return 2;
     }
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { take_code(&t->code[pose][i], code[i]); }
@@ -219,8 +208,8 @@ int glove_poses_read(struct glove_taken *t, const char *path)
         }
     }
     if (status == 0 && ferror(f)) { /* a directory, as a rule */
-        cli_complain("--poses: %s: can't be read: %s: give a CSV of poses and codes", path,
-                     strerror(errno));
+        cli_complain(
+            "--poses: %s: can't be read: %s: give a CSV of poses and codes", path, strerror(errno));
         status = 2;
     }
     if (!standard) { fclose(f); }
@@ -229,8 +218,8 @@ int glove_poses_read(struct glove_taken *t, const char *path)
 
 /* --- to the fit, and to a file --- */
 
-unsigned glove_poses_fit(struct exh_glove_pose *pose, uint8_t which[GLOVE_POSES],
-                         const struct glove_taken *t)
+unsigned glove_poses_fit(
+    struct exh_glove_pose *pose, uint8_t which[GLOVE_POSES], const struct glove_taken *t)
 {
     unsigned n = 0;
     for (unsigned p = 0; p < GLOVE_POSES; p++) {

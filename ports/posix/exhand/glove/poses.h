@@ -53,8 +53,8 @@ void glove_poses_take(struct glove_taken *t, const struct glove_bench *b, FILE *
 int glove_poses_read(struct glove_taken *t, const char *path);
 
 /* For the fit: those that were taken. Their number; which[] says which they are. */
-unsigned glove_poses_fit(struct exh_glove_pose *pose, uint8_t which[GLOVE_POSES],
-                         const struct glove_taken *t);
+unsigned glove_poses_fit(
+    struct exh_glove_pose *pose, uint8_t which[GLOVE_POSES], const struct glove_taken *t);
 
 /* A frame as glove_poses_read() reads it. */
 void glove_poses_row(FILE *f, const char *pose, const int16_t raw[EXH_GLOVE_SENSORS]);

@@ -90,7 +90,7 @@ static uint32_t ticks_of(const struct glove_options *o, long rows)
 
 /* The rows of --play: codes as frames, angles through the analog chain. */
 static int play(const struct glove_options *o, struct posix_config *c, struct glove_frames *f,
-                struct recording *r)
+    struct recording *r)
 {
     int err = recording_read(r, o->play, o->unit ? recording_unit_of(o->unit) : RECORDING_GUESS);
     if (err) { return err; }
@@ -123,8 +123,8 @@ int glove_record(const struct glove_options *o)
     if (err == 0) { err = try_once(o, c); }
     c.max_ticks = ticks_of(o, r.codes ? r.rows * *exh_scene_glove.glove_every : r.rows);
     if (err == 0 && (c.log = fopen(o->record, "wb")) == NULL) {
-        cli_complain("--record: %s: %s: give a file that can be written", o->record,
-                     strerror(errno));
+        cli_complain(
+            "--record: %s: %s: give a file that can be written", o->record, strerror(errno));
         err = 2;
     }
     if (err == 0) {

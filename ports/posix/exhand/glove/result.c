@@ -12,10 +12,7 @@
 
 /* --- the table --- */
 
-static double zero_code(const struct exh_glove_sensor *s)
-{
-    return s->zero_raw_q15 / 32768.0;
-}
+static double zero_code(const struct exh_glove_sensor *s) { return s->zero_raw_q15 / 32768.0; }
 
 static const char *verdict(unsigned what)
 {
@@ -34,7 +31,7 @@ static int32_t noise_of(const struct glove_result *r, unsigned sensor)
 static void print_sensor(unsigned i, const struct exh_glove_sensor *s)
 {
     printf("%-13s %10.2f %11.6f %7d %7d", exh_glove_sensor_text(i), zero_code(s),
-           s->gain_turnpraw_q38 * DEG_OF_GAIN_Q38, s->low_raw, s->high_raw);
+        s->gain_turnpraw_q38 * DEG_OF_GAIN_Q38, s->low_raw, s->high_raw);
 }
 
 static void print_cross(const struct exh_glove_cal *cal, uint32_t present)
@@ -44,8 +41,8 @@ static void print_cross(const struct exh_glove_cal *cal, uint32_t present)
         for (unsigned k = 0; k < 2; k++) {
             if (s->of[k] == EXH_GLOVE_NONE) { continue; }
             printf("%-13s %+10.4f of %s%s\n", exh_glove_sensor_text(i),
-                   s->cross_q30[k] / 1073741824.0, exh_glove_sensor_text(s->of[k]),
-                   present >> i & 1 ? "" : " (not measured)");
+                s->cross_q30[k] / 1073741824.0, exh_glove_sensor_text(s->of[k]),
+                present >> i & 1 ? "" : " (not measured)");
         }
     }
 }
@@ -65,14 +62,14 @@ void glove_cal_print(const struct exh_glove_cal *cal)
 void glove_result_print(const struct glove_result *r)
 {
     printf("\n%-13s %10s %11s %15s %5s %5s %12s %-9s %s\n", "sensor", "zero_code", "deg/code",
-           "span_codes", "noise", "poses", "residual_deg", "in_pose", "verdict");
+        "span_codes", "noise", "poses", "residual_deg", "in_pose", "verdict");
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
         const struct exh_glove_fit *f = &r->fit[i];
         if (!(r->present >> i & 1)) { continue; }
         print_sensor(i, &r->cal.sensor[i]);
         printf(" %5" PRId32 " %5d %12.3f %-9s %s\n", noise_of(r, i), f->poses,
-               f->residual_turn_q32 * DEG_OF_TURN_Q32, glove_pose_name(r->which[f->pose]),
-               verdict(f->what));
+            f->residual_turn_q32 * DEG_OF_TURN_Q32, glove_pose_name(r->which[f->pose]),
+            verdict(f->what));
     }
     printf("\ncross-coupling, of the other sensor's own angle:\n");
     print_cross(&r->cal, r->present);
@@ -95,15 +92,15 @@ static void write_sensors(FILE *f, const void *ctx)
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
         const struct exh_glove_sensor *s = &r->cal.sensor[i];
         fprintf(f, "%s,%d,%.5f,%.9g,%d,%d", exh_glove_sensor_text(i), (int)(r->present >> i & 1),
-                zero_code(s), s->gain_turnpraw_q38 * DEG_OF_GAIN_Q38, s->low_raw, s->high_raw);
+            zero_code(s), s->gain_turnpraw_q38 * DEG_OF_GAIN_Q38, s->low_raw, s->high_raw);
         for (unsigned k = 0; k < 2; k++) {
             fprintf(f, ",%s,%.9g",
-                    s->of[k] == EXH_GLOVE_NONE ? "" : exh_glove_sensor_text(s->of[k]),
-                    s->cross_q30[k] / 1073741824.0);
+                s->of[k] == EXH_GLOVE_NONE ? "" : exh_glove_sensor_text(s->of[k]),
+                s->cross_q30[k] / 1073741824.0);
         }
         fprintf(f, ",%" PRId32 ",%d,%.6f,%s\n", noise_of(r, i), r->fit[i].poses,
-                r->fit[i].residual_turn_q32 * DEG_OF_TURN_Q32,
-                glove_pose_name(r->which[r->fit[i].pose]));
+            r->fit[i].residual_turn_q32 * DEG_OF_TURN_Q32,
+            glove_pose_name(r->which[r->fit[i].pose]));
     }
 }
 
@@ -119,7 +116,7 @@ int glove_result_write(const char *dir, struct glove_result *r)
     struct exh_glove_error bad;
     if (exh_glove_cal_save(&r->cal, r->image, sizeof r->image, &bad) < 0) {
         cli_complain("%s of %s: nothing was saved: calibrate again", exh_glove_error_text(bad.what),
-                     exh_glove_sensor_text(bad.at));
+            exh_glove_sensor_text(bad.at));
         return 1;
     }
     return outfile_write(dir, IMAGE_NAME, write_image, r) ||

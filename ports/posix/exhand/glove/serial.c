@@ -38,8 +38,8 @@ static int stage(const struct glove_options *o)
     static struct exh_glove_cal cal;
     int err = o->calibration ? glove_image_read(&cal, "calibration", o->calibration) : 0;
     if (err) { return err; }
-    err = glove_serial_stage(&exh_scene_glove, o->calibration ? &cal : NULL, run.rate_Hz,
-                             run.tty.rate_Hz);
+    err = glove_serial_stage(
+        &exh_scene_glove, o->calibration ? &cal : NULL, run.rate_Hz, run.tty.rate_Hz);
     for (int i = 0; err == 0 && i < o->settings; i++) {
         err = cli_param_set(exh_scene_glove.params, o->setting[i].name, o->setting[i].value);
     }
@@ -48,10 +48,7 @@ static int stage(const struct glove_options *o)
 
 /* --- while it runs --- */
 
-static const char *path(void)
-{
-    return run.tty.path;
-}
+static const char *path(void) { return run.tty.path; }
 
 /* Nothing since the start: why, as far as what came tells. */
 static void complain_never(void)
@@ -60,7 +57,7 @@ static void complain_never(void)
     if (run.tty.bytes == 0) {
         cli_complain("--serial: %s: silent for %g s: is the glove's unit on, and is this its line "
                      "(115200 baud)?",
-                     path(), NEVER_S);
+            path(), NEVER_S);
     } else if (g->lost[CYBERGLOVE_EIGHTEEN] >
                g->lost[CYBERGLOVE_ZERO] + g->lost[CYBERGLOVE_LENGTH]) {
         cli_complain(
@@ -72,7 +69,7 @@ static void complain_never(void)
         cli_complain("--serial: %s: %lu bytes and no whole frame: is it a glove of 22 sensors with "
                      "8-bit samples, without time stamp, at "
                      "115200 baud?",
-                     path(), (unsigned long)run.tty.bytes);
+            path(), (unsigned long)run.tty.bytes);
     }
 }
 
@@ -83,9 +80,9 @@ static void watch_silence(double age_s)
     if (silent == run.silent || !run.heard) { return; }
     run.silent = silent;
     cli_complain("--serial: %s: %s", path(),
-                 !silent          ? "frames again"
-                 : run.tty.fd < 0 ? "was unplugged: waits for it"
-                                  : "silent: asks again");
+        !silent          ? "frames again"
+        : run.tty.fd < 0 ? "was unplugged: waits for it"
+                         : "silent: asks again");
 }
 
 static void before(uint32_t tick, struct exh_scene_in *in)
@@ -124,15 +121,15 @@ static void summary(FILE *to)
 {
     const struct cyberglove *g = &run.tty.in;
     fprintf(to, "%s: %lu frames at %.6g Hz, discarded:", path(), (unsigned long)g->frames,
-            run.tty.rate_Hz);
+        run.tty.rate_Hz);
     for (unsigned i = 0; i < CYBERGLOVE_CAUSES; i++) {
         fprintf(to, " %s %lu,", cyberglove_cause_text(i), (unsigned long)g->lost[i]);
     }
     fprintf(to,
-            " stray bytes %lu, refused commands %lu, told to stream %lu times, gone %lu times; "
-            "missed ticks %llu\n",
-            (unsigned long)g->strays, (unsigned long)g->errors, (unsigned long)run.tty.told,
-            (unsigned long)run.tty.gone, (unsigned long long)run.missed);
+        " stray bytes %lu, refused commands %lu, told to stream %lu times, gone %lu times; "
+        "missed ticks %llu\n",
+        (unsigned long)g->strays, (unsigned long)g->errors, (unsigned long)run.tty.told,
+        (unsigned long)run.tty.gone, (unsigned long long)run.missed);
 }
 
 /* --- the whole --- */
@@ -153,7 +150,7 @@ static int go(const struct glove_options *o, FILE *log)
     err = exh_loop(&exh_scene_glove, 0, &hooks);
     if (err < 0) {
         cli_complain("%.6g Hz, the glove at %.6g Hz: %s: see --rate, --glove-rate and --set",
-                     run.rate_Hz, run.tty.rate_Hz, exh_error_text(err));
+            run.rate_Hz, run.tty.rate_Hz, exh_error_text(err));
         return 2;
     }
     if (log && exh_log_end(run.last_tick + 1) != 0) { err = 1; }
@@ -168,16 +165,16 @@ int glove_serial(const struct glove_options *o)
     run.o = o;
     run.rate_Hz = o->rate_Hz;
     if (o->pose && glove_pose_find(o->pose) < 0) {
-        cli_complain("--pose: %s: no such pose: `exhand calibrate --glove --list` lists them",
-                     o->pose);
+        cli_complain(
+            "--pose: %s: no such pose: `exhand calibrate --glove --list` lists them", o->pose);
         return 2;
     }
     err = glove_serial_open(&run.tty, "serial", o->serial, o->glove_Hz);
     if (err) { return err; }
     err = stage(o);
     if (err == 0 && o->record && (log = fopen(o->record, "wb")) == NULL) {
-        cli_complain("--record: %s: %s: give a file that can be written", o->record,
-                     strerror(errno));
+        cli_complain(
+            "--record: %s: %s: give a file that can be written", o->record, strerror(errno));
         err = 2;
     }
     if (err == 0) { err = go(o, log); }

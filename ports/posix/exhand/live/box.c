@@ -57,24 +57,21 @@ static void board(const struct live_options *o, struct posix_config *b)
 }
 
 /* A dump that could not be written is an error of its own. */
-static int dumped(int err, int dumps)
-{
-    return err == 0 && dumps < 0 ? -EXH_E_IO : err;
-}
+static int dumped(int err, int dumps) { return err == 0 && dumps < 0 ? -EXH_E_IO : err; }
 
 /* A mass that is let fall again and again. */
 static int run_mass(const struct live_options *o, const struct exh_scene *sc)
 {
     const struct table2_row *g = table2_gains(o->rate_Hz);
     struct run_cfg c = {.scene = sc,
-                        .rate_Hz = (uint32_t)(o->rate_Hz + 0.5),
-                        .k_Npm = g->k_Npm,
-                        .b_Nspm = g->b_Nspm,
-                        .setting = o->setting,
-                        .settings = o->sets,
-                        .more = &hooks,
-                        .blackbox = o->blackbox,
-                        .live = o->live};
+        .rate_Hz = (uint32_t)(o->rate_Hz + 0.5),
+        .k_Npm = g->k_Npm,
+        .b_Nspm = g->b_Nspm,
+        .setting = o->setting,
+        .settings = o->sets,
+        .more = &hooks,
+        .blackbox = o->blackbox,
+        .live = o->live};
     struct run r;
     int err;
     c.board = posix_config_default();
@@ -134,7 +131,4 @@ int live_box(struct live_options *o, const struct exh_scene *sc)
     return sc == &exh_scene_bilateral ? run_hand(o) : run_mass(o, sc);
 }
 
-int live_box_clients(void)
-{
-    return clients.status;
-}
+int live_box_clients(void) { return clients.status; }

@@ -25,14 +25,14 @@
 
 static const struct exh_scene *scene_of(const struct live_options *o)
 {
-    static const struct exh_scene *const all[] = {&exh_scene_drop, &exh_scene_guarded,
-                                                  &exh_scene_bilateral};
+    static const struct exh_scene *const all[] = {
+        &exh_scene_drop, &exh_scene_guarded, &exh_scene_bilateral};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         if (strcmp(o->scene, all[i]->name) == 0) { return all[i]; }
     }
     if (cli_scene_more && strcmp(o->scene, cli_scene_more->name) == 0) { return cli_scene_more; }
     cli_complain("--scene: %s: give drop, guarded or bilateral%s", o->scene,
-                 cli_scene_more ? ", or custom" : "");
+        cli_scene_more ? ", or custom" : "");
     return NULL;
 }
 
@@ -87,7 +87,7 @@ static int read_params(struct live_options *o)
 {
     static unsigned char image[IMAGE_B];
     const long len = o->params ? outfile_read("load-params", o->params, "image that a run saved",
-                                              image, sizeof image)
+                                     image, sizeof image)
                                : 0;
     if (len < 0) { return (int)-len; }
     o->live.image = o->params ? image : NULL;
@@ -110,7 +110,7 @@ static int prepare(struct live_options *o, const struct exh_scene *sc)
     int err = settle_all(o, sc);
     if (err == 0 && o->seconds * o->rate_Hz >= 4294967295.0) {
         cli_complain("--seconds: %.6g: at %.6g Hz %.0f at most, or leave it out", o->seconds,
-                     o->rate_Hz, 4294967294.0 / o->rate_Hz);
+            o->rate_Hz, 4294967294.0 / o->rate_Hz);
         err = 2;
     }
     if (err == 0 && o->modbus == NULL && (o->save || o->remote)) {
@@ -196,49 +196,46 @@ int cli_run(int argc, char **argv)
     struct cli_call gpio = {contacts_take, &o.gpio};
     const struct cli_option option[] = {
         {"scene", CLI_TEXT, &o.scene, 0, 0, "NAME",
-         "drop, guarded or bilateral (drop); custom where the program has one"},
+            "drop, guarded or bilateral (drop); custom where the program has one"},
         {"rate", CLI_REAL, &o.rate_Hz, 1, 20000, "HZ", "of the loop (2000)"},
         {"pace", CLI_FLAG, &o.pace, 0, 0, NULL,
-         "follow the wall clock, by which ticks may be missed; else as fast as it goes"},
+            "follow the wall clock, by which ticks may be missed; else as fast as it goes"},
         {"slack", CLI_REAL, &o.slack_s, 0, 1, "S",
-         "with --pace: a tick so late is made up for, else it is missed (0)"},
+            "with --pace: a tick so late is made up for, else it is missed (0)"},
         {"seconds", CLI_REAL, &o.seconds, 0, 1e9, "S", "the box's time, then it ends (never)"},
         {"fingers", CLI_CALL, &fingers, 0, 0, "F[,F...]",
-         "of bilateral: thumb, index, ... or all (index)"},
+            "of bilateral: thumb, index, ... or all (index)"},
         {"speed", CLI_CALL, &speed, 0, 0, "V",
-         "of bilateral: slow, natural, fast or m/s (natural)"},
+            "of bilateral: slow, natural, fast or m/s (natural)"},
         {"set", CLI_CALL, &set, 0, 0, "NAME=VALUE", "a parameter of the scene"},
         {"load-params", CLI_TEXT, &o.params, 0, 0, "FILE",
-         "an image of parameters, restored before --set"},
+            "an image of parameters, restored before --set"},
         {"grip", CLI_FLAG, &o.grip, 0, 0, NULL,
-         "the dead-man is gripped anew after a stop or fault"},
+            "the dead-man is gripped anew after a stop or fault"},
         {"let-go", CLI_REAL, &o.let_go_s, 0, 1e9, "S",
-         "it is let go then: a fault; without --grip for good (never)"},
+            "it is let go then: a fault; without --grip for good (never)"},
         {"modbus", CLI_TEXT, &o.modbus, 0, 0, "WHERE",
-         "serve the registers at tcp:ADDRESS:PORT or rtu:DEVICE:BAUD"},
+            "serve the registers at tcp:ADDRESS:PORT or rtu:DEVICE:BAUD"},
         {"save", CLI_TEXT, &o.save, 0, 0, "FILE",
-         "clients may save the parameters there, for --load-params"},
+            "clients may save the parameters there, for --load-params"},
         {"remote", CLI_FLAG, &o.remote, 0, 0, NULL,
-         "clients may command RUN and CLEAR; the dead-man holds all the same"},
+            "clients may command RUN and CLEAR; the dead-man holds all the same"},
         {"glove-serial", CLI_TEXT, &o.glove, 0, 0, "DEVICE",
-         "of bilateral: a stock glove there instead of the simulated one; fingers stay simulated"},
+            "of bilateral: a stock glove there instead of the simulated one; fingers stay "
+            "simulated"},
         {"glove-calibration", CLI_TEXT, &o.glove_image, 0, 0, "FILE",
-         "its user's, of `exhand calibrate --glove` (nobody's)"},
+            "its user's, of `exhand calibrate --glove` (nobody's)"},
         {"gpio", CLI_CALL, &gpio, 0, 0, CONTACTS_ARG, CONTACTS_HELP},
         {"log", CLI_TEXT, &o.log, 0, 0, "FILE", "for `exhand replay` and `exhand csv`"},
         {"blackbox", CLI_TEXT, &o.blackbox, 0, 0, "FILE", "the last seconds before a fault, a log"},
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
         {"params", CLI_FLAG, &o.list, 0, 0, NULL, "list the scene's parameters"},
     };
-    const struct cli_command c = {
-        "run",
-        "[options]",
+    const struct cli_command c = {"run", "[options]",
         "A box that goes on, on the simulated device: a mass falls, or fingers approach a wall, "
         "again and\n"
         "again, until --seconds or Ctrl-C (outputs safe, log complete, exit status 130).",
-        option,
-        (int)(sizeof option / sizeof option[0]),
-        0};
+        option, (int)(sizeof option / sizeof option[0]), 0};
     int err;
     defaults(&o);
     err = cli_parse(&c, argc, argv, NULL);

@@ -52,10 +52,7 @@ int live_log_open(const char *path, int paced, int ends)
     return open_file();
 }
 
-FILE *live_log_file(void)
-{
-    return file.file;
-}
+FILE *live_log_file(void) { return file.file; }
 
 /* Nothing ticks any more. */
 static int is_last(const void *rec, size_t len_B)
@@ -77,10 +74,7 @@ int live_log_put(const void *rec, size_t len_B)
     return taken == 1;
 }
 
-uint64_t live_log_lost(void)
-{
-    return file.lost;
-}
+uint64_t live_log_lost(void) { return file.lost; }
 
 int live_log_close(void)
 {
@@ -90,10 +84,10 @@ int live_log_close(void)
     if (err >= 0 && fclose(file.file) != 0 && err == 0) { err = errno; }
     if (err > 0) {
         cli_complain("%s: can't be written: %s: %llu records lost", file.path, strerror(err),
-                     (unsigned long long)file.lost);
+            (unsigned long long)file.lost);
     } else if (err < 0) {
         cli_complain("%s: takes nothing for %.0f s: its end, and %llu records before, are lost",
-                     file.path, WAITS_S, (unsigned long long)file.lost);
+            file.path, WAITS_S, (unsigned long long)file.lost);
     } else if (file.lost) {
         cli_complain(
             "%s: was written too slowly: %llu records lost: name a faster disk, or a lower rate",

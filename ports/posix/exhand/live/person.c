@@ -56,7 +56,4 @@ void live_person_start(const struct exh_scene *sc, struct exh_scene_board board)
     exh_deadman_start(sc, board);
 }
 
-void live_person_before(uint32_t tick, struct exh_scene_in *in)
-{
-    exh_deadman_before(tick, in);
-}
+void live_person_before(uint32_t tick, struct exh_scene_in *in) { exh_deadman_before(tick, in); }

@@ -42,9 +42,8 @@ enum column {
 #define FIXED     (ADDRESSED | 1u << FORMAT)
 #define ALL       ((1u << COLUMNS) - 1u)
 
-static const char *const title[COLUMNS] = {"table",     "address", "reference", "float",
-                                           "float ref", "name",    "unit",      "format",
-                                           "min",       "max",     "default",   "when"};
+static const char *const title[COLUMNS] = {"table", "address", "reference", "float", "float ref",
+    "name", "unit", "format", "min", "max", "default", "when"};
 static const int width[COLUMNS] = {8, 7, 9, 6, 9, 20, 10, 9, 14, 14, 14, 8};
 
 static void put_quoted(const char *s)
@@ -115,8 +114,8 @@ static struct line line_at(unsigned kind, uint32_t at, const char *help)
 
 /* --- what every scene has --- */
 
-static void fixed_row(enum style style, unsigned columns, unsigned kind, uint32_t at,
-                      const struct exh_regs_row *row)
+static void fixed_row(
+    enum style style, unsigned columns, unsigned kind, uint32_t at, const struct exh_regs_row *row)
 {
     struct line l = line_at(kind, at, row->help);
     snprintf(l.cell[NAME], CELL_B, "%s", row->name);
@@ -159,12 +158,12 @@ static void put_fixed(enum style style, unsigned columns)
         fixed_row(style, columns, EXH_REGS_INPUT, EXH_REGS_HEAD_AT + 2 * i, &exh_regs_head_row[i]);
     }
     for (unsigned i = 0; i < EXH_TRACE_HEADS; i++) {
-        fixed_row(style, columns, EXH_REGS_INPUT, EXH_REGS_TRACE_AT + 2 * i,
-                  &exh_regs_trace_row[i]);
+        fixed_row(
+            style, columns, EXH_REGS_INPUT, EXH_REGS_TRACE_AT + 2 * i, &exh_regs_trace_row[i]);
     }
     for (unsigned i = 0; i < EXH_REGS_TRACE_SET; i++) {
         fixed_row(style, columns, EXH_REGS_HOLDING, EXH_REGS_TRACE_AT + 2 * i,
-                  &exh_regs_trace_row[EXH_TRACE_HEAD_EVERY + i]);
+            &exh_regs_trace_row[EXH_TRACE_HEAD_EVERY + i]);
     }
 }
 
@@ -181,8 +180,8 @@ static void put_blocks(enum style style)
 
 /* --- what the scene has --- */
 
-static void name_cells(struct line *l, const struct exh_signal *row, unsigned instance, unsigned of,
-                       int is_float)
+static void name_cells(
+    struct line *l, const struct exh_signal *row, unsigned instance, unsigned of, int is_float)
 {
     static const char *const when[] = {"output", "set-up", "any time", "slewed", "limit"};
     if (of > 1) {
@@ -218,15 +217,15 @@ struct values {
 
 static struct values outputs_of(const struct exh_scene *sc)
 {
-    return (struct values){EXH_REGS_INPUT, sc->signals, NULL, EXH_REGS_SIGNAL_AT,
-                           EXH_REGS_SIGNAL_FLOAT_AT};
+    return (struct values){
+        EXH_REGS_INPUT, sc->signals, NULL, EXH_REGS_SIGNAL_AT, EXH_REGS_SIGNAL_FLOAT_AT};
 }
 
 static struct values params_of(const struct exh_scene *sc, unsigned kind)
 {
     const struct exh_params *p = sc->params;
     return (struct values){kind, p ? p->table : NULL, p ? p->staged : NULL, EXH_REGS_PARAM_AT,
-                           EXH_REGS_PARAM_FLOAT_AT};
+        EXH_REGS_PARAM_FLOAT_AT};
 }
 
 enum which { RAW, FLOAT, BOTH };
@@ -308,19 +307,15 @@ int cli_regs(int argc, char **argv)
         {"markdown", CLI_FLAG, &markdown, 0, 0, NULL, "as tables of a document"},
         {"csv", CLI_FLAG, &csv, 0, 0, NULL, "one row for each value of each block, for programs"},
         {"fixed", CLI_FLAG, &fixed, 0, 0, NULL,
-         "only what every scene has: blocks, head, bits, coils"},
+            "only what every scene has: blocks, head, bits, coils"},
     };
-    const struct cli_command c = {
-        "regs",
-        "[options]",
+    const struct cli_command c = {"regs", "[options]",
         "Prints the Modbus registers of a scene: protocol addresses from 0 and references from 1. "
         "A\n"
         "value is 32 bits in two registers, high word first. Raw times 2^-fraction is in the "
         "unit;\n"
         "the float is the same as binary32. docs/MODBUS.md says how to read and write them.",
-        option,
-        sizeof option / sizeof option[0],
-        0};
+        option, sizeof option / sizeof option[0], 0};
     const int err = cli_parse(&c, argc, argv, NULL);
     const struct exh_scene *sc;
     if (err) { return err == 1 ? 0 : err; }

@@ -87,8 +87,8 @@ static void show(void)
     names_faults(faults, sizeof faults, status.sc->safety->faults);
     odd(more);
     snprintf(line, sizeof line, "%10.1f s  %-7s  q %7.2f mm  f %7.2f N  faults %s%s", seconds(),
-             names_word(&names_state, status.sc->safety->state), value("q") * 1e3, value("f_des"),
-             faults, more);
+        names_word(&names_state, status.sc->safety->state), value("q") * 1e3, value("f_des"),
+        faults, more);
     words_show(line);
 }
 

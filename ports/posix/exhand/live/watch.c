@@ -79,8 +79,8 @@ static int csv_sample(const struct watch_box *b, int first)
         fputc('\n', w.file);
     }
     fprintf(w.file, "%.9f,%lu,%u,%lu,%lu,%lu", (double)b->tick * b->T.num / b->T.den,
-            (unsigned long)b->tick, (unsigned)b->state, (unsigned long)b->faults,
-            (unsigned long)b->present, (unsigned long)b->limits);
+        (unsigned long)b->tick, (unsigned)b->state, (unsigned long)b->faults,
+        (unsigned long)b->present, (unsigned long)b->limits);
     for (uint32_t i = 0; i < w.pick.n; i++) {
         const struct exh_signal *row = exh_signal_at(b->scene->signals, w.pick.index[i], NULL);
         fprintf(w.file, ",%.9g", cli_signal_value(row, b->value[w.pick.index[i]]));
@@ -127,7 +127,7 @@ static void show(void)
         watch_view_draw(&w.box, &w.pick, w.modbus ? w.modbus : w.listen);
     } else if (silent) {
         printf("silent for %.1f s%s%s\n", watch_age_s(&w.box), w.box.trouble ? ": " : "",
-               w.box.trouble ? w.box.trouble : "");
+            w.box.trouble ? w.box.trouble : "");
         fflush(stdout);
     }
     w.shown_s = now_s;
@@ -173,12 +173,12 @@ static int finish(int err)
     if (err) { return err; }
     if (!w.taken) {
         cli_complain("%s: nothing was heard%s%s", w.modbus ? w.modbus : w.listen,
-                     w.box.trouble ? ": " : "", w.box.trouble ? w.box.trouble : "");
+            w.box.trouble ? ": " : "", w.box.trouble ? w.box.trouble : "");
         return posix_interrupted() ? 130 : 1;
     }
     if (w.box.breaks) {
         cli_complain("the link was lost %lu times: nothing is known of what was between",
-                     (unsigned long)w.box.breaks);
+            (unsigned long)w.box.breaks);
     }
     if (w.box.mixed) {
         cli_complain(
@@ -187,7 +187,7 @@ static int finish(int err)
     }
     if (w.box.lost) {
         cli_complain("%llu %s were lost on the way", (unsigned long long)w.box.lost,
-                     w.trace ? "frames" : "ticks");
+            w.trace ? "frames" : "ticks");
     }
     if (!w.box.ended && !posix_interrupted() && watch_age_s(&w.box) > 1) {
         cli_complain("silent for %.1f s at the end", watch_age_s(&w.box));
@@ -229,29 +229,26 @@ int cli_watch(int argc, char **argv)
 {
     const struct cli_option option[] = {
         {"modbus", CLI_TEXT, &w.modbus, 0, 0, "WHERE",
-         "a box that serves its registers: tcp:ADDRESS:PORT or rtu:DEVICE:BAUD"},
+            "a box that serves its registers: tcp:ADDRESS:PORT or rtu:DEVICE:BAUD"},
         {"listen", CLI_TEXT, &w.listen, 0, 0, "ADDRESS:PORT",
-         "a box that sends its log there (pc104: log=udp)"},
+            "a box that sends its log there (pc104: log=udp)"},
         {"trace", CLI_INT, &w.trace, 0, 1e6, "N",
-         "of Modbus: every N-th tick, four signals, what is lost is told"},
+            "of Modbus: every N-th tick, four signals, what is lost is told"},
         {"signals", CLI_TEXT, &w.names, 0, 0, "A[,B[I]...]",
-         "which, of one finger with its number (the paper's)"},
+            "which, of one finger with its number (the paper's)"},
         {"finger", CLI_TEXT, &w.finger, 0, 0, "F", "whose, without a number (index)"},
         {"hz", CLI_REAL, &w.hz, 0.1, 1000, "HZ", "samples a second, of a trace looks (10, 50)"},
         {"seconds", CLI_REAL, &w.seconds, 0, 1e9, "S", "then it ends (never)"},
         {"csv", CLI_TEXT, &w.csv, 0, 0, "FILE", "every sample"},
         {"plot", CLI_TEXT, &w.plot, 0, 0, "FILE.png",
-         "the last seconds, drawn at the end by gnuplot"},
+            "the last seconds, drawn at the end by gnuplot"},
         {"last", CLI_REAL, &w.last_s, 0.1, 3600, "S", "of --plot (10)"},
     };
-    const struct cli_command c = {"watch",
-                                  "--modbus WHERE | --listen ADDRESS:PORT [options]",
-                                  "Live values, state, faults and limits of a running box, until "
-                                  "Ctrl-C: in place on a terminal,\n"
-                                  "else a line a sample. It only reads.",
-                                  option,
-                                  (int)(sizeof option / sizeof option[0]),
-                                  0};
+    const struct cli_command c = {"watch", "--modbus WHERE | --listen ADDRESS:PORT [options]",
+        "Live values, state, faults and limits of a running box, until "
+        "Ctrl-C: in place on a terminal,\n"
+        "else a line a sample. It only reads.",
+        option, (int)(sizeof option / sizeof option[0]), 0};
     int err;
     memset(&w, 0, sizeof w);
     w.finger = "index";

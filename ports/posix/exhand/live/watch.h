@@ -62,11 +62,11 @@ struct watch_pick {
 
 /* From "a,b[2],c", or NULL: the paper's. A name of each finger, without [i], is of this one. 0, or
  * 2 after a line on stderr. */
-int watch_pick(struct watch_pick *p, const struct exh_signal_table *t, const char *names,
-               unsigned finger);
+int watch_pick(
+    struct watch_pick *p, const struct exh_signal_table *t, const char *names, unsigned finger);
 /* "q" or "q[1]"; the row. */
-const struct exh_signal *watch_name(char to[WATCH_NAME_B], const struct exh_signal_table *t,
-                                    uint32_t i);
+const struct exh_signal *watch_name(
+    char to[WATCH_NAME_B], const struct exh_signal_table *t, uint32_t i);
 
 /* --- showing --- */
 

@@ -35,7 +35,7 @@ static int bad(const char *where)
 {
     cli_complain("--modbus: %s: give tcp:ADDRESS:PORT (as tcp:127.0.0.1:1502) or rtu:DEVICE:BAUD "
                  "(as rtu:/dev/ttyUSB0:115200; 300..4000000)",
-                 where);
+        where);
     return 2;
 }
 
@@ -71,7 +71,7 @@ int watch_modbus_open(const char *where)
     (void)modbus_set_response_timeout(client.ctx, 0, REPLY_US);
     if (link_up()) { return 0; }
     cli_complain("--modbus: %s: %s: is the box there, and does it serve (exhand run --modbus)?",
-                 where, modbus_strerror(errno));
+        where, modbus_strerror(errno));
     return 3;
 }
 
@@ -115,8 +115,8 @@ static int know(struct watch_box *b, const uint16_t *word)
     b->T.den = value_of(word, EXH_HEAD_PERIOD_DEN);
     if (b->T.num == 0 || b->T.den == 0) { return 0; } /* not yet set up */
     client.known = 1;
-    return watch_scene(b, name, value_of(word, EXH_HEAD_SIGNALS_CRC),
-                       value_of(word, EXH_HEAD_SIGNALS));
+    return watch_scene(
+        b, name, value_of(word, EXH_HEAD_SIGNALS_CRC), value_of(word, EXH_HEAD_SIGNALS));
 }
 
 #define TRIES 4 /* to read all of one tick */
@@ -130,7 +130,7 @@ static int read_values(struct watch_box *b)
         const uint32_t n = end - from < AT_ONCE ? end - from : AT_ONCE;
         uint16_t word[2 * AT_ONCE];
         if (modbus_read_input_registers(client.ctx, (int)(EXH_REGS_SIGNAL_AT + 2 * from),
-                                        (int)(2 * n), word) != (int)(2 * n)) {
+                (int)(2 * n), word) != (int)(2 * n)) {
             return 0;
         }
         for (uint32_t i = 0; i < n; i++) { b->value[from + i] = (int32_t)value_of(word, i); }
@@ -147,7 +147,7 @@ static int read_values(struct watch_box *b)
 static int read_trace(uint16_t word[2 * EXH_TRACE_HEADS])
 {
     return modbus_read_input_registers(client.ctx, (int)EXH_REGS_TRACE_AT, 2 * EXH_TRACE_HEADS,
-                                       word) == 2 * EXH_TRACE_HEADS;
+               word) == 2 * EXH_TRACE_HEADS;
 }
 
 static int start_trace(struct watch_box *b)
@@ -214,7 +214,7 @@ static int look_at_trace(struct watch_box *b, watch_fresh fresh)
                        fit = frames - slot < left ? frames - slot : left;
         const uint32_t n = fit < FRAMES_AT_ONCE ? fit : FRAMES_AT_ONCE;
         if (modbus_read_input_registers(client.ctx, (int)(EXH_REGS_FRAMES_AT + FRAME_WORDS * slot),
-                                        (int)(FRAME_WORDS * n), word) != (int)(FRAME_WORDS * n)) {
+                (int)(FRAME_WORDS * n), word) != (int)(FRAME_WORDS * n)) {
             return lose(b);
         }
         for (uint32_t i = 0; err == 0 && i < n; i++) {
@@ -231,13 +231,12 @@ static int read_one_tick(struct watch_box *b, uint16_t *word)
 {
     uint16_t behind[2];
     for (int i = 0; i < TRIES; i++) {
-        if (i > 0 && modbus_read_input_registers(client.ctx, (int)EXH_REGS_HEAD_AT, 2 * EXH_HEADS,
-                                                 word) != 2 * EXH_HEADS) {
+        if (i > 0 && modbus_read_input_registers(
+                         client.ctx, (int)EXH_REGS_HEAD_AT, 2 * EXH_HEADS, word) != 2 * EXH_HEADS) {
             return 0;
         }
-        if (!read_values(b) ||
-            modbus_read_input_registers(client.ctx, (int)EXH_REGS_HEAD_AT + 2 * EXH_HEAD_TICK, 2,
-                                        behind) != 2) {
+        if (!read_values(b) || modbus_read_input_registers(client.ctx,
+                                   (int)EXH_REGS_HEAD_AT + 2 * EXH_HEAD_TICK, 2, behind) != 2) {
             return 0;
         }
         if (value_of(behind, 0) == value_of(word, EXH_HEAD_TICK)) { return 1; }

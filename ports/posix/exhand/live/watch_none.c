@@ -8,7 +8,7 @@ int watch_modbus_open(const char *where)
 {
     cli_complain("--modbus: %s: this program was built without libmodbus: install libmodbus-dev "
                  "and build it again",
-                 where);
+        where);
     return 3;
 }
 
@@ -19,6 +19,4 @@ int watch_modbus_look(struct watch_box *b, watch_fresh fresh)
     return 3;
 }
 
-void watch_modbus_close(void)
-{
-}
+void watch_modbus_close(void) {}

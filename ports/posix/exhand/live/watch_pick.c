@@ -63,8 +63,8 @@ static int add(struct watch_pick *p, int32_t i, const char *name, const struct e
 }
 
 /* "q" or "q[1]". */
-static int add_named(struct watch_pick *p, const struct exh_signal_table *t, char *name,
-                     unsigned finger)
+static int add_named(
+    struct watch_pick *p, const struct exh_signal_table *t, char *name, unsigned finger)
 {
     char *bracket = strchr(name, '['), *end = NULL;
     const struct exh_signal *row;
@@ -82,8 +82,8 @@ static int add_named(struct watch_pick *p, const struct exh_signal_table *t, cha
     return add(p, exh_signal_find(t, row->id, (uint16_t)k), name, t);
 }
 
-int watch_pick(struct watch_pick *p, const struct exh_signal_table *t, const char *names,
-               unsigned finger)
+int watch_pick(
+    struct watch_pick *p, const struct exh_signal_table *t, const char *names, unsigned finger)
 {
     const struct exh_signal_group *paper = &t->group[0];
     int err = 0;
@@ -95,16 +95,16 @@ int watch_pick(struct watch_pick *p, const struct exh_signal_table *t, const cha
     while (names && *names && err == 0) {
         const size_t len = strcspn(names, ",");
         char name[WATCH_NAME_B];
-        snprintf(name, sizeof name, "%.*s", (int)(len < sizeof name ? len : sizeof name - 1),
-                 names);
+        snprintf(
+            name, sizeof name, "%.*s", (int)(len < sizeof name ? len : sizeof name - 1), names);
         err = add_named(p, t, name, finger);
         names += len + (names[len] == ',');
     }
     return err;
 }
 
-const struct exh_signal *watch_name(char to[WATCH_NAME_B], const struct exh_signal_table *t,
-                                    uint32_t i)
+const struct exh_signal *watch_name(
+    char to[WATCH_NAME_B], const struct exh_signal_table *t, uint32_t i)
 {
     uint16_t k = 0;
     const struct exh_signal *row = exh_signal_at(t, i, &k);

@@ -69,8 +69,8 @@ int watch_plot_sample(const struct watch_box *b, const struct watch_pick *p)
     *to++ = now_s;
     *to++ = b->state;
     for (uint32_t i = 0; i < p->n; i++) {
-        *to++ = cli_signal_value(exh_signal_at(b->scene->signals, p->index[i], NULL),
-                                 b->value[p->index[i]]);
+        *to++ = cli_signal_value(
+            exh_signal_at(b->scene->signals, p->index[i], NULL), b->value[p->index[i]]);
     }
     return 0;
 }
@@ -101,10 +101,7 @@ static void put_name(FILE *g)
  * pixels. */
 enum { TITLE_PX = 50, PANEL_PX = 170, GAP_PX = 20, STRIP_PX = 75, AXIS_PX = 75 };
 
-static unsigned height_px(unsigned n)
-{
-    return TITLE_PX + PANEL_PX * n + STRIP_PX + AXIS_PX;
-}
+static unsigned height_px(unsigned n) { return TITLE_PX + PANEL_PX * n + STRIP_PX + AXIS_PX; }
 
 /* Top and bottom of panel i of n, or of the strip below them, on the screen. */
 static void put_place(FILE *g, unsigned i, unsigned n)
@@ -116,16 +113,16 @@ static void put_place(FILE *g, unsigned i, unsigned n)
 
 static void put_panels(FILE *g, const struct watch_box *b, const struct watch_pick *p, unsigned n)
 {
-    static const char *const color[] = {"#1f5fbf", "#d62728", "#1a8f2e", "#e08a1e",
-                                        "#5a3d9a", "#0f8b8d", "#a0522d", "#444444"};
+    static const char *const color[] = {
+        "#1f5fbf", "#d62728", "#1a8f2e", "#e08a1e", "#5a3d9a", "#0f8b8d", "#a0522d", "#444444"};
     for (unsigned i = 0; i < n; i++) {
         char name[WATCH_NAME_B];
         const struct exh_signal *row = watch_name(name, b->scene->signals, p->index[i]);
         put_place(g, i, n);
         fprintf(g,
-                "set ylabel \"%s%s%s\" noenhanced\nplot $d using 1:%u with steps lc rgb '%s' lw "
-                "1.4 notitle\n",
-                name, row->unit[0] ? "\\n" : "", row->unit, i + 3, color[i % PANELS]);
+            "set ylabel \"%s%s%s\" noenhanced\nplot $d using 1:%u with steps lc rgb '%s' lw "
+            "1.4 notitle\n",
+            name, row->unit[0] ? "\\n" : "", row->unit, i + 3, color[i % PANELS]);
         if (i == 0) { fprintf(g, "unset label 1\n"); }
     }
     put_place(g, n, n);
@@ -141,19 +138,19 @@ static int put_script(FILE *g, const struct watch_box *b, const struct watch_pic
     const double first_s = plot.row[0] > end_s - plot.last_s ? plot.row[0] : end_s - plot.last_s;
     put_data(g);
     fprintf(g,
-            "set terminal pngcairo size 1400,%u font 'DejaVu Sans,15' linewidth 1.4 background "
-            "'#ffffff'\n",
-            height_px(n));
+        "set terminal pngcairo size 1400,%u font 'DejaVu Sans,15' linewidth 1.4 background "
+        "'#ffffff'\n",
+        height_px(n));
     put_name(g);
     fprintf(g,
-            "set border 3 lc rgb '#333333' lw 0.8\nset tics nomirror out scale 0.5 font ',12' "
-            "textcolor rgb '#333333'\n"
-            "set grid lc rgb '#dddddd' lw 0.6 lt 1\nset lmargin at screen 0.1; set rmargin at "
-            "screen 0.985\n"
-            "set xrange [%.9g:%.9g]\nset format x ''\nset ytics autofreq\nset multiplot\n"
-            "set label 1 '%s, %.6g Hz' at screen 0.5, 0.965 center noenhanced\n",
-            first_s, end_s > first_s ? end_s : first_s + 1, b->scene->name,
-            (double)b->T.den / b->T.num);
+        "set border 3 lc rgb '#333333' lw 0.8\nset tics nomirror out scale 0.5 font ',12' "
+        "textcolor rgb '#333333'\n"
+        "set grid lc rgb '#dddddd' lw 0.6 lt 1\nset lmargin at screen 0.1; set rmargin at "
+        "screen 0.985\n"
+        "set xrange [%.9g:%.9g]\nset format x ''\nset ytics autofreq\nset multiplot\n"
+        "set label 1 '%s, %.6g Hz' at screen 0.5, 0.965 center noenhanced\n",
+        first_s, end_s > first_s ? end_s : first_s + 1, b->scene->name,
+        (double)b->T.den / b->T.num);
     put_panels(g, b, p, n);
     fprintf(g, "unset multiplot\nunset output\n");
     return ferror(g);

@@ -36,10 +36,7 @@ int watch_stream_open(const char *at)
     return 2;
 }
 
-void watch_stream_close(void)
-{
-    udp_close(&in.udp);
-}
+void watch_stream_close(void) { udp_close(&in.udp); }
 
 /* --- records --- */
 

@@ -76,18 +76,18 @@ static void draw_head(const struct watch_box *b, const char *source)
     printf("exhand watch %s%s", source, LINE_END);
     if (b->scene == NULL) {
         printf("nothing heard for %.1f s%s%s%s", age_s, b->trouble ? ": " : "",
-               b->trouble ? b->trouble : "", LINE_END);
+            b->trouble ? b->trouble : "", LINE_END);
         return;
     }
     printf("%s, %.6g Hz   %.3f s   tick %lu   %.1f ticks/s%s", b->scene->name,
-           (double)b->T.den / b->T.num, (double)b->tick * b->T.num / b->T.den,
-           (unsigned long)b->tick, view.ticks_ps, LINE_END);
+        (double)b->T.den / b->T.num, (double)b->tick * b->T.num / b->T.den, (unsigned long)b->tick,
+        view.ticks_ps, LINE_END);
     if (age_s > 1) {
         printf("\033[7mSILENT for %.1f s\033[0m%s%s%s", age_s, b->trouble ? ": " : "",
-               b->trouble ? b->trouble : "", LINE_END);
+            b->trouble ? b->trouble : "", LINE_END);
     } else {
         printf("age %.2f s   heard %.1f times/s   lost %llu%s", age_s, view.heard_ps,
-               (unsigned long long)b->lost, LINE_END);
+            (unsigned long long)b->lost, LINE_END);
     }
 }
 
@@ -98,9 +98,9 @@ static void draw_state(const struct watch_box *b)
     names_faults(present, sizeof present, b->present);
     names_bits(limits, sizeof limits, &names_limit, b->limits);
     printf("state   %s: %s%s", names_word(&names_state, b->state),
-           names_says(&names_state, b->state), LINE_END);
+        names_says(&names_state, b->state), LINE_END);
     printf("faults  %s%s   now %s%s", b->faults ? "\033[7m" : "", faults,
-           b->faults ? "\033[0m" : "", present);
+        b->faults ? "\033[0m" : "", present);
     printf("%slimits  %s%s", LINE_END, limits, LINE_END);
 }
 
@@ -115,8 +115,8 @@ void watch_view_draw(const struct watch_box *b, const struct watch_pick *p, cons
     for (uint32_t i = 0; b->scene && view.n && i < p->n; i++) {
         char name[WATCH_NAME_B];
         const struct exh_signal *row = watch_name(name, b->scene->signals, p->index[i]);
-        printf("  %-14s %14.6g %-10s ", name, cli_signal_value(row, b->value[p->index[i]]),
-               row->unit);
+        printf(
+            "  %-14s %14.6g %-10s ", name, cli_signal_value(row, b->value[p->index[i]]), row->unit);
         if (sparks) { spark(i); }
         printf(LINE_END);
     }
@@ -129,14 +129,14 @@ void watch_view_line(const struct watch_box *b, const struct watch_pick *p)
     char text[NAMES_B];
     names_faults(text, sizeof text, b->faults);
     printf("%.4f s  %s  faults %s", (double)b->tick * b->T.num / b->T.den,
-           names_word(&names_state, b->state), text);
+        names_word(&names_state, b->state), text);
     names_bits(text, sizeof text, &names_limit, b->limits);
     printf("  limits %s", text);
     for (uint32_t i = 0; i < p->n; i++) {
         char name[WATCH_NAME_B];
         const struct exh_signal *row = watch_name(name, b->scene->signals, p->index[i]);
         printf("  %s %.6g%s%s", name, cli_signal_value(row, b->value[p->index[i]]),
-               row->unit[0] ? " " : "", row->unit);
+            row->unit[0] ? " " : "", row->unit);
     }
     printf("\n");
     fflush(stdout);

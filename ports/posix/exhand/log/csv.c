@@ -12,7 +12,7 @@ int cli_csv(int argc, char **argv)
         {"out", CLI_TEXT, &out, 0, 0, "FILE", "write there instead of standard output"},
         {"all", CLI_FLAG, &all, 0, 0, NULL, "limits, state and faults too; of a glove, its codes"},
         {"falls", CLI_FLAG, &falls, 0, 0, NULL,
-         "falls under observation alone, a gap in t_s between two: what Table II is made of"},
+            "falls under observation alone, a gap in t_s between two: what Table II is made of"},
     };
     const struct cli_command c = {
         "csv", "LOG [options]", "A log as comma-separated values.", option, 3, 1};

@@ -120,13 +120,13 @@ static int report(const struct listen *l)
     if (!l->begun) {
         cli_complain("--at: %s: nothing of a log came%s: is it the box's log_port=, and this "
                      "machine its peer=?",
-                     l->at, posix_interrupted() ? "" : " in time");
+            l->at, posix_interrupted() ? "" : " in time");
         return 1;
     }
     printf("%s: %" PRIu64 " bytes in %" PRIu64 " pieces; missing %" PRIu64 ", late %" PRIu64
            ", twice %" PRIu64 ", not the log's %" PRIu64 "; %s\n",
-           l->out, l->bytes, l->pieces, l->missing, l->late, l->twice, l->other,
-           l->ended ? "its end came" : "its end did not come");
+        l->out, l->bytes, l->pieces, l->missing, l->late, l->twice, l->other,
+        l->ended ? "its end came" : "its end did not come");
     return l->ended && l->missing == 0 ? 0 : 1;
 }
 
@@ -137,18 +137,14 @@ int cli_listen(int argc, char **argv)
         {"at", CLI_TEXT, &l.at, 0, 0, "ADDRESS:PORT", "where the box sends its log (0.0.0.0:4748)"},
         {"out", CLI_TEXT, &l.out, 0, 0, "FILE", "the log, for `exhand replay` and `exhand csv`"},
         {"silence", CLI_REAL, &l.silence_s, 0.1, 1e6, "S",
-         "once it began, so much of it is its end (5)"},
+            "once it began, so much of it is its end (5)"},
         {"wait", CLI_REAL, &l.wait_s, 0, 1e6, "S",
-         "nothing for so long before it begins ends it, status 1 (0: waits for ever)"},
+            "nothing for so long before it begins ends it, status 1 (0: waits for ever)"},
     };
-    const struct cli_command c = {
-        "listen",
-        "--out FILE [options]",
+    const struct cli_command c = {"listen", "--out FILE [options]",
         "The log of a box that sends it over UDP (pc104: log=udp), until its end or Ctrl-C.\n"
         "What is lost on the way is lost: it is told, and the readers skip it.",
-        option,
-        (int)(sizeof option / sizeof option[0]),
-        0};
+        option, (int)(sizeof option / sizeof option[0]), 0};
     struct udp u;
     int err = cli_parse(&c, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }
@@ -166,7 +162,7 @@ int cli_listen(int argc, char **argv)
     } else {
         until_catch(UNTIL_COMES_BACK);
         cli_complain("waits at %s for a log to begin (the box: log=udp or dump=udp)%s", l.at,
-                     l.wait_s > 0 ? "" : "; Ctrl-C or --wait ends it");
+            l.wait_s > 0 ? "" : "; Ctrl-C or --wait ends it");
         l.heard_s = until_now_s();
         err = go(&l, &u);
         if (fclose(l.file) != 0 && err == 0) { err = complain(&l); }

@@ -50,7 +50,7 @@ static int start_scene(struct replay *p)
         if (err < 0) {
             const struct exh_signal *row = exh_signal_at(sc->params->table, bad, NULL);
             cli_complain("%s: parameter image: %s%s%s", p->log.path, exh_error_text(err),
-                         err == -EXH_E_RANGE ? ": " : "", err == -EXH_E_RANGE ? row->name : "");
+                err == -EXH_E_RANGE ? ": " : "", err == -EXH_E_RANGE ? row->name : "");
             return 2;
         }
         exh_params_apply(sc->params);
@@ -68,8 +68,8 @@ static int start_scene(struct replay *p)
 
 static int differs(const struct replay *p, const char *what, double recorded, double ours)
 {
-    printf("tick %" PRIu64 ": %s: recorded %.9g, replayed %.9g\n", p->log.tick, what, recorded,
-           ours);
+    printf(
+        "tick %" PRIu64 ": %s: recorded %.9g, replayed %.9g\n", p->log.tick, what, recorded, ours);
     return 1;
 }
 
@@ -88,8 +88,8 @@ static int compare(const struct replay *p, const struct exh_drive_out *rec)
     for (uint32_t i = 0; i < n; i++) {
         if (p->recorded[i] != p->ours[i]) {
             const struct exh_signal *r = exh_signal_at(t, i, NULL);
-            return differs(p, r->name, cli_signal_value(r, p->recorded[i]),
-                           cli_signal_value(r, p->ours[i]));
+            return differs(
+                p, r->name, cli_signal_value(r, p->recorded[i]), cli_signal_value(r, p->ours[i]));
         }
     }
     return 0;
@@ -118,13 +118,13 @@ static int on_frame(struct replay *p, const struct exh_record *r)
     if (p->ticks > 0 && p->log.tick < p->expect_tick) {
         printf("tick %" PRIu64
                ": a frame of it or of a later tick came before: the log is damaged\n",
-               p->log.tick);
+            p->log.tick);
         return 1;
     }
     if (p->ticks > 0 && p->log.tick > p->expect_tick) {
         printf("tick %" PRIu64 ": %" PRIu64 " frames are missing before it: start behind them with "
                "--from\n",
-               p->log.tick, p->log.tick - p->expect_tick);
+            p->log.tick, p->log.tick - p->expect_tick);
         return 1;
     }
     exh_log_frame_serialize(&c, sc, &p->in, &rec, p->recorded);
@@ -154,7 +154,7 @@ static int on_packet(struct replay *p, const struct exh_record *r)
     if (!p->running) { return 0; }
     if (in == NULL || in->packets == EXH_SCENE_PACKETS || r->len_B > EXH_SCENE_PACKET_B) {
         printf("tick %" PRIu64 ": a packet that the scene could not have got: the log is damaged\n",
-               p->log.tick);
+            p->log.tick);
         return 1;
     }
     in->len_B[in->packets] = r->len_B;
@@ -256,7 +256,7 @@ static int replay(struct replay *p)
     int err = start_scene(p);
     if (err == 0 && !find_start(p)) {
         cli_complain("%s: no keyframe at or before tick %" PRIu64 ": choose a later --from",
-                     p->log.path, p->from);
+            p->log.path, p->from);
         return 2;
     }
     while (err == 0 && logfile_next(&p->log, &r)) {
@@ -282,7 +282,7 @@ static int judge_fault(const struct replay *p)
     if (p->foretold && p->from == 0) {
         names_faults(what, sizeof what, p->foretold_cause);
         printf("tick %" PRIu64 ": the fault that the black box froze for, %s, did not come\n",
-               p->foretold_tick, what);
+            p->foretold_tick, what);
         return 1;
     }
     if (p->fault) {
@@ -304,17 +304,13 @@ int cli_replay(int argc, char **argv)
     int timeline = 0;
     const struct cli_option option[] = {
         {"from", CLI_INT, &from, 0, 1e15, "TICK",
-         "start at the last keyframe not after it (0: the beginning)"},
+            "start at the last keyframe not after it (0: the beginning)"},
         {"timeline", CLI_FLAG, &timeline, 0, 0, NULL, "first tell what happened in it, in words"},
     };
-    const struct cli_command c = {
-        "replay",
-        "LOG [--from TICK] [--timeline]",
+    const struct cli_command c = {"replay", "LOG [--from TICK] [--timeline]",
         "Runs the recorded inputs again and compares every output bit. A dump of a black box\n"
         "starts at its first keyframe, and must give its fault again in the same tick.",
-        option,
-        (int)(sizeof option / sizeof option[0]),
-        1};
+        option, (int)(sizeof option / sizeof option[0]), 1};
     struct replay p;
     const char *path = NULL;
     int err = cli_parse(&c, argc, argv, &path);
@@ -340,8 +336,8 @@ int cli_replay(int argc, char **argv)
         if (err == 0) {
             printf("%s: %lu ticks from tick %" PRIu64
                    " and %lu keyframes identical, digest %08lx\n",
-                   path, (unsigned long)p.ticks, p.first_tick, (unsigned long)p.keyframes,
-                   (unsigned long)p.digest);
+                path, (unsigned long)p.ticks, p.first_tick, (unsigned long)p.keyframes,
+                (unsigned long)p.digest);
         }
     }
     free(p.recorded);

@@ -62,16 +62,13 @@ static void find_signals(struct walk *w)
     }
 }
 
-static int32_t of(const int32_t *v, int32_t i)
-{
-    return i < 0 ? 0 : v[i];
-}
+static int32_t of(const int32_t *v, int32_t i) { return i < 0 ? 0 : v[i]; }
 
 static double newton(const struct walk *w, unsigned f)
 {
     if (w->force[f] < 0) { return 0; }
-    return cli_signal_value(exh_signal_at(w->log->scene->signals, (uint32_t)w->force[f], NULL),
-                            w->now[w->force[f]]);
+    return cli_signal_value(
+        exh_signal_at(w->log->scene->signals, (uint32_t)w->force[f], NULL), w->now[w->force[f]]);
 }
 
 /* "index: ", or nothing where there is one finger alone. */
@@ -90,8 +87,8 @@ static double ms(const struct walk *w, uint64_t ticks)
     return 1e3 * (double)ticks * w->log->header.T.num / w->log->header.T.den;
 }
 
-static void say_span(struct walk *w, const struct timeline_span *s, const char *who,
-                     const char *what, int still)
+static void say_span(
+    struct walk *w, const struct timeline_span *s, const char *who, const char *what, int still)
 {
     char often[40] = "";
     if (s->times > 1) { snprintf(often, sizeof often, ", %" PRIu32 " times", s->times); }
@@ -100,10 +97,9 @@ static void say_span(struct walk *w, const struct timeline_span *s, const char *
         return;
     }
     timeline_say(&w->notes, s->begin, "%s%s %s", who, what,
-                 s->begin == w->first ? "is there already" : "begins");
+        s->begin == w->first ? "is there already" : "begins");
     timeline_say(&w->notes, s->last + !still, "%s%s %s: %.1f ms%s, force at most %.2f N", who, what,
-                 still ? "goes on at the end" : "ends", ms(w, s->last + 1 - s->begin), often,
-                 s->peak);
+        still ? "goes on at the end" : "ends", ms(w, s->last + 1 - s->begin), often, s->peak);
 }
 
 static void spans(struct walk *w, unsigned f, uint64_t tick, int end)
@@ -111,24 +107,24 @@ static void spans(struct walk *w, unsigned f, uint64_t tick, int end)
     const uint64_t gap = end ? 0 : w->gap;
     const uint32_t acting = (uint32_t)of(w->now, w->limits[f]);
     struct timeline_span was;
-    if (timeline_span(&w->contact[f], !end && of(w->now, w->c[f]) != 0, tick, gap, newton(w, f),
-                      &was)) {
+    if (timeline_span(
+            &w->contact[f], !end && of(w->now, w->c[f]) != 0, tick, gap, newton(w, f), &was)) {
         say_span(w, &was, whose(w, f), "contact", end && was.last + 1 == tick);
     }
     for (unsigned i = 0; i < LIMITS; i++) {
         char what[80];
-        if (!timeline_span(&w->limit[f][i], !end && acting >> i & 1, tick, gap, newton(w, f),
-                           &was)) {
+        if (!timeline_span(
+                &w->limit[f][i], !end && acting >> i & 1, tick, gap, newton(w, f), &was)) {
             continue;
         }
         snprintf(what, sizeof what, "limit %s (%s)", names_word(&names_limit, i),
-                 names_says(&names_limit, i));
+            names_says(&names_limit, i));
         say_span(w, &was, whose(w, f), what, end && was.last + 1 == tick);
     }
 }
 
 static void count(struct walk *w, struct timeline_span *s, double n, uint64_t tick,
-                  const char *what, uint64_t gap)
+    const char *what, uint64_t gap)
 {
     struct timeline_span was;
     const double sum = s->open ? s->peak + n : n; /* the peak of a growing sum is the sum */
@@ -136,8 +132,8 @@ static void count(struct walk *w, struct timeline_span *s, double n, uint64_t ti
         if (was.begin == was.last) {
             timeline_say(&w->notes, was.begin, "%.0f %s", was.peak, what);
         } else {
-            timeline_say(&w->notes, was.begin, "%.0f %s, until tick %" PRIu64, was.peak, what,
-                         was.last);
+            timeline_say(
+                &w->notes, was.begin, "%.0f %s, until tick %" PRIu64, was.peak, what, was.last);
         }
         if (n > 0) { s->peak = n; }
     }
@@ -147,25 +143,19 @@ static void count(struct walk *w, struct timeline_span *s, double n, uint64_t ti
 
 static void said_inputs(struct walk *w, uint64_t tick)
 {
-    static const char *const good[][2] = {{"open", "closed"},
-                                          {"let go", "held"},
-                                          {"fired", "quiet"},
-                                          {"failed", "healthy"},
-                                          {"not ready", "ready"}};
+    static const char *const good[][2] = {{"open", "closed"}, {"let go", "held"},
+        {"fired", "quiet"}, {"failed", "healthy"}, {"not ready", "ready"}};
     const uint32_t changed = w->frames ? w->in.drive.din ^ w->din : 0;
     for (unsigned i = 0; i < names_din.n; i++) {
         if (changed >> i & 1 && names_din.says[i]) {
             timeline_say(&w->notes, tick, "%s: %s", names_din.says[i],
-                         good[i < 4 ? i : 4][w->in.drive.din >> i & 1]);
+                good[i < 4 ? i : 4][w->in.drive.din >> i & 1]);
         }
     }
     w->din = w->in.drive.din;
 }
 
-static int runs(int32_t state)
-{
-    return state == EXH_STATE_RUN || state == EXH_STATE_LIMIT;
-}
+static int runs(int32_t state) { return state == EXH_STATE_RUN || state == EXH_STATE_LIMIT; }
 
 /* RUN and LIMIT follow each other as limits act, and these are told. */
 static void said_state(struct walk *w, uint64_t tick)
@@ -175,9 +165,9 @@ static void said_state(struct walk *w, uint64_t tick)
     if (!w->frames) {
         timeline_say(&w->notes, tick, "state: %s", names_word(&names_state, (unsigned)to));
     } else if (from != to && !(runs(from) && runs(to))) {
-        timeline_say(
-            &w->notes, tick, "state: %s -> %s (%s)", names_word(&names_state, (unsigned)from),
-            names_word(&names_state, (unsigned)to), names_says(&names_state, (unsigned)to));
+        timeline_say(&w->notes, tick, "state: %s -> %s (%s)",
+            names_word(&names_state, (unsigned)from), names_word(&names_state, (unsigned)to),
+            names_says(&names_state, (unsigned)to));
     } else if (from == to && (w->command == EXH_CMD_CLEAR + 1 ? of(w->now, w->faults) != 0
                                                               : w->command == EXH_CMD_RUN + 1)) {
         char why[NAMES_B];
@@ -211,7 +201,7 @@ static void said_faults(struct walk *w, uint64_t tick)
     for (unsigned i = 0; i < 32; i++) {
         if (!((is & ~was) >> i & 1)) { continue; }
         timeline_say(&w->notes, tick, "FAULT %s: %s", names_word(&names_fault, i),
-                     names_says(&names_fault, i));
+            names_says(&names_fault, i));
         if (!w->notes.has_fault && w->frames) {
             w->notes.fault_tick = tick;
             w->notes.has_fault = 1;
@@ -225,8 +215,8 @@ static void said_glove(struct walk *w, uint64_t tick)
     const int32_t was = w->frames ? of(w->before, w->glove) : 0, is = of(w->now, w->glove);
     if (!was == !is) { return; }
     timeline_say(&w->notes, tick,
-                 is ? "glove: sensors %#x are not believed" : "glove: all sensors are believed",
-                 (unsigned)is);
+        is ? "glove: sensors %#x are not believed" : "glove: all sensors are believed",
+        (unsigned)is);
 }
 
 static void on_frame(struct walk *w, const struct exh_record *r)
@@ -250,7 +240,7 @@ static void on_frame(struct walk *w, const struct exh_record *r)
         spans(w, f, tick, 0);
     }
     count(w, &w->lost, w->frames ? (double)of(w->now, w->lost_at) - of(w->before, w->lost_at) : 0,
-          tick, "packets lost", w->gap);
+        tick, "packets lost", w->gap);
     w->frames = 1;
     w->command = 0;
     w->before = w->now;
@@ -264,7 +254,7 @@ static void said_param(struct walk *w, const struct exh_event *e)
     if (i >= 0) {
         const struct exh_signal *row = exh_signal_at(p->table, (uint32_t)i, NULL);
         timeline_say(&w->notes, w->log->tick, "parameter %s, instance %u: %.9g %s", row->name,
-                     e->instance, cli_signal_value(row, e->value), row->unit);
+            e->instance, cli_signal_value(row, e->value), row->unit);
     }
 }
 
@@ -274,8 +264,8 @@ static void said_froze(struct walk *w, const struct exh_event *e)
     names_faults(what, sizeof what, (uint32_t)e->value);
     if (e->value) {
         timeline_say(&w->notes, w->log->tick,
-                     "the black box froze for %s, %u ticks behind it; %u causes came later", what,
-                     e->instance, e->id);
+            "the black box froze for %s, %u ticks behind it; %u causes came later", what,
+            e->instance, e->id);
     } else {
         timeline_say(&w->notes, w->log->tick, "the box was halted: the black box ends here");
     }
@@ -288,8 +278,8 @@ static void on_event(struct walk *w, const struct exh_record *r)
     exh_event_serialize(&c, &e);
     if (!exh_bytes_ok(&c)) { return; }
     if (e.type == EXH_EVENT_COMMAND) {
-        timeline_say(&w->notes, w->log->tick, "command: %s",
-                     names_says(&names_command, (unsigned)e.value));
+        timeline_say(
+            &w->notes, w->log->tick, "command: %s", names_says(&names_command, (unsigned)e.value));
         w->command = (uint32_t)e.value + 1;
     } else if (e.type == EXH_EVENT_MISSED) {
         count(w, &w->missed, e.value, w->log->tick, "ticks missed", w->gap);
@@ -309,7 +299,7 @@ static void on_count(struct walk *w, const struct exh_record *r)
     exh_bytes_u32(&c, &n);
     if (r->type == EXH_RECORD_DROPPED) {
         timeline_say(&w->notes, w->log->tick,
-                     "%" PRIu32 " records were lost before this by who wrote them", n);
+            "%" PRIu32 " records were lost before this by who wrote them", n);
     } else {
         timeline_say(&w->notes, w->log->tick, "end of the log, %" PRIu32 " records lost in all", n);
     }
@@ -322,7 +312,7 @@ static void walk(struct walk *w)
     while (logfile_next(w->log, &r)) {
         if (w->notes.n == 0) {
             timeline_say(&w->notes, w->log->tick, "the log begins%s",
-                         r.type == EXH_RECORD_KEYFRAME ? ", with a keyframe" : "");
+                r.type == EXH_RECORD_KEYFRAME ? ", with a keyframe" : "");
         }
         if (r.type == EXH_RECORD_FRAME) {
             on_frame(w, &r);
@@ -354,7 +344,7 @@ int timeline_print(struct logfile *l, FILE *to)
         w.gap = (uint64_t)GAP_MS * l->header.T.den / (1000 * (uint64_t)l->header.T.num);
         walk(&w);
         fprintf(to, "scene %.16s on %.16s, a tick is %" PRIu32 "/%" PRIu32 " s\n", l->header.scene,
-                l->header.board, l->header.T.num, l->header.T.den);
+            l->header.board, l->header.T.num, l->header.T.den);
         timeline_out(&w.notes, l, to);
     }
     bad = w.now == NULL || w.before == NULL || w.notes.no_memory;

@@ -39,6 +39,6 @@ struct timeline_span {
 };
 /* 1: it is over, *was holds it. Also to be called with on 0 at the end, gap 0. */
 int timeline_span(struct timeline_span *s, int on, uint64_t tick, uint64_t gap, double value,
-                  struct timeline_span *was);
+    struct timeline_span *was);
 
 #endif

@@ -58,7 +58,7 @@ void timeline_out(struct timeline_notes *n, const struct logfile *l, FILE *to)
 }
 
 int timeline_span(struct timeline_span *s, int on, uint64_t tick, uint64_t gap, double value,
-                  struct timeline_span *was)
+    struct timeline_span *was)
 {
     const int over = s->open && (on ? tick > s->last + 1 + gap : tick > s->last + gap);
     if (over) {

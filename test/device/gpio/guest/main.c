@@ -49,13 +49,13 @@ __attribute__((format(printf, 2, 3))) static void tell(int ok, const char *forma
 static pid_t run(const char *lines, const char *out, int user)
 {
     static char program[32], dir[64], spec[128];
-    char *argv[] = {"exhand", "drop", "--pace", "--rate", "100", "--falls", "1",  "--k",
-                    "2000",   "--b",  "15",     "--out",  dir,   "--gpio",  spec, NULL};
+    char *argv[] = {"exhand", "drop", "--pace", "--rate", "100", "--falls", "1", "--k", "2000",
+        "--b", "15", "--out", dir, "--gpio", spec, NULL};
     const pid_t pid = fork();
     if (pid != 0) { return pid; }
     snprintf(program, sizeof program, "/exhand-%s", version);
     snprintf(spec, sizeof spec, "%s%s%s", strchr(lines, ':') ? "" : sim_chip(),
-             strchr(lines, ':') ? "" : ":", lines);
+        strchr(lines, ':') ? "" : ":", lines);
     snprintf(dir, sizeof dir, "/out/%s_%s", version, out);
     if (!freopen("/said.err", "w", stderr) || !freopen("/said.out", "w", stdout)) { _exit(99); }
     if (user && (setgid(1000) || setuid(1000))) { _exit(99); }
@@ -126,7 +126,7 @@ static void refused(const char *what, const char *lines, int user, const char *s
     const char *rest = strstr(says, "%s");
     char want[160];
     snprintf(want, sizeof want, "%.*s%s%s", rest ? (int)(rest - says) : 79, says,
-             rest ? sim_chip() : "", rest ? rest + 2 : "");
+        rest ? sim_chip() : "", rest ? rest + 2 : "");
     tell(status == 3 && strstr(words, want) != NULL, "%s: status %d: %s", what, status, words);
 }
 
@@ -134,7 +134,7 @@ static void refusals(void)
 {
     int thief;
     refused("chip missing", "gpiochip9:estop=4", 0,
-            "/dev/gpiochip9: there is no such chip (there are: %s)");
+        "/dev/gpiochip9: there is no such chip (there are: %s)");
     refused("no chip", "null:estop=4", 0, "/dev/null: not a GPIO chip");
     refused("no line", "estop=40", 0, "estop=40: /dev/%s has lines 0..11");
     refused("no permission", PAIR, 1, "/dev/%s: not allowed (Permission denied)");
@@ -169,7 +169,7 @@ static void opens(const char *what, int line, int beats_max)
     wait_s(2.5);
     beats = beats_until_low(line);
     tell(beats >= 0 && beats <= beats_max, "%s: enable is low after %d beats (0..%d)", what, beats,
-         beats_max);
+        beats_max);
     wait_s(line == SECOND ? 0.8 : 0.2);
     kill(pid, SIGINT);
     status = ended(pid, 10);
@@ -177,14 +177,14 @@ static void opens(const char *what, int line, int beats_max)
     if (line == SECOND) {
         tell(strstr(words, "estop: its contacts disagree for more than 50 ticks (line 4 closed, "
                            "line 8 open)") != NULL,
-             "%s: the disagreement is named", what);
+            "%s: the disagreement is named", what);
     } else {
         /* One contact of two opened: told at the end, since the run ended before the pair was at
          * fault. */
         tell(strstr(words, "disagree for") == NULL, "%s: no disagreement at fault", what);
-        tell((strstr(words, "estop: its two contacts disagreed 1 times") != NULL) ==
-                 (line == ESTOP),
-             "%s: the short disagreement is told", what);
+        tell(
+            (strstr(words, "estop: its two contacts disagreed 1 times") != NULL) == (line == ESTOP),
+            "%s: the short disagreement is told", what);
     }
 }
 
@@ -204,7 +204,7 @@ static void beats_and_holds(void)
     tell(thief < 0 && errno == EBUSY, "a line that is held cannot be stolen: %s", strerror(errno));
     kill(pid, SIGTSTP);
     tell(until_level(ENABLE, 0, 1) && sim_level(ALIVE) == 0 && sim_held(ENABLE),
-         "stopped: both outputs are low, and held");
+        "stopped: both outputs are low, and held");
     kill(pid, SIGCONT);
     wait_s(0.3);
     tell(sim_level(ENABLE) == 0 && sim_level(ALIVE) == 0, "it goes on: they stay low");
@@ -225,7 +225,7 @@ static void a_hand(void)
     if (pid == 0) {
         if (!freopen("/said.err", "w", stderr) || !freopen("/said.out", "w", stdout)) { _exit(99); }
         execl(program, "exhand", "run", "--pace", "--rate", "100", "--gpio", spec, "--log", log,
-              (char *)NULL);
+            (char *)NULL);
         _exit(98);
     }
     while (!sim_held(ALIVE)) { wait_s(0.001); }
@@ -245,8 +245,8 @@ static void a_hand(void)
     sim_pull(DEADMAN, 1);
     again = until_level(ENABLE, 1, 1);
     tell(first && low && cleared && again,
-         "run: a grip enables %d, letting go disables %d, a grip clears %d, another enables %d",
-         first, low, cleared, again);
+        "run: a grip enables %d, letting go disables %d, a grip clears %d, another enables %d",
+        first, low, cleared, again);
     kill(pid, SIGINT);
     first = ended(pid, 10);
     tell(first == 130, "run: status %d", first);
@@ -259,7 +259,7 @@ static void chip_goes(void)
     sim_unmake();
     status = ended(pid, 10);
     tell(status == 1 && strstr(words, "the contacts can't be read (No such device)"),
-         "chip taken away: status %d: %s", status, words);
+        "chip taken away: status %d: %s", status, words);
     if (sim_make(LINES)) { tell(0, "no other chip"); }
 }
 

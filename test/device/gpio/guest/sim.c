@@ -43,10 +43,7 @@ int sim_load(const char *module)
     return (int)err;
 }
 
-const char *sim_chip(void)
-{
-    return chip;
-}
+const char *sim_chip(void) { return chip; }
 
 static int open_chip(void)
 {

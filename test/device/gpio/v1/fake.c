@@ -25,10 +25,7 @@ void gpiod_chip_close(struct gpiod_chip *c)
     if (c == &the_chip) { chip_close(); }
 }
 
-unsigned int gpiod_chip_num_lines(struct gpiod_chip *c)
-{
-    return c == &the_chip ? CHIP_LINES : 0;
-}
+unsigned int gpiod_chip_num_lines(struct gpiod_chip *c) { return c == &the_chip ? CHIP_LINES : 0; }
 
 struct gpiod_line *gpiod_chip_get_line(struct gpiod_chip *c, unsigned int offset)
 {
@@ -37,30 +34,18 @@ struct gpiod_line *gpiod_chip_get_line(struct gpiod_chip *c, unsigned int offset
     return &the_line[offset];
 }
 
-int gpiod_line_update(struct gpiod_line *line)
-{
-    return line->offset < CHIP_LINES ? 0 : -1;
-}
+int gpiod_line_update(struct gpiod_line *line) { return line->offset < CHIP_LINES ? 0 : -1; }
 
 bool gpiod_line_is_used(struct gpiod_line *line)
 {
     return chip.line[line->offset].holder || chip.line[line->offset].held;
 }
 
-const char *gpiod_line_consumer(struct gpiod_line *line)
-{
-    return chip.line[line->offset].holder;
-}
+const char *gpiod_line_consumer(struct gpiod_line *line) { return chip.line[line->offset].holder; }
 
-unsigned int gpiod_line_offset(struct gpiod_line *line)
-{
-    return line->offset;
-}
+unsigned int gpiod_line_offset(struct gpiod_line *line) { return line->offset; }
 
-void gpiod_line_bulk_init(struct gpiod_line_bulk *bulk)
-{
-    bulk->num_lines = 0;
-}
+void gpiod_line_bulk_init(struct gpiod_line_bulk *bulk) { bulk->num_lines = 0; }
 
 void gpiod_line_bulk_add(struct gpiod_line_bulk *bulk, struct gpiod_line *line)
 {
@@ -74,13 +59,12 @@ static unsigned offsets(const struct gpiod_line_bulk *bulk, unsigned line[GPIO_L
 }
 
 int gpiod_line_request_bulk(struct gpiod_line_bulk *bulk, const struct gpiod_line_request_config *c,
-                            const int *default_vals)
+    const int *default_vals)
 {
     unsigned line[GPIO_LINES_MAX];
     const unsigned n = offsets(bulk, line);
     return chip_request(line, n, c->request_type == GPIOD_LINE_REQUEST_DIRECTION_OUTPUT,
-                        c->flags == GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_DOWN, default_vals[0] == 0,
-                        c->consumer);
+        c->flags == GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_DOWN, default_vals[0] == 0, c->consumer);
 }
 
 void gpiod_line_release_bulk(struct gpiod_line_bulk *bulk)

@@ -30,8 +30,7 @@ unsigned int gpiod_line_offset(struct gpiod_line *line);
 void gpiod_line_bulk_init(struct gpiod_line_bulk *bulk);
 void gpiod_line_bulk_add(struct gpiod_line_bulk *bulk, struct gpiod_line *line);
 int gpiod_line_request_bulk(struct gpiod_line_bulk *bulk,
-                            const struct gpiod_line_request_config *config,
-                            const int *default_vals);
+    const struct gpiod_line_request_config *config, const int *default_vals);
 void gpiod_line_release_bulk(struct gpiod_line_bulk *bulk);
 int gpiod_line_get_value_bulk(struct gpiod_line_bulk *bulk, int *values);
 int gpiod_line_set_value_bulk(struct gpiod_line_bulk *bulk, const int *values);

@@ -65,15 +65,9 @@ struct gpiod_chip_info *gpiod_chip_get_info(struct gpiod_chip *c)
     return info;
 }
 
-size_t gpiod_chip_info_get_num_lines(struct gpiod_chip_info *info)
-{
-    return info->lines;
-}
+size_t gpiod_chip_info_get_num_lines(struct gpiod_chip_info *info) { return info->lines; }
 
-void gpiod_chip_info_free(struct gpiod_chip_info *info)
-{
-    unmake(info);
-}
+void gpiod_chip_info_free(struct gpiod_chip_info *info) { unmake(info); }
 
 struct gpiod_line_info *gpiod_chip_get_line_info(struct gpiod_chip *c, unsigned int offset)
 {
@@ -97,20 +91,14 @@ const char *gpiod_line_info_get_consumer(struct gpiod_line_info *info)
     return chip.line[info->offset].holder;
 }
 
-void gpiod_line_info_free(struct gpiod_line_info *info)
-{
-    unmake(info);
-}
+void gpiod_line_info_free(struct gpiod_line_info *info) { unmake(info); }
 
 struct gpiod_line_settings *gpiod_line_settings_new(void)
 {
     return make(sizeof(struct gpiod_line_settings));
 }
 
-void gpiod_line_settings_free(struct gpiod_line_settings *s)
-{
-    unmake(s);
-}
+void gpiod_line_settings_free(struct gpiod_line_settings *s) { unmake(s); }
 
 int gpiod_line_settings_set_direction(struct gpiod_line_settings *s, enum gpiod_line_direction d)
 {
@@ -135,13 +123,10 @@ struct gpiod_line_config *gpiod_line_config_new(void)
     return make(sizeof(struct gpiod_line_config));
 }
 
-void gpiod_line_config_free(struct gpiod_line_config *c)
-{
-    unmake(c);
-}
+void gpiod_line_config_free(struct gpiod_line_config *c) { unmake(c); }
 
 int gpiod_line_config_add_line_settings(struct gpiod_line_config *c, const unsigned int *offsets,
-                                        size_t n, struct gpiod_line_settings *s)
+    size_t n, struct gpiod_line_settings *s)
 {
     memcpy(c->line, offsets, n * sizeof *offsets);
     c->n = (unsigned)n;
@@ -154,19 +139,15 @@ struct gpiod_request_config *gpiod_request_config_new(void)
     return make(sizeof(struct gpiod_request_config));
 }
 
-void gpiod_request_config_free(struct gpiod_request_config *c)
-{
-    unmake(c);
-}
+void gpiod_request_config_free(struct gpiod_request_config *c) { unmake(c); }
 
 void gpiod_request_config_set_consumer(struct gpiod_request_config *c, const char *consumer)
 {
     c->consumer = consumer;
 }
 
-struct gpiod_line_request *gpiod_chip_request_lines(struct gpiod_chip *c,
-                                                    struct gpiod_request_config *name,
-                                                    struct gpiod_line_config *lines)
+struct gpiod_line_request *gpiod_chip_request_lines(
+    struct gpiod_chip *c, struct gpiod_request_config *name, struct gpiod_line_config *lines)
 {
     const struct gpiod_line_settings *s = &lines->settings;
     struct gpiod_line_request *r;

@@ -32,26 +32,24 @@ const char *gpiod_line_info_get_consumer(struct gpiod_line_info *info);
 void gpiod_line_info_free(struct gpiod_line_info *info);
 struct gpiod_line_settings *gpiod_line_settings_new(void);
 void gpiod_line_settings_free(struct gpiod_line_settings *settings);
-int gpiod_line_settings_set_direction(struct gpiod_line_settings *settings,
-                                      enum gpiod_line_direction direction);
+int gpiod_line_settings_set_direction(
+    struct gpiod_line_settings *settings, enum gpiod_line_direction direction);
 int gpiod_line_settings_set_bias(struct gpiod_line_settings *settings, enum gpiod_line_bias bias);
-int gpiod_line_settings_set_output_value(struct gpiod_line_settings *settings,
-                                         enum gpiod_line_value value);
+int gpiod_line_settings_set_output_value(
+    struct gpiod_line_settings *settings, enum gpiod_line_value value);
 struct gpiod_line_config *gpiod_line_config_new(void);
 void gpiod_line_config_free(struct gpiod_line_config *config);
 int gpiod_line_config_add_line_settings(struct gpiod_line_config *config,
-                                        const unsigned int *offsets, size_t num_offsets,
-                                        struct gpiod_line_settings *settings);
+    const unsigned int *offsets, size_t num_offsets, struct gpiod_line_settings *settings);
 struct gpiod_request_config *gpiod_request_config_new(void);
 void gpiod_request_config_free(struct gpiod_request_config *config);
 void gpiod_request_config_set_consumer(struct gpiod_request_config *config, const char *consumer);
 struct gpiod_line_request *gpiod_chip_request_lines(struct gpiod_chip *chip,
-                                                    struct gpiod_request_config *req_cfg,
-                                                    struct gpiod_line_config *line_cfg);
+    struct gpiod_request_config *req_cfg, struct gpiod_line_config *line_cfg);
 void gpiod_line_request_release(struct gpiod_line_request *request);
-int gpiod_line_request_get_values(struct gpiod_line_request *request,
-                                  enum gpiod_line_value *values);
-int gpiod_line_request_set_values(struct gpiod_line_request *request,
-                                  const enum gpiod_line_value *values);
+int gpiod_line_request_get_values(
+    struct gpiod_line_request *request, enum gpiod_line_value *values);
+int gpiod_line_request_set_values(
+    struct gpiod_line_request *request, const enum gpiod_line_value *values);
 
 #endif

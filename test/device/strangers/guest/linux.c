@@ -37,10 +37,7 @@ int load(const char *path, const char *options)
     return result;
 }
 
-int unload(const char *name)
-{
-    return syscall(SYS_delete_module, name, O_NONBLOCK) ? -errno : 0;
-}
+int unload(const char *name) { return syscall(SYS_delete_module, name, O_NONBLOCK) ? -errno : 0; }
 
 static int device(unsigned minor)
 {
@@ -75,7 +72,7 @@ int detach(unsigned minor)
 }
 
 int insn(unsigned minor, unsigned subdev, unsigned chan, unsigned range, unsigned kind, unsigned n,
-         unsigned *data)
+    unsigned *data)
 {
     struct comedi_insn i;
     const int f = device(minor);
@@ -133,8 +130,8 @@ uint32_t lines(unsigned minor, unsigned subdev, uint32_t mask, uint32_t bits)
     return v[1];
 }
 
-void config(unsigned minor, unsigned subdev, unsigned chan, unsigned n, unsigned a, unsigned b,
-            unsigned c)
+void config(
+    unsigned minor, unsigned subdev, unsigned chan, unsigned n, unsigned a, unsigned b, unsigned c)
 {
     unsigned v[3];
     int result;

@@ -18,7 +18,7 @@ int attach(unsigned minor, const char *board, int base, int irq);
 int detach(unsigned minor);
 
 int insn(unsigned minor, unsigned subdev, unsigned chan, unsigned range, unsigned kind, unsigned n,
-         unsigned *data);
+    unsigned *data);
 
 /* Runs a command until so many samples came: their number. Waits five seconds for each reading. */
 int command(unsigned minor, struct comedi_cmd *c, uint16_t *sample, unsigned want);
@@ -27,8 +27,8 @@ int command(unsigned minor, struct comedi_cmd *c, uint16_t *sample, unsigned wan
 uint32_t get(unsigned minor, unsigned subdev, unsigned chan, unsigned range);
 void put(unsigned minor, unsigned subdev, unsigned chan, uint32_t value);
 uint32_t lines(unsigned minor, unsigned subdev, uint32_t mask, uint32_t bits);
-void config(unsigned minor, unsigned subdev, unsigned chan, unsigned n, unsigned a, unsigned b,
-            unsigned c);
+void config(
+    unsigned minor, unsigned subdev, unsigned chan, unsigned n, unsigned a, unsigned b, unsigned c);
 
 void fail(const char *what, int error);
 

@@ -57,10 +57,7 @@ static void load_all(void)
         "modules loaded, and all bear Debian's signature (the kernel is not tainted)");
 }
 
-static void power(uint32_t fault, uint32_t card)
-{
-    outl(fault | card << 8, POWER_PORT);
-}
+static void power(uint32_t fault, uint32_t card) { outl(fault | card << 8, POWER_PORT); }
 
 static void check_attach(void)
 {

@@ -41,10 +41,7 @@ static void convert_all(void)
     outw(0x0004, ISR);
 }
 
-static int32_t linux_reads(unsigned ch)
-{
-    return (int32_t)get(A, S526_AI, ch, 0) - 32768;
-}
+static int32_t linux_reads(unsigned ch) { return (int32_t)get(A, S526_AI, ch, 0) - 32768; }
 
 /* How many of channels 2..7 Linux has right. */
 static unsigned reads(const char *when)
@@ -53,7 +50,7 @@ static unsigned reads(const char *when)
     for (unsigned ch = 2; ch < 8; ch++) {
         const int32_t pin_uV = pin(PIN_AD + ch), got = linux_reads(ch);
         printf("      %s: channel %u has %8d uV, code %6d; Linux reads %6d\n", when, ch, pin_uV,
-               (int)code(pin_uV), got);
+            (int)code(pin_uV), got);
         right += got == code(pin_uV);
     }
     return right;

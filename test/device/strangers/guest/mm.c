@@ -35,8 +35,8 @@ static void check_channel(unsigned ch, unsigned k)
 void check_mm_ad(void)
 {
     static const char *const name[] = {"0..10 V", "0..5 V", "+-10 V", "+-5 V"};
-    table_head("A/D: driver dmm32at, all 32 inputs in all of its ranges", "input, uV",
-               "comedi, 0..65535");
+    table_head(
+        "A/D: driver dmm32at, all 32 inputs in all of its ranges", "input, uV", "comedi, 0..65535");
     for (unsigned ch = 0; ch < 32; ch++) {
         set_pin(PIN_GLOVE + ch, 250000 * (int32_t)ch - 4000000);
     }
@@ -50,8 +50,8 @@ void check_mm_ad(void)
     table_row("A/D 0..31 in turn, +-10 V");
     for (unsigned i = 0; i < 320; i++) {
         const unsigned ch = i * 7 % 32;
-        table_value(pin(PIN_GLOVE + ch), code_of(&range[2], pin(PIN_GLOVE + ch)),
-                    get(MM, MM_AI, ch, 2));
+        table_value(
+            pin(PIN_GLOVE + ch), code_of(&range[2], pin(PIN_GLOVE + ch)), get(MM, MM_AI, ch, 2));
     }
     table_end_row();
 }
@@ -59,7 +59,7 @@ void check_mm_ad(void)
 void check_mm_da(void)
 {
     table_head("D/A: driver dmm32at, 12 bit (here the card's output is what is checked)",
-               "comedi, 0..4095", "output, codes");
+        "comedi, 0..4095", "output, codes");
     for (unsigned ch = 0; ch < 4; ch++) {
         table_row("D/A %u", ch);
         for (uint32_t code = 0; code < 4096; code += 13) {
@@ -76,8 +76,8 @@ void check_mm_da(void)
 
 void check_mm_lines(void)
 {
-    table_head("Lines: driver dmm32at, its 8255, three ports as outputs", "ports A, B, C",
-               "comedi");
+    table_head(
+        "Lines: driver dmm32at, its 8255, three ports as outputs", "ports A, B, C", "comedi");
     for (unsigned ch = 0; ch < 24; ch += 4) {
         config(MM, MM_DIO, ch, 1, INSN_CONFIG_DIO_OUTPUT, 0, 0);
     }

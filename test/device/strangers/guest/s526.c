@@ -22,10 +22,7 @@ static int32_t random_in(int32_t lo, int32_t hi)
     return lo + (int32_t)((uint64_t)(state >> 4) * ((uint32_t)(hi - lo) + 1u) >> 28);
 }
 
-static int64_t floor_div(int64_t n, int64_t d)
-{
-    return n / d - (n % d < 0);
-}
+static int64_t floor_div(int64_t n, int64_t d) { return n / d - (n % d < 0); }
 
 /* 10 V / 32768 a code, nearest, limited; then as comedi has it, from 0. */
 static int64_t ad_code(int32_t v_uV)
@@ -48,9 +45,8 @@ static uint32_t steps(int32_t enc_cnt, int32_t from_cnt, int32_t cnt_per_step)
 
 static void check_counter(unsigned card, unsigned axis, uint32_t mode, int32_t cnt_per_step)
 {
-    static const int32_t far_cnt[] = {
-        0,        1,        -1,        3,        -5,        65535,      65536,     -65537,
-        0x7FFFFF, 0x800000, -0x800000, 0xFFFFFF, 0x1000000, -0x1000001, 200000000, 512};
+    static const int32_t far_cnt[] = {0, 1, -1, 3, -5, 65535, 65536, -65537, 0x7FFFFF, 0x800000,
+        -0x800000, 0xFFFFFF, 0x1000000, -0x1000001, 200000000, 512};
     const uint32_t n = PIN_ENC + 4 * card + axis;
     const int32_t from_cnt = 1000 * (int32_t)axis - 777;
     int32_t at = from_cnt;
@@ -72,7 +68,7 @@ static void check_counter(unsigned card, unsigned axis, uint32_t mode, int32_t c
 void check_counters(void)
 {
     table_head("Counters: driver s526, counts since INSN_CONFIG_GPCT_QUADRATURE_ENCODER",
-               "encoder, counts x4", "comedi, modulo 2^24");
+        "encoder, counts x4", "comedi, modulo 2^24");
     for (unsigned card = A; card <= B; card++) {
         for (unsigned axis = 0; axis < 4; axis++) { check_counter(card, axis, X4, 1); }
     }
@@ -82,8 +78,8 @@ void check_counters(void)
 
 void check_s526_ad(void)
 {
-    table_head("A/D: driver s526, channels 0 and 1 and the references", "input, uV",
-               "comedi, 0..65535");
+    table_head(
+        "A/D: driver s526, channels 0 and 1 and the references", "input, uV", "comedi, 0..65535");
     for (unsigned card = A; card <= B; card++) {
         for (unsigned ch = 0; ch < 2; ch++) {
             const uint32_t n = PIN_AD + 8 * card + ch;
@@ -111,8 +107,8 @@ static int64_t da_uV(uint32_t code)
 
 void check_s526_da(void)
 {
-    table_head("D/A: driver s526 (here the pin is what is checked)", "comedi, 0..65535",
-               "output, uV");
+    table_head(
+        "D/A: driver s526 (here the pin is what is checked)", "comedi, 0..65535", "output, uV");
     for (unsigned card = A; card <= B; card++) {
         for (unsigned ch = 0; ch < 4; ch++) {
             table_row("%c D/A %u", board[card], ch);
@@ -123,7 +119,7 @@ void check_s526_da(void)
             put(card, S526_AO, ch, 32768 + 1000 * ch);
             for (unsigned other = 0; other <= ch; other++) { /* the others kept theirs */
                 table_value(32768 + 1000 * other, da_uV(32768 + 1000 * other),
-                            pin(PIN_DA + 4 * card + other));
+                    pin(PIN_DA + 4 * card + other));
             }
             table_end_row();
         }
@@ -142,7 +138,7 @@ void check_s526_lines(void)
             set_pin(PIN_DIN + card, v);
             (void)lines(card, S526_DIO, 0xF0, (uint32_t)v * 7u & 0xF0u);
             table_value((v & 0x0F) | pin(PIN_DOUT + card), (v & 0x0F) | (v * 7 & 0xF0),
-                        lines(card, S526_DIO, 0, 0));
+                lines(card, S526_DIO, 0, 0));
         }
         table_end_row();
         table_row("%c lines, written", board[card]);

@@ -37,10 +37,7 @@ static int scan(unsigned channels, unsigned scans, unsigned period_ns, unsigned 
     return command(MM, &c, sample, channels * scans);
 }
 
-int mm_scan(unsigned scans)
-{
-    return scan(22, scans, 40000000, 20000);
-}
+int mm_scan(unsigned scans) { return scan(22, scans, 40000000, 20000); }
 
 static int64_t code(int32_t v_uV)
 {
@@ -77,8 +74,8 @@ static void check_paced(unsigned channels, unsigned period_ns)
 {
     table_row("%u channels, every %u ms", channels, period_ns / 1000000);
     set_pins(channels);
-    table_value(channels * SCANS_MAX, channels * SCANS_MAX,
-                scan(channels, SCANS_MAX, period_ns, 20000));
+    table_value(
+        channels * SCANS_MAX, channels * SCANS_MAX, scan(channels, SCANS_MAX, period_ns, 20000));
     check(channels, SCANS_MAX);
     table_end_row();
 }
@@ -86,7 +83,7 @@ static void check_paced(unsigned channels, unsigned period_ns)
 void check_mm_scans(void)
 {
     table_head("Scans: driver dmm32at, commands, +-10 V, an interrupt each", "input, uV",
-               "comedi, 0..65535");
+        "comedi, 0..65535");
     check_single(22, 20000);
     check_single(22, 10000);
     check_single(32, 5000);

@@ -13,8 +13,8 @@ static int64_t first[3], last[2]; /* pin, got; of the first that differs also wa
 
 void table_head(const char *title, const char *pin_unit, const char *linux_unit)
 {
-    printf("\n%s\n  %-24s %22s %20s %8s %7s\n", title, "", pin_unit, linux_unit, "values",
-           "differ");
+    printf(
+        "\n%s\n  %-24s %22s %20s %8s %7s\n", title, "", pin_unit, linux_unit, "values", "differ");
 }
 
 void table_row(const char *name, ...)
@@ -43,7 +43,7 @@ void table_end_row(void)
 {
     const int64_t *show = row_wrong ? first : last;
     printf("  %-24s %22" PRId64 " %20" PRId64 " %8" PRIu32 " %7" PRIu32, row, show[0], show[1],
-           row_values, row_wrong);
+        row_values, row_wrong);
     if (row_wrong) { printf("   wanted %" PRId64, first[2]); }
     printf("\n");
     values += row_values;

@@ -4,10 +4,7 @@
 #include "linux.h"
 #include "pin.h"
 
-void mark(unsigned n)
-{
-    outl(n, MARK_PORT);
-}
+void mark(unsigned n) { outl(n, MARK_PORT); }
 
 /* test/device/emu/linux_test.c sets the same pins. */
 static void set_pins(void)

@@ -145,10 +145,7 @@ static REAL tension(const REAL z[])
     return f.d.cable_npm * z[S] + f.d.cable_nspm * (z[V] - z[W]);
 }
 
-static int pulls(const REAL z[])
-{
-    return z[S] >= 0 && tension(z) >= 0;
-}
+static int pulls(const REAL z[]) { return z[S] >= 0 && tension(z) >= 0; }
 
 /* The way a body at speed v goes, or will go that stands. */
 static int way(REAL v, REAL net_N, REAL dry_N)
@@ -169,15 +166,9 @@ static REAL net_rotor(const REAL z[], REAL T)
     return T - f.d.kf_npa * z[I] - f.d.viscous_nspm * z[W];
 }
 
-static int mass_rubs(void)
-{
-    return f.d.mu_mass > 0;
-}
+static int mass_rubs(void) { return f.d.mu_mass > 0; }
 
-static int rotor_rubs(void)
-{
-    return f.d.mu_motor > 0 || f.d.coulomb_n > 0;
-}
+static int rotor_rubs(void) { return f.d.mu_motor > 0 || f.d.coulomb_n > 0; }
 
 static struct mode mode_of(const REAL z[])
 {
@@ -190,10 +181,7 @@ static struct mode mode_of(const REAL z[])
     return m;
 }
 
-static int turned(int way_was, REAL v)
-{
-    return way_was * v < 0;
-}
+static int turned(int way_was, REAL v) { return way_was * v < 0; }
 
 /* Whether the mode has ended by z. */
 static int ended(const REAL z[], struct mode m)
@@ -212,7 +200,7 @@ static int ended(const REAL z[], struct mode m)
 
 #define DOT(a, z) \
     ((a)[S] * (z)[S] + (a)[V] * (z)[V] + (a)[Q] * (z)[Q] + (a)[W] * (z)[W] + (a)[I] * (z)[I] + \
-     (a)[REF] * (z)[REF] + (a)[ONE])
+        (a)[REF] * (z)[REF] + (a)[ONE])
 
 static void flow(REAL to[], const REAL z[], struct mode m, int level)
 {
@@ -279,7 +267,7 @@ static void advance(REAL z[], uint64_t n, int longest)
 }
 
 void FLOW_ADVANCE(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
-                  const struct plant_hand *hand)
+    const struct plant_hand *hand)
 {
     REAL z[STATES] = {
         (REAL)p->x_m - p->q_m, p->v_mps, p->q_m, p->w_mps, p->cur_A, p->mon_A, ref_A, 1};

@@ -8,7 +8,7 @@
 #include "method.h"
 
 void leapfrog_advance(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
-                      const struct plant_hand *hand)
+    const struct plant_hand *hand)
 {
     if (hand) {
         leapfrog_own_advance_hand(p, d, dt_s, ref_A, hand);

@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-const char *const method_name[METHODS] = {"explicit", "semi-implicit", "leapfrog",
-                                          "midpoint", "rk4",           "flow"};
+const char *const method_name[METHODS] = {
+    "explicit", "semi-implicit", "leapfrog", "midpoint", "rk4", "flow"};
 
 #define TWO_PI 6.283185307179586
 
@@ -44,8 +44,8 @@ static inline double push_N(const struct part *s, double t_s, double x, double v
     return h->k_Npm * (h->x_m + h->v_mps * t_s - x) + h->b_Nspm * (h->v_mps - v);
 }
 
-static struct part part_of(const struct sim_device *d, double h_s, double ref_A,
-                           const struct plant_hand *hand)
+static struct part part_of(
+    const struct sim_device *d, double h_s, double ref_A, const struct plant_hand *hand)
 {
     struct part s;
     memset(&s, 0, sizeof s);
@@ -102,7 +102,7 @@ static struct ways ways_of(const struct plant *p, const struct part *s, double t
         const double T = tension(d, p->x_m, p->v_mps, p->q_m, p->w_mps);
         k.mass = way(p->v_mps, push_N(s, t_s, p->x_m, p->v_mps) - T, d->mu_mass * T);
         k.rotor = way(p->w_mps, T - d->kf_npa * p->cur_A - d->viscous_nspm * p->w_mps,
-                      d->coulomb_n + d->mu_motor * T);
+            d->coulomb_n + d->mu_motor * T);
     }
     return k;
 }
@@ -142,7 +142,7 @@ static void prepare_midpoint(struct part *s)
 
 /* Mean speeds; taut or not. */
 static void solve(const struct part *s, const struct plant *p, struct ways k, double push,
-                  double drag, int taut, double *V, double *W)
+    double drag, int taut, double *V, double *W)
 {
     const struct sim_device *const d = s->d;
     const double hand_N = s->hand ? s->hand->k_Npm * s->h_s / 2 + s->hand->b_Nspm : 0;
@@ -187,7 +187,7 @@ struct slope {
 };
 
 static inline struct slope slope_at(const struct part *s, struct ways k, double t_s, double cur_A,
-                                    double x, double v, double q, double w)
+    double x, double v, double q, double w)
 {
     const struct sim_device *const d = s->d;
     const double T = tension(d, x, v, q, w);
@@ -195,7 +195,7 @@ static inline struct slope slope_at(const struct part *s, struct ways k, double 
     if (k.mass) { r.v = s->per_mass * (push_N(s, t_s, x, v) - T - k.mass * d->mu_mass * T); }
     if (k.rotor) {
         r.w = s->per_rotor * (T - d->kf_npa * cur_A - d->viscous_nspm * w -
-                              k.rotor * (d->coulomb_n + d->mu_motor * T));
+                                 k.rotor * (d->coulomb_n + d->mu_motor * T));
     }
     return r;
 }
@@ -209,11 +209,11 @@ static void step_rk4(struct plant *p, const struct part *s, double t_s)
     const struct plant y = *p;
     const struct slope a = slope_at(s, k, t_s, y.cur_A, y.x_m, y.v_mps, y.q_m, y.w_mps);
     const struct slope b = slope_at(s, k, t_s + half, mid_A, y.x_m + half * a.x,
-                                    y.v_mps + half * a.v, y.q_m + half * a.q, y.w_mps + half * a.w);
+        y.v_mps + half * a.v, y.q_m + half * a.q, y.w_mps + half * a.w);
     const struct slope c = slope_at(s, k, t_s + half, mid_A, y.x_m + half * b.x,
-                                    y.v_mps + half * b.v, y.q_m + half * b.q, y.w_mps + half * b.w);
+        y.v_mps + half * b.v, y.q_m + half * b.q, y.w_mps + half * b.w);
     const struct slope e = slope_at(s, k, t_s + h, end_A, y.x_m + h * c.x, y.v_mps + h * c.v,
-                                    y.q_m + h * c.q, y.w_mps + h * c.w);
+        y.q_m + h * c.q, y.w_mps + h * c.w);
     const double sixth = h / 6;
     p->x_m = y.x_m + sixth * (a.x + 2 * (b.x + c.x) + e.x);
     p->v_mps = y.v_mps + sixth * (a.v + 2 * (b.v + c.v) + e.v);
@@ -226,7 +226,7 @@ static void step_rk4(struct plant *p, const struct part *s, double t_s)
 /* --- all of them --- */
 
 void method_advance(enum method m, struct plant *p, const struct sim_device *d, double dt_s,
-                    double ref_A, const struct plant_hand *hand)
+    double ref_A, const struct plant_hand *hand)
 {
     const int n = method_steps(d, dt_s);
     struct part s;

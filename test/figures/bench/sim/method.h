@@ -28,7 +28,7 @@ extern const char *const method_name[METHODS];
 /* As plant_advance_hand(), or, hand being NULL, plant_advance(); by steps of at most d->substep_s.
  * The flow wants a hand whose target stands, and knows no end of a finger's way. */
 void method_advance(enum method m, struct plant *p, const struct sim_device *d, double dt_s,
-                    double ref_A, const struct plant_hand *hand);
+    double ref_A, const struct plant_hand *hand);
 
 /* So many steps; times are differences of sums: a millionth over one is none. */
 static inline int method_steps(const struct sim_device *d, double dt_s)
@@ -41,12 +41,12 @@ void leapfrog_hold(struct plant *p, const struct sim_device *d, double dt_s, dou
 
 /* Each in a source of its own: sim/plant.c, flow_body.h twice. */
 void leapfrog_advance(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
-                      const struct plant_hand *hand);
+    const struct plant_hand *hand);
 void semi_advance(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
-                  const struct plant_hand *hand);
+    const struct plant_hand *hand);
 void flow_advance(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
-                  const struct plant_hand *hand);
+    const struct plant_hand *hand);
 void wide_advance(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
-                  const struct plant_hand *hand);
+    const struct plant_hand *hand);
 
 #endif

@@ -43,21 +43,21 @@ static void step_current(struct plant *p, const struct step *s)
 
 /* push_mps: what a force besides the string adds to the mass's speed; damp: what that force's
  * own damping leaves of it (implicit). */
-static inline void step_string(struct plant *p, const struct sim_device *d, const struct step *s,
-                               double push_mps, double damp)
+static inline void step_string(
+    struct plant *p, const struct sim_device *d, const struct step *s, double push_mps, double damp)
 {
     const double stretch = p->x_m - p->q_m;
     double T = d->cable_npm * stretch + d->cable_nspm * (p->v_mps - p->w_mps);
     if (stretch < 0 || T < 0) { T = 0; }
     p->v_mps = shrink((p->v_mps + push_mps - s->h_mass * T) * damp, s->h_mass * d->mu_mass * T);
     p->w_mps = shrink((p->w_mps + s->h_rotor * (T - s->kf_npa * p->cur_A)) * s->viscous,
-                      s->h_rotor * (d->coulomb_n + d->mu_motor * T));
+        s->h_rotor * (d->coulomb_n + d->mu_motor * T));
     p->x_m += s->h_s * p->v_mps;
     p->q_m += s->h_s * p->w_mps;
 }
 
 void semi_advance(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
-                  const struct plant_hand *hand)
+    const struct plant_hand *hand)
 {
     const int n = method_steps(d, dt_s);
     const struct step s = step_of(d, dt_s / n, ref_A);

@@ -49,7 +49,7 @@ void plant_advance(struct plant *p, const struct sim_device *d, double dt_s, dou
 }
 
 void plant_advance_hand(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
-                        const struct plant_hand *hand)
+    const struct plant_hand *hand)
 {
     method_advance(now, p, d, dt_s, ref_A, hand);
 }
@@ -117,10 +117,7 @@ struct plan {
     int runs, half; /* at the gains, at 1.5 times both */
 };
 
-static int per_row(const struct plan *p)
-{
-    return p->runs + p->half;
-}
+static int per_row(const struct plan *p) { return p->runs + p->half; }
 
 static void work(const void *ctx, int i, void *to)
 {
@@ -169,10 +166,7 @@ static void add(struct mean *m, double v)
     m->n++;
 }
 
-static double mean_of(const struct mean *m)
-{
-    return m->n ? m->sum / m->n : 0;
-}
+static double mean_of(const struct mean *m) { return m->n ? m->sum / m->n : 0; }
 
 static double error_of(const struct mean *m)
 {
@@ -196,8 +190,8 @@ static int line(const struct plan *p, const struct cell *at, int row, const stru
         if (r[i].resting) { add(&rest, r[i].rest_s); }
     }
     printf("%s,%.9g,%g,%d,%.1f,%.1f,%.4f,%.4f,%.4f,%.4f\n", method_name[at->method], at->step_s,
-           table2_paper[row].rate_Hz, p->runs, mean_of(&b), error_of(&b), mean_of(&rest),
-           error_of(&rest), (double)resting / falls[0], (double)oscillating / falls[1]);
+        table2_paper[row].rate_Hz, p->runs, mean_of(&b), error_of(&b), mean_of(&rest),
+        error_of(&rest), (double)resting / falls[0], (double)oscillating / falls[1]);
     return bad;
 }
 
@@ -205,11 +199,20 @@ static int line(const struct plan *p, const struct cell *at, int row, const stru
 static void cells_of(int brief)
 {
     static const struct cell all[] = {
-        {METHOD_EXPLICIT, 125e-6}, {METHOD_EXPLICIT, 62.5e-6}, {METHOD_SEMI, 250e-6},
-        {METHOD_SEMI, 62.5e-6},    {METHOD_SEMI, 25e-6},       {METHOD_SEMI, 12.5e-6},
-        {METHOD_SEMI, 5e-6},       {METHOD_LEAPFROG, 250e-6},  {METHOD_LEAPFROG, 125e-6},
-        {METHOD_MIDPOINT, 250e-6}, {METHOD_MIDPOINT, 125e-6},  {METHOD_RK4, 250e-6},
-        {METHOD_RK4, 125e-6},      {METHOD_FLOW, 250e-6},
+        {METHOD_EXPLICIT, 125e-6},
+        {METHOD_EXPLICIT, 62.5e-6},
+        {METHOD_SEMI, 250e-6},
+        {METHOD_SEMI, 62.5e-6},
+        {METHOD_SEMI, 25e-6},
+        {METHOD_SEMI, 12.5e-6},
+        {METHOD_SEMI, 5e-6},
+        {METHOD_LEAPFROG, 250e-6},
+        {METHOD_LEAPFROG, 125e-6},
+        {METHOD_MIDPOINT, 250e-6},
+        {METHOD_MIDPOINT, 125e-6},
+        {METHOD_RK4, 250e-6},
+        {METHOD_RK4, 125e-6},
+        {METHOD_FLOW, 250e-6},
     };
     for (int i = 0; i < (int)(sizeof all / sizeof all[0]); i++) {
         if (brief && i > 0 && all[i].method == all[i - 1].method) { continue; }

@@ -82,20 +82,14 @@ static struct problem ringing(void)
     return p;
 }
 
-static struct problem problem_at(int i)
-{
-    return i == 0 ? smooth() : i == 1 ? stiff() : ringing();
-}
+static struct problem problem_at(int i) { return i == 0 ? smooth() : i == 1 ? stiff() : ringing(); }
 
 static double step_at(int bit)
 {
     return bit == OWN ? sim_device_default().substep_s : 1.0 / (double)(1L << bit);
 }
 
-static double size_of(double v)
-{
-    return v < 0 ? -v : v;
-}
+static double size_of(double v) { return v < 0 ? -v : v; }
 
 /* --- a run --- */
 
@@ -174,7 +168,7 @@ static void errors(void)
             for (int bit = LONGEST; bit <= OWN; bit = next_of(m, bit)) {
                 run(&p, (enum method)m, step_at(bit));
                 printf("%s,%s,%.9g,%.4g,%.3g\n", p.name, method_name[m], step_at(bit),
-                       most_off(&way, &reference, p.points), own);
+                    most_off(&way, &reference, p.points), own);
             }
         }
     }
@@ -217,7 +211,7 @@ static void costs(int counted)
             for (int bit = LONGEST; bit <= OWN; bit = next_of(m, bit)) {
                 if (counted && bit > COUNTED && bit < OWN) { continue; }
                 printf("%s,%s,%.9g,%.9g\n", p.name, method_name[m], step_at(bit),
-                       counted ? p.points * POINT_S : ns(&p, (enum method)m, step_at(bit)));
+                    counted ? p.points * POINT_S : ns(&p, (enum method)m, step_at(bit)));
                 if (counted) { run(&p, (enum method)m, step_at(bit)); }
                 if (counted) { work_run(&p, (enum method)m, step_at(bit)); }
             }

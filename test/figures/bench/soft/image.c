@@ -35,10 +35,7 @@ static int32_t x[OPS + CHANNELS], y[CHANNELS];
 static double b_double[5], s_double[CHANNELS][2];
 static float b_float[5], s_float[CHANNELS][2];
 
-static void filter_op(uint32_t i)
-{
-    exh_filter_step(filter, &filter_cfg, &x[i], y, CHANNELS);
-}
+static void filter_op(uint32_t i) { exh_filter_step(filter, &filter_cfg, &x[i], y, CHANNELS); }
 
 #define FILTER(T) \
     static void filter_##T##_op(uint32_t i) \
@@ -57,7 +54,7 @@ static void filter_start(void)
 {
     /* fc/fs = 0.01 */
     static const double b[5] = {0.000944691843840, 0.00188938368768, 0.000944691843840,
-                                -1.911197067426073, 0.914975834801433};
+        -1.911197067426073, 0.914975834801433};
     static const struct exh_filter_par par = {2, EXH_Q(20, 1, 16)};
     EXH_ASSERT(exh_filter_setup(&filter_cfg, &par, (struct exh_period){1, 2000}) == 0);
     for (uint32_t i = 0; i < OPS + CHANNELS; i++) { x[i] = any(); }
@@ -66,8 +63,8 @@ static void filter_start(void)
 
 /* --- law --- */
 
-static const struct exh_contact_par wall = {EXH_Q(7989, 4, EXH_Q_K), EXH_Q(395, 64, EXH_Q_B), 0, 0,
-                                            0};
+static const struct exh_contact_par wall = {
+    EXH_Q(7989, 4, EXH_Q_K), EXH_Q(395, 64, EXH_Q_B), 0, 0, 0};
 static const struct law_double wall_double = {1997.25, 6.171875, 0, 0, 100};
 static const struct law_float wall_float = {1997.25f, 6.171875f, 0, 0, 100};
 static struct exh_contact contact[FINGERS];
@@ -76,8 +73,8 @@ static void law_op(uint32_t i)
 {
     for (uint32_t f = 0; f < FINGERS; f++) {
         struct exh_force_ledger l;
-        (void)exh_contact_step(&contact[f], &wall,
-                               (struct exh_contact_in){x[i + f] >> 6, x[i + f + 1] >> 4, 0}, &l);
+        (void)exh_contact_step(
+            &contact[f], &wall, (struct exh_contact_in){x[i + f] >> 6, x[i + f + 1] >> 4, 0}, &l);
         sink = l.spring_N_q20 + l.damper_N_q20;
     }
 }
@@ -141,13 +138,10 @@ static struct plain_freeze_float plane_float[FINGERS];
 
 static void plane_start(void)
 {
-    static const struct exh_plane p = {EXH_PLANE_HIT,
-                                       0,
-                                       1,
-                                       {644245094, 0, 858993459},
-                                       {EXH_Q(60, 1000, 30), 0, EXH_Q(80, 1000, 30)}};
+    static const struct exh_plane p = {EXH_PLANE_HIT, 0, 1, {644245094, 0, 858993459},
+        {EXH_Q(60, 1000, 30), 0, EXH_Q(80, 1000, 30)}};
     EXH_ASSERT(exh_precontact_setup(&freeze_cfg, &freeze, &material, 1, EXH_Q(7, 1000, 30),
-                                    (struct exh_period){1, 2000}) == 0);
+                   (struct exh_period){1, 2000}) == 0);
     for (uint32_t f = 0; f < FINGERS; f++) {
         EXH_ASSERT(exh_precontact_update(&plane[f], &freeze_cfg, &p, 0) == 0);
         plane_double[f] =
@@ -194,17 +188,11 @@ static void tick_start(void)
     for (uint32_t i = 0; i < OPS; i++) { tick_input(&box_in[i], i); }
 }
 
-static void tick_op(uint32_t i)
-{
-    sink = tick_once(&box, &box_in[i]);
-}
+static void tick_op(uint32_t i) { sink = tick_once(&box, &box_in[i]); }
 
 /* --- all --- */
 
-static void empty(uint32_t i)
-{
-    (void)i;
-}
+static void empty(uint32_t i) { (void)i; }
 
 static uint32_t counted(void (*volatile op)(uint32_t i))
 {

@@ -11,20 +11,11 @@
 #define ANY(object) Frama_C_make_unknown((char *)&(object), sizeof(object))
 #define END()       Frama_C_show_each_end(1)
 
-static int32_t any32(void)
-{
-    return Frama_C_interval(INT32_MIN, INT32_MAX);
-}
+static int32_t any32(void) { return Frama_C_interval(INT32_MIN, INT32_MAX); }
 
-static uint8_t any8(void)
-{
-    return (uint8_t)Frama_C_unsigned_int_interval(0, 255);
-}
+static uint8_t any8(void) { return (uint8_t)Frama_C_unsigned_int_interval(0, 255); }
 
-static uint32_t any_u32(void)
-{
-    return Frama_C_unsigned_int_interval(0, UINT32_MAX);
-}
+static uint32_t any_u32(void) { return Frama_C_unsigned_int_interval(0, UINT32_MAX); }
 
 static int64_t any64(void)
 {
@@ -33,15 +24,12 @@ static int64_t any64(void)
     return v;
 }
 
-static uint64_t any_u64(void)
-{
-    return (uint64_t)any64();
-}
+static uint64_t any_u64(void) { return (uint64_t)any64(); }
 
 /* A gain as exh_gain_set() leaves it. */
 #define ANY_GAIN(g) \
     ((g).mant = Frama_C_interval(0, INT32_MAX), \
-     (g).shift = (uint8_t)Frama_C_unsigned_int_interval(0, 62))
+        (g).shift = (uint8_t)Frama_C_unsigned_int_interval(0, 62))
 
 /* A state as its function of bytes leaves it, whatever was read. */
 #define FROM_BYTES(state, f) \

@@ -23,7 +23,7 @@
 /* --- pre-contact --- */
 
 int exh_precontact_update(struct exh_precontact *of, const struct exh_precontact_cfg *c,
-                          const struct exh_plane *p, uint32_t age_ticks)
+    const struct exh_plane *p, uint32_t age_ticks)
 {
     (void)age_ticks;
     /*@ assert precontact_tell: precontact(of) && precontact_cfg(c) && \initialized(p); */
@@ -39,7 +39,7 @@ void exh_precontact_advance(struct exh_precontact *of, uint32_t missed)
 }
 
 uint32_t exh_precontact_step(struct exh_precontact *of, const struct exh_precontact_cfg *c,
-                             const struct exh_precontact_in *in)
+    const struct exh_precontact_in *in)
 {
     /*@ assert precontact_step: precontact(of) && precontact_cfg(c) && \initialized(&in->tip_m_q30) && \initialized(&in->slope_q24); */
     *of = any_precontact();
@@ -64,8 +64,8 @@ int exh_wire_poll(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us)
     return any8() & 1;
 }
 
-int exh_wire_decode(struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf,
-                    size_t len_B)
+int exh_wire_decode(
+    struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf, size_t len_B)
 {
     /*@ assert wire_take: \valid_read((char *)buf + (0 .. len_B - 1)); */
     ANY(*rx);
@@ -97,8 +97,8 @@ struct exh_wire_ack exh_wire_stage(struct exh_params *to, const struct exh_wire_
     return ack;
 }
 
-int32_t exh_wire_encode(struct exh_wire_tx *tx, struct exh_wire_packet *p, uint32_t stamp_us,
-                        void *buf, size_t cap_B)
+int32_t exh_wire_encode(
+    struct exh_wire_tx *tx, struct exh_wire_packet *p, uint32_t stamp_us, void *buf, size_t cap_B)
 {
     (void)stamp_us;
     /*@ assert wire_write: \valid((char *)buf + (0 .. cap_B - 1)) && cap_B <= 256 && \initialized(p); */

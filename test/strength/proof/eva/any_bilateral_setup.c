@@ -20,8 +20,8 @@
 #include "sense/hand_hit2.c"
 
 int exh_precontact_setup(struct exh_precontact_cfg *to, const struct exh_precontact_par *par,
-                         const struct exh_material_par *material, unsigned materials,
-                         int32_t pad_m_q30, struct exh_period T)
+    const struct exh_material_par *material, unsigned materials, int32_t pad_m_q30,
+    struct exh_period T)
 {
     struct exh_precontact_cfg made;
     (void)pad_m_q30;
@@ -45,15 +45,9 @@ uint64_t exh_udiv64(uint64_t num, uint64_t den, uint64_t *rem)
     return num / den;
 }
 
-int exh_selftest_glove(void)
-{
-    return any8();
-}
+int exh_selftest_glove(void) { return any8(); }
 
-uint32_t exh_board_cycles(void)
-{
-    return any_u32();
-}
+uint32_t exh_board_cycles(void) { return any_u32(); }
 
 uint32_t exh_ticks_in(int32_t ms, struct exh_period T)
 {
@@ -72,8 +66,8 @@ uint32_t exh_signal_crc(const struct exh_signal_table *t)
 static void chosen(int32_t fingers)
 {
     const struct exh_scene_board board = {{Frama_C_unsigned_int_interval(1, UINT32_MAX),
-                                           Frama_C_unsigned_int_interval(1, UINT32_MAX)},
-                                          any8()};
+                                              Frama_C_unsigned_int_interval(1, UINT32_MAX)},
+        any8()};
     int err;
     exh_scene_bilateral.defaults();
     active.own.fingers = fingers;

@@ -30,8 +30,8 @@ static uint64_t udiv64(uint64_t num, uint64_t den, uint64_t *rem)
 #include "num/sincos.h" /* its proof is any_angle.c */
 static struct exh_sincos any_sincos(int32_t x_turn_q32)
 {
-    const struct exh_sincos y = {Frama_C_interval(-(1 << 30), 1 << 30),
-                                 Frama_C_interval(-(1 << 30), 1 << 30)};
+    const struct exh_sincos y = {
+        Frama_C_interval(-(1 << 30), 1 << 30), Frama_C_interval(-(1 << 30), 1 << 30)};
     (void)x_turn_q32;
     return y;
 }

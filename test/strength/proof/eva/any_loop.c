@@ -30,10 +30,7 @@
 
 static int stands; /* its timer says so: 0 a second */
 
-static uint32_t any_num(void)
-{
-    return stands ? 0 : Frama_C_unsigned_int_interval(1, UINT32_MAX);
-}
+static uint32_t any_num(void) { return stands ? 0 : Frama_C_unsigned_int_interval(1, UINT32_MAX); }
 
 int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
 {
@@ -44,10 +41,7 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
     return 0;
 }
 
-int exh_board_wait(void)
-{
-    return any32();
-}
+int exh_board_wait(void) { return any32(); }
 
 int exh_board_read_drive(struct exh_drive_in *in)
 {
@@ -62,14 +56,9 @@ int exh_board_write_drive(const struct exh_drive_out *out)
     return any8() & 1 ? -EXH_E_STATE : 0;
 }
 
-void exh_board_safe(void)
-{
-}
+void exh_board_safe(void) {}
 
-void exh_board_halt(const char *why)
-{
-    /*@ assert words: \valid_read(why); */
-}
+void exh_board_halt(const char *why) { /*@ assert words: \valid_read(why); */ }
 
 static int read_glove_board(struct exh_glove_in *in)
 {
@@ -126,12 +115,8 @@ int exh_params_apply(struct exh_params *p)
     return any32();
 }
 
-static void tell_any(void)
-{
-}
-static void end_any(void)
-{
-}
+static void tell_any(void) {}
+static void end_any(void) {}
 
 static void after_any(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
@@ -160,17 +145,17 @@ int main(void)
     static struct exh_safety state;
     static int32_t every;
     static const struct exh_scene rich = {.rate_Hz = 2000,
-                                          .fingers = 1,
-                                          .params = &params,
-                                          .apply = exh_params_apply,
-                                          .safety = &state,
-                                          .link = &link,
-                                          .read_glove = read_glove_board,
-                                          .glove_every = &every,
-                                          .setup = setup_any,
-                                          .tick = tick_any,
-                                          .tell = tell_any,
-                                          .end = end_any};
+        .fingers = 1,
+        .params = &params,
+        .apply = exh_params_apply,
+        .safety = &state,
+        .link = &link,
+        .read_glove = read_glove_board,
+        .glove_every = &every,
+        .setup = setup_any,
+        .tick = tick_any,
+        .tell = tell_any,
+        .end = end_any};
     static const struct exh_scene bare = {
         .rate_Hz = 2000, .fingers = 5, .setup = setup_any, .tick = tick_any};
     ANY(state);

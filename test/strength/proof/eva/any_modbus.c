@@ -35,8 +35,8 @@ static int gives(uint8_t *to, uint32_t B)
     return Frama_C_interval(0, 6);
 }
 
-int exh_regs_read(const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at, uint16_t n,
-                  uint8_t *to)
+int exh_regs_read(
+    const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at, uint16_t n, uint8_t *to)
 {
     (void)r;
     (void)kind;
@@ -44,8 +44,8 @@ int exh_regs_read(const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at
     return gives(to, 2u * n);
 }
 
-int exh_regs_read_bits(const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at, uint16_t n,
-                       uint8_t *to)
+int exh_regs_read_bits(
+    const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at, uint16_t n, uint8_t *to)
 {
     (void)r;
     (void)kind;
@@ -74,8 +74,8 @@ static void answered(uint32_t len_B, uint32_t cap_B)
 {
     struct exh_regs r;
     int n;
-    n = exh_modbus_answer(&r, req + (sizeof req - len_B), len_B, resp + (sizeof resp - cap_B),
-                          cap_B);
+    n = exh_modbus_answer(
+        &r, req + (sizeof req - len_B), len_B, resp + (sizeof resp - cap_B), cap_B);
     /*@ assert an_answer: n <= 253; */
 }
 

@@ -17,8 +17,8 @@
 #include "any.h"
 
 /* Its own proof is eva/any_modbus.c. */
-int exh_modbus_answer(struct exh_regs *r, const uint8_t *req, size_t len_B, uint8_t *resp,
-                      size_t cap_B)
+int exh_modbus_answer(
+    struct exh_regs *r, const uint8_t *req, size_t len_B, uint8_t *resp, size_t cap_B)
 {
     const uint8_t last = req[len_B - 1];
     (void)r;

@@ -25,10 +25,7 @@
 
 static char first;
 
-static void text(const char *t)
-{
-    first = t[0];
-}
+static void text(const char *t) { first = t[0]; }
 
 int main(void)
 {

@@ -45,10 +45,7 @@ static void any_cfg(void)
     cfg.shift = (uint8_t)Frama_C_unsigned_int_interval(0, 20);
 }
 
-static int64_t within(int64_t most)
-{
-    return Frama_C_long_long_interval(-most, most);
-}
+static int64_t within(int64_t most) { return Frama_C_long_long_interval(-most, most); }
 
 static void any_state(void)
 {

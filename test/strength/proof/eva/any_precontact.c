@@ -35,10 +35,7 @@ static struct exh_material_par material[3];
 static struct exh_plane plane;
 static struct exh_precontact_in in;
 
-static int32_t in_row(const struct exh_signal *row)
-{
-    return Frama_C_interval(row->min, row->max);
-}
+static int32_t in_row(const struct exh_signal *row) { return Frama_C_interval(row->min, row->max); }
 
 static void any_cfg(unsigned materials)
 {
@@ -93,8 +90,8 @@ static void set_up(void)
     const struct exh_period T = {Frama_C_unsigned_int_interval(1, UINT32_MAX), any_u32()};
     ANY(par);
     ANY(material);
-    if (exh_precontact_setup(&cfg, &par, material, Frama_C_unsigned_int_interval(0, 3), any32(),
-                             T) == 0) {
+    if (exh_precontact_setup(
+            &cfg, &par, material, Frama_C_unsigned_int_interval(0, 3), any32(), T) == 0) {
         /*@ assert made: precontact_made(&cfg); */
     }
 }

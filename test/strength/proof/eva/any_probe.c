@@ -38,8 +38,8 @@ static struct exh_weigh weigh;
 
 static void set_up(int32_t step_m_q42, uint32_t least, uint32_t most)
 {
-    const struct exh_probe_scale scale = {step_m_q42,
-                                          {Frama_C_unsigned_int_interval(least, most), any_u32()}};
+    const struct exh_probe_scale scale = {
+        step_m_q42, {Frama_C_unsigned_int_interval(least, most), any_u32()}};
     struct exh_probe_par par;
     struct exh_home_par home_par;
     struct exh_weigh_par weigh_par;

@@ -70,7 +70,7 @@ static void located(enum exh_regs_kind kind, uint32_t from, uint32_t end, uint32
     trace.mask = EXH_TRACE_FRAMES - 1;
     r.trace = Frama_C_interval(0, 1) ? &trace : NULL;
     if (exh_regs_locate(&r, kind, (uint16_t)Frama_C_unsigned_int_interval(from, end - 1),
-                        (uint16_t)any_u32(), &s) == 0) {
+            (uint16_t)any_u32(), &s) == 0) {
         /*@ assert within: s.end <= registers; */
     }
 }
@@ -80,7 +80,7 @@ static void any_address(void)
     located(EXH_REGS_INPUT, 0, EXH_REGS_TRACE_AT, 2 * EXH_HEADS);
     located(EXH_REGS_INPUT, EXH_REGS_TRACE_AT, EXH_REGS_FRAMES_AT, 2 * EXH_TRACE_HEADS);
     located(EXH_REGS_INPUT, EXH_REGS_FRAMES_AT, EXH_REGS_SIGNAL_AT,
-            2 * EXH_REGS_FRAME_VALUES * EXH_TRACE_FRAMES);
+        2 * EXH_REGS_FRAME_VALUES * EXH_TRACE_FRAMES);
     located(EXH_REGS_INPUT, EXH_REGS_SIGNAL_AT, 0x10000, 2 * EXH_REGS_VALUES);
     located(EXH_REGS_HOLDING, 0, EXH_REGS_TRACE_AT, 0);
     located(EXH_REGS_HOLDING, EXH_REGS_TRACE_AT, EXH_REGS_SIGNAL_AT, 2 * EXH_REGS_TRACE_SET);

@@ -105,8 +105,8 @@ static void pieces(uint16_t len_B, uint32_t room_B)
     static const uint32_t at[] = {0, 50, 63};
     const uint32_t done_B[] = {0, 13, 14, 13u + len_B, 17u + len_B, 18u + len_B};
     for (unsigned i = 0; i < sizeof at / sizeof at[0]; i++) {
-        const struct exh_record_place from = {mem + (MAX_B - EXH_RING_MIN_B), EXH_RING_MIN_B, at[i],
-                                              len_B};
+        const struct exh_record_place from = {
+            mem + (MAX_B - EXH_RING_MIN_B), EXH_RING_MIN_B, at[i], len_B};
         for (unsigned k = 0; k < sizeof done_B / sizeof done_B[0]; k++) {
             goes_out(from, done_B[k], room_B);
         }

@@ -29,8 +29,8 @@ static void read(size_t slot_B)
         const uint8_t last = is.image[is.len_B - 1];
         (void)last;
     }
-    if (exh_slots_find(&is, first + (SLOT_MAX_B - slot_B), second + (SLOT_MAX_B - slot_B),
-                       slot_B) >= 0) {
+    if (exh_slots_find(
+            &is, first + (SLOT_MAX_B - slot_B), second + (SLOT_MAX_B - slot_B), slot_B) >= 0) {
         /*@ assert sequence: 1 <= is.sequence <= 0xFFFFFFFE; */
     }
 }
@@ -43,7 +43,7 @@ static void image_next(size_t slot_B, size_t cap_B, size_t image_B)
     ANY(second);
     ANY(buf);
     n = exh_slots_encode(&to, first + (SLOT_MAX_B - slot_B), second + (SLOT_MAX_B - slot_B), slot_B,
-                         buf + (SLOT_MAX_B - cap_B), cap_B, image_B);
+        buf + (SLOT_MAX_B - cap_B), cap_B, image_B);
     /*@ assert what_fits: n <= 40; */
     /*@ assert a_slot: to <= 1; */
 }

@@ -25,8 +25,8 @@ static uint32_t any_causes(void)
 
 /* --- position and velocity --- */
 
-int exh_quad_setup(struct exh_quad_cfg *cfg, const struct exh_quad_par *par, struct exh_period T,
-                   unsigned bits)
+int exh_quad_setup(
+    struct exh_quad_cfg *cfg, const struct exh_quad_par *par, struct exh_period T, unsigned bits)
 {
     struct exh_quad_cfg made;
     (void)T;
@@ -62,7 +62,7 @@ void exh_quad_serialize(struct exh_bytes *c, struct exh_quad *s)
 }
 
 int exh_velocity_window_setup(struct exh_velocity_window_cfg *cfg, struct exh_velocity_scale scale,
-                              const struct exh_velocity_par *par)
+    const struct exh_velocity_par *par)
 {
     struct exh_velocity_window_cfg made;
     (void)scale;
@@ -74,8 +74,8 @@ int exh_velocity_window_setup(struct exh_velocity_window_cfg *cfg, struct exh_ve
     return 0;
 }
 
-int32_t exh_velocity_window_step(struct exh_velocity_window *s,
-                                 const struct exh_velocity_window_cfg *cfg, int32_t cnt)
+int32_t exh_velocity_window_step(
+    struct exh_velocity_window *s, const struct exh_velocity_window_cfg *cfg, int32_t cnt)
 {
     (void)cnt;
     /*@ assert velocity_tick: velocity(s) && velocity_cfg(cfg); */
@@ -92,7 +92,7 @@ void exh_velocity_window_serialize(struct exh_bytes *c, struct exh_velocity_wind
 /* --- law and force --- */
 
 int exh_contact_step(struct exh_contact *s, const struct exh_contact_par *par,
-                     struct exh_contact_in in, struct exh_force_ledger *f)
+    struct exh_contact_in in, struct exh_force_ledger *f)
 {
     (void)in;
     /*@ assert law: contact(s) && contact_par(par); */
@@ -102,7 +102,7 @@ int exh_contact_step(struct exh_contact *s, const struct exh_contact_par *par,
 }
 
 void exh_contact_step_free(struct exh_contact *s, const struct exh_contact_par *par,
-                           int32_t pos_m_q30, struct exh_force_ledger *f)
+    int32_t pos_m_q30, struct exh_force_ledger *f)
 {
     (void)pos_m_q30;
     /*@ assert law_free: contact(s) && contact_par(par); */
@@ -124,7 +124,7 @@ int exh_table_setup(struct exh_knot *knot, unsigned n)
 }
 
 int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, struct exh_period T,
-                    struct exh_table force_to_cur, struct exh_table cur_to_force)
+    struct exh_table force_to_cur, struct exh_table cur_to_force)
 {
     struct exh_drive_cfg made;
     (void)T;
@@ -141,7 +141,7 @@ int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, 
 }
 
 uint32_t exh_drive_force_step(struct exh_drive *s, const struct exh_drive_cfg *cfg,
-                              const struct exh_permit *p, struct exh_force_ledger *f)
+    const struct exh_permit *p, struct exh_force_ledger *f)
 {
     struct exh_force_ledger out = *f;
     /*@ assert drive_force: drive(s) && drive_cfg(cfg) && permit(p) && asked(f); */
@@ -155,7 +155,7 @@ uint32_t exh_drive_force_step(struct exh_drive *s, const struct exh_drive_cfg *c
 }
 
 uint32_t exh_drive_current_step(struct exh_drive *s, const struct exh_drive_cfg *cfg,
-                                const struct exh_force_ledger *f, struct exh_current_ledger *i)
+    const struct exh_force_ledger *f, struct exh_current_ledger *i)
 {
     /*@ assert drive_current: drive(s) && drive_cfg(cfg) && force(f); */
     *s = any_drive();
@@ -193,8 +193,8 @@ int exh_table_invert(struct exh_knot *dst, const struct exh_knot *src, unsigned 
 }
 
 int exh_passivity_setup(struct exh_passivity_cfg *cfg, const struct exh_passivity_par *par,
-                        const struct exh_drive_cfg *drive, struct exh_table held,
-                        struct exh_velocity_scale scale, int32_t speed_mps_q27)
+    const struct exh_drive_cfg *drive, struct exh_table held, struct exh_velocity_scale scale,
+    int32_t speed_mps_q27)
 {
     struct exh_passivity_cfg made;
     (void)scale;
@@ -211,7 +211,7 @@ int exh_passivity_setup(struct exh_passivity_cfg *cfg, const struct exh_passivit
 }
 
 uint32_t exh_passivity_step(struct exh_passivity *s, const struct exh_passivity_cfg *cfg,
-                            int32_t cnt, int touching, struct exh_force_ledger *f)
+    int32_t cnt, int touching, struct exh_force_ledger *f)
 {
     (void)cnt;
     (void)touching;
@@ -222,7 +222,7 @@ uint32_t exh_passivity_step(struct exh_passivity *s, const struct exh_passivity_
 }
 
 void exh_passivity_update(struct exh_passivity *s, const struct exh_passivity_cfg *cfg,
-                          const struct exh_force_ledger *f, int32_t coded_A_q26)
+    const struct exh_force_ledger *f, int32_t coded_A_q26)
 {
     (void)coded_A_q26;
     /*@ assert passivity_held: passivity(s) && passivity_cfg(cfg) && pullback(f) && \initialized(&f->force_N_q20); */
@@ -243,8 +243,8 @@ void exh_passivity_serialize(struct exh_bytes *c, struct exh_passivity *s)
 
 /* --- what watches --- */
 
-int exh_motion_setup(struct exh_motion_cfg *cfg, const struct exh_motion_par *par,
-                     struct exh_period T)
+int exh_motion_setup(
+    struct exh_motion_cfg *cfg, const struct exh_motion_par *par, struct exh_period T)
 {
     struct exh_motion_cfg made;
     (void)T;
@@ -257,8 +257,8 @@ int exh_motion_setup(struct exh_motion_cfg *cfg, const struct exh_motion_par *pa
     return 0;
 }
 
-uint32_t exh_motion_step(struct exh_motion *s, const struct exh_motion_cfg *cfg,
-                         int32_t *vel_mps_q27, uint32_t *limits)
+uint32_t exh_motion_step(
+    struct exh_motion *s, const struct exh_motion_cfg *cfg, int32_t *vel_mps_q27, uint32_t *limits)
 {
     /*@ assert watch_step: watch_cfg(cfg) && limits(*limits) && \initialized(vel_mps_q27); */
     ANY(*s);
@@ -267,8 +267,8 @@ uint32_t exh_motion_step(struct exh_motion *s, const struct exh_motion_cfg *cfg,
     return Frama_C_unsigned_int_interval(0, EXH_FAULT_SPEED | EXH_FAULT_STUCK);
 }
 
-void exh_motion_update(struct exh_motion *s, const struct exh_motion_cfg *cfg, int32_t cnt,
-                       int32_t coded_A_q26)
+void exh_motion_update(
+    struct exh_motion *s, const struct exh_motion_cfg *cfg, int32_t cnt, int32_t coded_A_q26)
 {
     (void)cnt;
     (void)coded_A_q26;
@@ -282,8 +282,8 @@ void exh_motion_serialize(struct exh_bytes *c, struct exh_motion *s)
     ANY(*s);
 }
 
-int exh_supply_setup(struct exh_supply_cfg *cfg, const struct exh_supply_par *par,
-                     struct exh_period T)
+int exh_supply_setup(
+    struct exh_supply_cfg *cfg, const struct exh_supply_par *par, struct exh_period T)
 {
     (void)T;
     /*@ assert supply_setup: \valid_read(par); */
@@ -291,8 +291,8 @@ int exh_supply_setup(struct exh_supply_cfg *cfg, const struct exh_supply_par *pa
     return REFUSED() ? -EXH_E_RANGE : 0;
 }
 
-int exh_supply_step(struct exh_supply *s, const struct exh_supply_cfg *cfg, int16_t raw,
-                    uint32_t missed)
+int exh_supply_step(
+    struct exh_supply *s, const struct exh_supply_cfg *cfg, int16_t raw, uint32_t missed)
 {
     (void)raw;
     (void)missed;
@@ -307,8 +307,8 @@ void exh_supply_serialize(struct exh_bytes *c, struct exh_supply *s)
     ANY(*s);
 }
 
-int exh_tracking_setup(struct exh_tracking_cfg *cfg, const struct exh_tracking_par *par,
-                       struct exh_period T)
+int exh_tracking_setup(
+    struct exh_tracking_cfg *cfg, const struct exh_tracking_par *par, struct exh_period T)
 {
     struct exh_tracking_cfg made;
     (void)T;
@@ -340,8 +340,8 @@ void exh_tracking_serialize(struct exh_bytes *c, struct exh_tracking *s)
     ANY(*s);
 }
 
-int exh_safety_setup(struct exh_safety_cfg *cfg, const struct exh_safety_par *par,
-                     struct exh_period T)
+int exh_safety_setup(
+    struct exh_safety_cfg *cfg, const struct exh_safety_par *par, struct exh_period T)
 {
     struct exh_safety_cfg made;
     (void)T;
@@ -353,8 +353,8 @@ int exh_safety_setup(struct exh_safety_cfg *cfg, const struct exh_safety_par *pa
     return 0;
 }
 
-struct exh_permit exh_safety_step(struct exh_safety *s, const struct exh_safety_cfg *cfg,
-                                  struct exh_safety_in in)
+struct exh_permit exh_safety_step(
+    struct exh_safety *s, const struct exh_safety_cfg *cfg, struct exh_safety_in in)
 {
     /*@ assert safety_step: safety(s) && safety_cfg(cfg) && 1 <= in.fingers <= 5 && causes(in.raised); */
     *s = any_safety();
@@ -379,7 +379,7 @@ void exh_gate_shut(struct exh_safety *s, uint16_t dac_zero_raw, struct exh_drive
 }
 
 void exh_gate_step(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
-                   struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out)
+    struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out)
 {
     /*@ assert gate_fingers: 1 <= n <= 5 && n <= s->fingers; */
     for (unsigned k = 0; k < n; k++) {

@@ -20,7 +20,7 @@ static struct exh_vec3 any_vec3(void)
 /* --- glove --- */
 
 int exh_glove_setup(struct exh_glove_cfg *cfg, const struct exh_glove_par *par,
-                    const struct exh_glove_cal *cal, struct exh_period T)
+    const struct exh_glove_cal *cal, struct exh_period T)
 {
     struct exh_glove_cfg made;
     (void)T;
@@ -34,7 +34,7 @@ int exh_glove_setup(struct exh_glove_cfg *cfg, const struct exh_glove_par *par,
 }
 
 uint32_t exh_glove_step(struct exh_glove *s, const struct exh_glove_cfg *cfg,
-                        const struct exh_glove_in *in, int32_t *angle_turn_q32)
+    const struct exh_glove_in *in, int32_t *angle_turn_q32)
 {
     /*@ assert glove_step: glove_cfg(cfg) && \valid_read(in) && \valid(angle_turn_q32 + (0 .. 21)); */
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
@@ -54,8 +54,8 @@ void exh_glove_serialize(struct exh_bytes *c, struct exh_glove *s)
 
 /* --- hand --- */
 
-int exh_hand_setup(struct exh_hand_finger *f, const struct exh_hand_bones *bones,
-                   const struct exh_hand_par *par)
+int exh_hand_setup(
+    struct exh_hand_finger *f, const struct exh_hand_bones *bones, const struct exh_hand_par *par)
 {
     /*@ assert hand_setup: \valid_read(bones) && \valid_read(par); */
     if (REFUSED()) { return -EXH_E_RANGE; }
@@ -73,22 +73,22 @@ int exh_hand_couple(struct exh_hand_finger *f, const struct exh_hand_map *map, u
 }
 
 uint32_t exh_hand_joints(const struct exh_hand_map *map, unsigned finger,
-                         const int32_t *sensor_turn_q32, int32_t *joint_turn_q32)
+    const int32_t *sensor_turn_q32, int32_t *joint_turn_q32)
 {
     /*@ assert hand_joints: \valid_read(map) && finger < 5 && \initialized(sensor_turn_q32 + (0 .. 21)); */
     for (unsigned j = 0; j < EXH_HAND_JOINTS; j++) { joint_turn_q32[j] = any32(); }
     return any8() & 7u;
 }
 
-void exh_hand_tip(const struct exh_hand_finger *f, const int32_t *joint_turn_q32,
-                  struct exh_vec3 *tip_m_q30)
+void exh_hand_tip(
+    const struct exh_hand_finger *f, const int32_t *joint_turn_q32, struct exh_vec3 *tip_m_q30)
 {
     /*@ assert hand_tip: hand(f) && \initialized(joint_turn_q32 + (0 .. 2)); */
     *tip_m_q30 = any_vec3();
 }
 
 void exh_hand_tip_slope(const struct exh_hand_finger *f, const int32_t *joint_turn_q32,
-                        struct exh_vec3 *tip_m_q30, struct exh_vec3 *slope_q24)
+    struct exh_vec3 *tip_m_q30, struct exh_vec3 *slope_q24)
 {
     /*@ assert hand_tip_slope: hand(f) && \initialized(joint_turn_q32 + (0 .. 2)); */
     *tip_m_q30 = any_vec3();

@@ -9,8 +9,8 @@
 
 #include "exhand/run/calib_set.h"
 
-void exh_params_setup(struct exh_params *p, const struct exh_signal_table *t, int32_t *active,
-                      int32_t *staged)
+void exh_params_setup(
+    struct exh_params *p, const struct exh_signal_table *t, int32_t *active, int32_t *staged)
 {
     static const struct exh_params none;
     *p = none;
@@ -23,8 +23,8 @@ void exh_params_setup(struct exh_params *p, const struct exh_signal_table *t, in
     Frama_C_make_unknown((char *)staged, p->count * sizeof *staged);
 }
 
-void exh_params_slew_setup(struct exh_params *p, const struct exh_tune_par *par,
-                           struct exh_period T)
+void exh_params_slew_setup(
+    struct exh_params *p, const struct exh_tune_par *par, struct exh_period T)
 {
     (void)T;
     /*@ assert params_slew: params(p) && \valid_read(par); */
@@ -62,14 +62,14 @@ int exh_gains_ok(const struct exh_gains_par *r, int32_t k_Npm_q10, int32_t b_Nsp
 }
 
 int exh_gains_stage(struct exh_params *p, const struct exh_gains_par *r, uint16_t id,
-                    uint16_t instance, int32_t raw)
+    uint16_t instance, int32_t raw)
 {
     /*@ assert gains_stage: params(p) && rule(r); */
     return exh_params_stage(p, id, instance, raw);
 }
 
-int exh_gains_validate(const struct exh_params *p, const struct exh_gains_par *r,
-                       uint16_t *instance)
+int exh_gains_validate(
+    const struct exh_params *p, const struct exh_gains_par *r, uint16_t *instance)
 {
     /*@ assert gains_staged: params(p) && rule(r) && (instance == \null || \valid(instance)); */
     return REFUSED() ? -EXH_E_GAINS : 0;
@@ -90,8 +90,8 @@ void exh_gains_step(struct exh_params *p, const struct exh_gains_par *r)
 
 /* --- guard, self-test, calibrations --- */
 
-void exh_integrity_seal(struct exh_integrity *g, const void *area, size_t len_B,
-                        struct exh_params *p)
+void exh_integrity_seal(
+    struct exh_integrity *g, const void *area, size_t len_B, struct exh_params *p)
 {
     const struct exh_integrity sealed = {area, (uint32_t)len_B, 0, any_u32(), 0, p, 0};
     *g = sealed;
@@ -107,13 +107,10 @@ int exh_integrity_step(struct exh_integrity *g)
     return g->broken;
 }
 
-int exh_selftest(void)
-{
-    return any8();
-}
+int exh_selftest(void) { return any8(); }
 
 int exh_calib_set_load(struct exh_scene_calib *k, struct exh_params *p,
-                       const struct exh_calib_set_par *par, uint32_t fingers)
+    const struct exh_calib_set_par *par, uint32_t fingers)
 {
     (void)fingers;
     /*@ assert exh_calib_set_load: \valid(k) && params(p) && \valid_read(par); */
@@ -121,7 +118,7 @@ int exh_calib_set_load(struct exh_scene_calib *k, struct exh_params *p,
 }
 
 int exh_calib_set_tables(struct exh_calib_tables *t, struct exh_scene_calib *k,
-                         const struct exh_calib_set_par *par, const struct exh_calib_finger *of)
+    const struct exh_calib_set_par *par, const struct exh_calib_finger *of)
 {
     (void)k;
     /*@ assert exh_calib_set_tables: \valid(t) && \valid_read(par) && of->f < 5 && \valid_read(of->drive); */
