@@ -72,7 +72,14 @@
          0, \
          "FILE", \
          "leave there what the window showed last, as words and numbers"}, \
-        {"video", CLI_TEXT, &(r).video, 0, 0, "DIR", "leave pictures there (--headless, no link)"}, \
+        {"video", \
+         CLI_TEXT, \
+         &(r).video, \
+         0, \
+         0, \
+         "DIR", \
+         "leave pictures there (--headless," \
+         " no link)"}, \
         {"video-fps", CLI_REAL, &(r).video_fps, 1, 400, "N", "so many a second; 25"}, \
         {"width", CLI_INT, &(r).width, 160, 8192, "PIXELS", "of the picture; 960"}, \
         {"height", CLI_INT, &(r).height, 120, 8192, "PIXELS", "of the picture; 600"}, \

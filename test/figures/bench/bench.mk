@@ -20,8 +20,7 @@ $(bench_bin): $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) -Wl,--strip-debug -lm
 
-# Ways to integrate the simulator's plant. The second program is the whole simulator with such a
-# plant.
+# Ways to integrate the simulator's plant. The second is the whole simulator with such a plant.
 sim_bench_obj := $(patsubst %,$(B)/posix/test/figures/bench/sim/%.o,method semi leapfrog flow wide)
 $(B)/bench/sim_work: $(B)/posix/test/figures/bench/sim/work.o $(sim_bench_obj) \
     $(B)/posix/ports/posix/sim/device.o
@@ -43,11 +42,9 @@ $(bench_i686): $(i686_src) \
     $(wildcard test/figures/bench/*.h lib/src/*/*.h lib/include/exhand/*.h test/wide.h) $(stamp)
 	@mkdir -p $(@D)
 	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP -g,$(base)) $(PORT_HOSTFLAGS) $(CFLAGS) \
-	    -Itest \
-	    -o $@ $(filter %.c,$^) -lm
+	    -Itest -o $@ $(filter %.c,$^) -lm
 
-# Ours beside others' code: CMSIS-DSP if peers.sh could fetch it. Compiler and flags are the same,
-# without warnings.
+# Ours beside others' code: CMSIS-DSP if peers.sh could fetch it; same compiler, no warnings.
 cmsis     := $(B)/peers/cmsisdsp-1.10.3
 biquad    := $(cmsis)/Source/FilteringFunctions/arm_biquad_cascade_
 cmsis_src := $(foreach f,df1_q31 df1_fast_q31 df1_init_q31 df1_32x64_q31 df1_32x64_init_q31 \
@@ -94,9 +91,7 @@ work_src := $(filter-out %/work_cmsis.c %/work_fixmath.c,$(wildcard test/figures
             lib/src/run/calib_set.c
 ifneq ($(wildcard $(cmsis)/.complete),)
 work_src += test/figures/bench/work_cmsis.c \
-            $(wildcard $(cmsis)/Source/ControllerFunctions/arm_pid_*_q31.c \
-            $(cmsis)/Source/ControllerFunctions/arm_pid_*_q15.c \
-            $(cmsis)/Source/ControllerFunctions/arm_pid_*_f32.c) \
+            $(wildcard $(patsubst %,$(cmsis)/Source/ControllerFunctions/arm_pid_*_%.c,q31 q15 f32)) \
             $(cmsis)/Source/CommonTables/arm_common_tables.c \
             $(cmsis)/Source/FastMathFunctions/arm_sin_q31.c \
             $(cmsis)/Source/FastMathFunctions/arm_cos_q31.c \
