@@ -90,8 +90,8 @@ work_src := $(filter-out %/work_cmsis.c %/work_fixmath.c,$(wildcard test/figures
             $(addprefix test/figures/bench/,plain.c law.c path.c measure.c) examples/drop/drop.c \
             lib/src/run/calib_set.c
 ifneq ($(wildcard $(cmsis)/.complete),)
-work_src += test/figures/bench/work_cmsis.c \
-            $(wildcard $(patsubst %,$(cmsis)/Source/ControllerFunctions/arm_pid_*_%.c,q31 q15 f32)) \
+pid      := $(cmsis)/Source/ControllerFunctions/arm_pid_*_
+work_src += test/figures/bench/work_cmsis.c $(wildcard $(pid)q31.c $(pid)q15.c $(pid)f32.c) \
             $(cmsis)/Source/CommonTables/arm_common_tables.c \
             $(cmsis)/Source/FastMathFunctions/arm_sin_q31.c \
             $(cmsis)/Source/FastMathFunctions/arm_cos_q31.c \
