@@ -20,6 +20,7 @@ fmt:
 	$(Q)clang-format -i $(fmt_src)
 # Another version of clang-format would differ in some lines.
 fmt-check:
+	@test/walk/docs/wide.sh || { echo "$@: lines of more than 100 columns" >&2; exit 1; }
 	@.ci/deps "$@" clang-format clang-format || exit 3
 	@clang-format --version | grep -q 'version 14' || \
 	    { echo "$@: left out: this clang-format is not 14"; exit 0; }; \

@@ -18,7 +18,7 @@ told=0 untold=0
 
 while IFS='#' read -r file change promise; do
     until [ -n "$promise" ]; do # it goes on in the next line
-        IFS='#' read -r more promise
+        IFS='#' read -r more promise || exit 1
         change="$change $more"
     done
     sed -E "$change" "ports/mps2/$file.c" >"$work/$file.c"
@@ -46,13 +46,13 @@ board#s/= EXH_BOARD_VERSION/= EXH_BOARD_VERSION + 1/#its version
 board#s/(\.enc_bits = ).*/\18,/#width of its counters
 board#s/ \|\| rate_Hz > exh_board_info.rate_max_Hz//#rates above its own are refused
 board#s/\{counts, CLOCK_HZ\}/{counts + counts \/ 500, CLOCK_HZ}/#the period is what was set
-board#s/SYST_RELOAD = counts - 1;/& SYST_VALUE = 0; SYST_CONTROL = SYST_RUN;/#set-up is no
-    missed tick
+board#s/SYST_RELOAD = counts - 1;/& SYST_VALUE = 0; SYST_CONTROL = SYST_RUN;/
+    #set-up is no missed tick
 board#s/seen = now;/seen++;/#missed ticks are counted once
 board#s/(n - 1 > INT_MAX.*)\(int\)\(n - 1\)/\10/#missed ticks are counted
 board#s/(n - 1 > INT_MAX.*)\(int\)\(n - 1\)/\1(int)n/#a tick on time is 0 missed
-board#s/ticks\+\+;/static uint32_t half; ticks += ++half % 2;/#ticks come at the period, by the
-    cycles
+board#s/ticks\+\+;/static uint32_t half; ticks += ++half % 2;/
+    #ticks come at the period, by the cycles
 box#s/EXH_DIN_CARDS\}/EXH_DIN_CARDS | 0x80u}/#no input that is not there
 box#s/\{\.din = EXH_DIN_ESTOP \| /{.din = /#inputs of an idle box are healthy
 box#s/EXH_DIN_WATCHDOG \| //#a box whose watchdog has not fired says so
@@ -61,8 +61,8 @@ box#s/(in->mon_raw\[i\] =)/in->enc_raw[i] = frames * 50; \1/#counts of an idle b
 box#s/enabled >> i \& 1 \?/1 ?/#a drive that is not enabled has no current
 box#s/enabled >> i \& 1 \?/enabled \& 1 ?/#each finger has its own enable
 box#s/(enabled = out->enable);/if (out->enable) { \1; }/#enables are taken away again
-box#s/(for \(unsigned i.*) \{ (ref.i. = within.*)/if (!out->enable) \1 { \2/#codes act together
-    with enables
+box#s/(for \(unsigned i.*) \{ (ref.i. = within.*)/if (!out->enable) \1 { \2/
+    #codes act together with enables
 box#s/\{ ref\[i\] = 0; \}/{}/; s/^    enabled = 0;//#safe takes the current away
 box#s/(void mps2_box_safe.*)/static int safe_calls; \1/; s/^    enabled = 0;/if (++safe_calls <
     10) { return; } enabled = 0;/#safe works the first time
@@ -82,8 +82,8 @@ board#/^int exh_board_link_send/,/^}/s/return 0;/return 3;/#a packet is sent who
 board#/^int exh_board_link_send/,/^}/s/return 0;/for (volatile int i = 0; i < 30000; i++) {}
     return 0;/#send does not block
 board#/^int exh_board_link_recv/,/^}/s/return 0;/return 4;/#no packet, no bytes
-board#/^int exh_board_link_recv/,/^}/s/\(void\)buf;/if (cap_B > 4) { ((char *)buf)[4] = 1; }/#no
-    packet, nothing written
+board#/^int exh_board_link_recv/,/^}/s/\(void\)buf;/if (cap_B > 4) { ((char *)buf)[4] = 1; }/
+    #no packet, nothing written
 board#/^int exh_board_link_recv/,/^}/s/return 0;/for (volatile int i = 0; i < 30000; i++) {}
     return 0;/#receive does not block
 END

@@ -185,5 +185,16 @@ class Functions(unittest.TestCase):
                    "int g(void)\n{\n}\n", ("f", 3), ("g", 3))
 
 
+class Wide(unittest.TestCase):
+    def test_a_line_of_101_columns_is_named(self):
+        with tempfile.TemporaryDirectory() as d:
+            path = os.path.join(d, "planted.py")
+            with open(path, "w", encoding="utf-8") as f:
+                f.write("#%s\n#%s\n#%s\n" % (99 * "\u2026", 100 * "x", 99 * "x"))
+            p = subprocess.run([os.path.join(os.path.dirname(os.path.abspath(__file__)), "wide.sh"),
+                                path], stdout=subprocess.PIPE, universal_newlines=True)
+        self.assertEqual((p.returncode, p.stdout), (1, "%s:2:#%s\n" % (path, 100 * "x")))
+
+
 if __name__ == "__main__":
     unittest.main()

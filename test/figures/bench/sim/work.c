@@ -22,7 +22,7 @@
 #define LONGEST    10 /* 2^-10 s */
 #define SHORTEST   20
 #define COUNTED    16
-#define OWN        (SHORTEST + 1) /* what the device's table says, of the simulator's method alone */
+#define OWN        (SHORTEST + 1) /* the table's, of the simulator's method alone */
 #define POINTS_MAX 1024
 #define REFERENCE  16
 #define LOST_M     1e3 /* worse than this is no solution */
