@@ -163,7 +163,7 @@ class Source:
         self.path, self.text = path, text
         self.starts = [0] + [m.end() for m in re.finditer("\n", text)]
         self.functions = [(m.start(), m.group(1))
-                          for m in re.finditer(r"^[A-Za-z_][^\n;={]*?\b(\w+)\((?:[^;{}]*)\)\n\{",
+                          for m in re.finditer(r"^[A-Za-z_][^\n;={]*?\b(\w+)\((?:[^;{}]*)\)\s*\{",
                                                text, re.M)]
 
     def changed(self, m):

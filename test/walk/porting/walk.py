@@ -22,7 +22,8 @@ DOC = os.path.join(ROOT, "docs", "PORTING.md")
 
 def functions(text):
     """{name: (from, to)} of the board's functions."""
-    found = re.finditer(r"^\w+ (exh_board_\w+)\([^;{]*\)\n\{.*?^\}\n", text, re.M | re.S)
+    found = re.finditer(r"^\w+ (exh_board_\w+)\([^;{]*\)(?: \{[^\n]*\}\n|\n\{.*?^\}\n)", text,
+                        re.M | re.S)
     return {m.group(1): m.span() for m in found}
 
 

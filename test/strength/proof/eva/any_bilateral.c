@@ -7,7 +7,7 @@
  *
  * EVA: -eva-slevel 5 -kernel-warn-key annot:missing-spec=abort
  * WITH: examples/glove/cal.c lib/src/sense/glove_cal.c examples/bilateral/finger.c examples/bilateral/cause.c examples/bilateral/wire.c examples/bilateral/trace.c examples/bilateral/tables.c lib/src/talk/trace.c
- * PLANT: examples/bilateral/bilateral.h: return cfg->at[k] < BILATERAL_FINGERS ? cfg->at[k] : 0; -> return cfg->at[k];
+ * PLANT: examples/bilateral/bilateral.h: return f & (0u - (f < BILATERAL_FINGERS)); -> return f;
  * PLANT: examples/bilateral/bilateral.h: return n > 0 ? n : 1; -> return n;
  * PLANT: examples/bilateral/trace.c: if (t->result > 0) { t->result = 0; } -> (void)0;
  * PLANT: examples/bilateral/trace.c: n < EXH_WIRE_FRAMES ? n : EXH_WIRE_FRAMES); -> n);
