@@ -360,10 +360,10 @@ MUTANTS = (
      "if (asked >> EXH_COIL_CLEAR & 1u) { return EXH_CMD_CLEAR; }", ""),
     ("modbus", L + "talk/regs_stage.c", "    exh_regs_discard(r);\n    return err;",
      "    return err;"),
-    ("modbus", L + "talk/regs_trace.c", "what.index[i] >= r->trace->signals",
-     "what.index[i] > r->trace->signals"),
+    ("modbus", L + "talk/regs_trace.c", "what->index[i] >= r->trace->signals",
+     "what->index[i] > r->trace->signals"),
     ("modbus", L + "talk/regs_trace.c", "return k == 0 ?", "return k != 0 ?"),
-    ("modbus", L + "talk/regs_stage.c", "        exh_regs_trace_write(r, &s, from);\n", ""),
+    ("modbus", L + "talk/regs_stage.c", "        (void)exh_trace_start(r->trace, &what);\n", ""),
     ("modbus_rtu", L + "talk/modbus_rtu.c", "0xFFFFu;\n    for", "0;\n    for"),
     ("modbus_rtu", L + "talk/modbus_rtu.c", "0x8801, 0x4400", "0x8800, 0x4400"),
     ("modbus_rtu", L + "talk/modbus_rtu.c", "#define LEAST_B 4u", "#define LEAST_B 3u"),
@@ -415,7 +415,7 @@ THIN = {
     "raw < row->min || raw > row->max": 0.90,
     "if ((on & discard) && (r->asked & apply)) { return EXH_MODBUS_BUSY; }": 0.68,
     "if (asked >> EXH_COIL_CLEAR & 1u) { return EXH_CMD_CLEAR; }": 0.82,
-    "what.index[i] >= r->trace->signals": 0.72,
+    "what->index[i] >= r->trace->signals": 0.72,
     "function == 22;": 0.30,
 }
 

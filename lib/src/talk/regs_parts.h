@@ -78,14 +78,13 @@ struct exh_regs_span {
 int exh_regs_locate(const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at, uint16_t n,
     struct exh_regs_span *s);
 
-/* The same below EXH_REGS_SIGNAL_AT, behind the head; what is there; whether a request may be
- * written there (0 or exception 3), and writing one that may. */
+/* The same below EXH_REGS_SIGNAL_AT, behind the head; what is there; and what would be asked of the
+ * trace with these registers written: 0, or exception 3. */
 int exh_regs_trace_locate(const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at,
     uint16_t n, struct exh_regs_span *s);
 uint32_t exh_regs_trace_value(const struct exh_regs *r, enum exh_regs_source source, uint32_t i);
-int exh_regs_trace_validate(
-    const struct exh_regs *r, const struct exh_regs_span *s, const uint8_t *from);
-void exh_regs_trace_write(struct exh_regs *r, const struct exh_regs_span *s, const uint8_t *from);
+int exh_regs_trace_request(const struct exh_regs *r, const struct exh_regs_span *s,
+    const uint8_t *from, struct exh_trace_request *what);
 
 /* Nothing is staged any more. */
 void exh_regs_discard(struct exh_regs *r);

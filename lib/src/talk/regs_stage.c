@@ -64,10 +64,11 @@ static int written(const struct exh_regs *r, const struct exh_regs_span *s,
 int exh_regs_validate(const struct exh_regs *r, uint16_t at, uint16_t n, const uint8_t *from)
 {
     struct exh_regs_span s;
+    struct exh_trace_request what;
     struct exh_regs_walk w;
     int err = exh_regs_locate(r, EXH_REGS_HOLDING, at, n, &s);
     if (err != 0 || n == 0) { return err; }
-    if (s.source == EXH_REGS_SET) { return exh_regs_trace_validate(r, &s, from); }
+    if (s.source == EXH_REGS_SET) { return exh_regs_trace_request(r, &s, from, &what); }
     if (r->asked >> EXH_COIL_APPLY & 1u) { return EXH_MODBUS_BUSY; }
     w = exh_regs_walk_to(r->params, s.from >> 1);
     for (uint32_t i = s.from >> 1; err == 0 && 2 * i < s.end; i++) {
@@ -81,12 +82,14 @@ int exh_regs_validate(const struct exh_regs *r, uint16_t at, uint16_t n, const u
 int exh_regs_write(struct exh_regs *r, uint16_t at, uint16_t n, const uint8_t *from)
 {
     struct exh_regs_span s;
+    struct exh_trace_request what;
     struct exh_regs_walk w;
     int err = exh_regs_validate(r, at, n, from);
     if (err == 0) { err = exh_regs_locate(r, EXH_REGS_HOLDING, at, n, &s); }
     if (err != 0 || n == 0) { return err; }
     if (s.source == EXH_REGS_SET) {
-        exh_regs_trace_write(r, &s, from);
+        (void)exh_regs_trace_request(r, &s, from, &what);
+        (void)exh_trace_start(r->trace, &what);
         return 0;
     }
     w = exh_regs_walk_to(r->params, s.from >> 1);

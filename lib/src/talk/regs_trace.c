@@ -51,32 +51,18 @@ uint32_t exh_regs_trace_value(const struct exh_regs *r, enum exh_regs_source sou
     return (uint32_t)t->frame[slot].raw[k - 2];
 }
 
-/* What is asked for with these registers written: each value as a whole, with its other half as it
- * stands. */
-static struct exh_trace_request asked_with(
-    const struct exh_regs *r, const struct exh_regs_span *s, const uint8_t *from)
+/* Each value as a whole, with its other half as it stands. */
+int exh_regs_trace_request(const struct exh_regs *r, const struct exh_regs_span *s,
+    const uint8_t *from, struct exh_trace_request *what)
 {
-    struct exh_trace_request what = r->trace->what;
+    *what = r->trace->what;
     for (uint32_t at = s->from; at < s->end; at++, from += 2) {
-        uint32_t *v = at < 2 ? &what.every : &what.index[(at >> 1) - 1u];
+        uint32_t *v = at < 2 ? &what->every : &what->index[(at >> 1) - 1u];
         const uint32_t word = (uint32_t)from[0] << 8 | from[1];
         *v = (at & 1u) ? (*v & 0xFFFF0000u) | word : (*v & 0xFFFFu) | word << 16;
     }
-    return what;
-}
-
-int exh_regs_trace_validate(
-    const struct exh_regs *r, const struct exh_regs_span *s, const uint8_t *from)
-{
-    const struct exh_trace_request what = asked_with(r, s, from);
     for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) {
-        if (what.index[i] >= r->trace->signals) { return EXH_MODBUS_VALUE; }
+        if (what->index[i] >= r->trace->signals) { return EXH_MODBUS_VALUE; }
     }
     return 0;
-}
-
-void exh_regs_trace_write(struct exh_regs *r, const struct exh_regs_span *s, const uint8_t *from)
-{
-    const struct exh_trace_request what = asked_with(r, s, from);
-    (void)exh_trace_start(r->trace, &what);
 }
