@@ -34,8 +34,8 @@ struct exh_contact_par {
 #define EXH_CONTACT_B_ID 0x0402 /* of the row of b */
 extern const struct exh_signal exh_contact_rows[EXH_CONTACT_ROWS];
 
-/* What one finger's law remembers. A state of zeros is a string not yet seen: the first tick's
- * position is its first turn. */
+/* What one finger's law remembers. All zeros: no sample yet. The first position becomes the first
+ * reversal point. */
 struct exh_contact {
     int32_t turn_m_q30; /* farthest position since the last reversal */
     uint8_t inward;     /* 1: string runs in, F0 acts */

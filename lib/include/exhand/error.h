@@ -14,7 +14,7 @@
 extern "C" {
 #endif
 
-/* Codes; a call returns them with a minus before, also over wire and registers. */
+/* Error codes. Functions, packets and registers carry them negated. */
 enum exh_error {
     EXH_OK = 0,         /* done */
     EXH_E_RANGE = 1,    /* a value lies outside its documented range */

@@ -36,8 +36,8 @@ static inline int32_t exh_from_u32(uint32_t u)
     return u <= INT32_MAX ? (int32_t)u : -(int32_t)(UINT32_MAX - u) - 1;
 }
 
-/* v limited to int32_t, not audited. Asked of the low word: behind two comparisons of 64 bits
- * compilers for 32 go on with 64. */
+/* v limited to int32_t, not audited. Tests the low word only: after a 64-bit comparison, 32-bit
+ * compilers keep the rest of the expression in 64 bits. */
 static inline int32_t exh_limit32(int64_t v)
 {
     const int32_t low = exh_from_u32((uint32_t)((uint64_t)v & UINT32_MAX));
@@ -124,8 +124,8 @@ static inline int32_t exh_wrap_add(int32_t a, int32_t b)
     return exh_from_u32((uint32_t)a + (uint32_t)b);
 }
 
-/* a - b limited to int32_t. By masks: of a choice of constants a compiler makes 64 bits in the
- * products behind it. */
+/* a - b limited to int32_t. Branch-free: with a conditional, gcc widens the products that follow to
+ * 64 bits. */
 static inline int32_t exh_diff_sat32(int32_t a, int32_t b)
 {
     const int32_t d = exh_wrap_diff(a, b);
@@ -159,8 +159,8 @@ struct exh_gain {
 static inline int64_t exh_gain_mul(struct exh_gain g, int32_t x)
 {
     const int64_t v = (int64_t)x * g.mant;
-    /* Of twice v: one shift of 64 bits by a variable, where half of 2^n costs two. Nothing wraps
-     * but of damaged gains. */
+    /* Shifts 2v, so that rounding needs one variable 64-bit shift instead of two. Wraps only if the
+     * gain is corrupt. */
     return exh_wrap_add64(exh_wrap_add64(v, v) >> (g.shift & 63u), 1) >> 1;
 }
 

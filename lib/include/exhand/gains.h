@@ -61,15 +61,15 @@ int exh_gains_validate(
     const struct exh_params *p, const struct exh_gains_par *rule, uint16_t *instance);
 
 /* At set-up of a scene with a rule: on 1, k and b stand still in exh_params_apply() while locked
- * and are moved by exh_gains_step() alone; 0: as all slewed values. Who forgets the step stays
- * where it is. */
+ * and are moved by exh_gains_step() alone; 0: as all slewed values. Without exh_gains_step() k and
+ * b do not change. */
 void exh_gains_enable(struct exh_params *p, int on);
 
 /* Behind exh_params_apply(), before the tick: k and b of every instance go one step of 2^-shift
  * towards what is staged, so that the active pair is inside in every tick, whatever rule set-up
- * took and whenever something else is staged. Straight there where the rule allows all of the line
- * between; else k falls first, to the lowest knot between the two b, b follows as soon as it may,
- * and k rises behind that knot: it never goes up and down by turns. Each takes at most the ticks of
+ * took and whenever something else is staged. Moves along the straight line if all of it is inside
+ * the rule. Otherwise k first falls to the lowest knot in between, then b moves, then k rises: k
+ * never alternates. Each takes at most the ticks of
  * exh_params_slew_step() for falling, for b and for rising, one behind the other. To and from k = b
  * = 0 where that lies apart from the rest of the rule (k_min > 0, or the first knot's b > 0): one
  * jump between it and k_min. shift 0: at once. Staged pairs outside, which exh_gains_stage()

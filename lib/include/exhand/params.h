@@ -75,8 +75,8 @@ int32_t exh_params_slew_step(int32_t now, int32_t goal, unsigned shift);
  * way (slewed rows). */
 int exh_params_apply(struct exh_params *p);
 
-/* Between apply and tick, for who moves rows in `led`: value i is active as raw, and on its way if
- * that is not what is wanted. i below count. */
+/* For the owner of the `led` rows, between apply and tick: sets active value i. It keeps slewing if
+ * it differs from the staged value. i below count. */
 void exh_params_set_active(struct exh_params *p, uint32_t i, int32_t raw);
 
 /* Wanted becomes what is active now: what was staged, or is on its way, stops here. */
@@ -91,11 +91,10 @@ void exh_params_rollback(struct exh_params *p, const int32_t *was, uint8_t pendi
  * whole; else the cursor is not ok and nothing is. */
 void exh_params_serialize(struct exh_bytes *c, struct exh_params *p);
 
-/* Redundancy, for a guard (exhand/integrity.h): seal takes both arrays as they are now; look then
- * looks at the next value, in turn. 1: it is another one than was staged or applied (while nothing
- * is on its way), or at the end of a round, the sum over both arrays is not what the changes made
- * of it. A change of one bit in either array is told within two rounds, in mid-slew too; no change
- * through these functions is. */
+/* Redundancy, for a guard (exhand/integrity.h): seal takes both arrays as they are now; verify
+ * then checks the next value, in turn. 1: the value was changed by anything but these functions
+ * (while nothing slews), or at the end of a round, the checksum of both arrays disagrees. One
+ * flipped bit in either array is found within two rounds, while a value slews, too. */
 void exh_params_seal(struct exh_params *p);
 int exh_params_verify(struct exh_params *p);
 

@@ -36,7 +36,8 @@ enum exh_command {
     EXH_CMD_NONE, /* nothing */
     EXH_CMD_RUN,  /* OFF -> ARM when every step of arming holds */
     EXH_CMD_OFF,  /* to OFF, by way of RELEASE where there may be a force */
-    EXH_CMD_CLEAR /* FAULT -> OFF when no cause is present, and the dead-man was open since any was
+    EXH_CMD_CLEAR /* FAULT -> OFF, if no cause is present and the dead-man was released after the
+                   * last one
                    */
 };
 
@@ -138,8 +139,7 @@ struct exh_safety_cfg {
 int exh_safety_setup(
     struct exh_safety_cfg *cfg, const struct exh_safety_par *par, struct exh_period T);
 
-/* The box from tick to tick. A state of zeros is OFF. For everybody to read, for the functions
- * below alone to write. */
+/* The box from tick to tick. A state of zeros is OFF. Read-only outside this module. */
 struct exh_safety {
     uint32_t present;    /* causes seen in the last tick: why RUN or CLEAR is refused */
     uint32_t faults;     /* latched causes */
@@ -202,7 +202,8 @@ void exh_gate_step(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsign
 /* The same of a scene that drives nothing: the gate is shut, every finger gets dac_zero_raw. */
 void exh_gate_shut(struct exh_safety *s, uint16_t dac_zero_raw, struct exh_drive_out *out);
 
-/* State through a cursor, with a CRC of it: bytes that do not agree are read as FAULT, LOGIC. */
+/* State through a cursor, with a CRC of it: a state whose CRC is wrong is restored as FAULT with
+ * cause LOGIC. */
 void exh_safety_serialize(struct exh_bytes *c, struct exh_safety *s);
 
 /* Names for people and files (safety_names.c), [a-z0-9_]+; "" beyond the last. k counts from 0:

@@ -63,8 +63,8 @@ static inline uint32_t exh_trace_oldest(const struct exh_trace *t)
     return t->head - t->first > t->mask ? t->head - t->mask - 1u : t->first;
 }
 
-/* Where who reads must not touch what the loop writes: `shown` is his, of as many frames, and this
- * is called while he does not use it. A trace that was started on `shown` is started on `own`; else
+/* Copies new frames to `shown`, a trace of the reader's with the same size. Call while the reader
+ * is idle. A trace that was started on `shown` is started on `own`; else
  * the frames that `shown` has not yet are copied, at most all that `own` holds. */
 void exh_trace_copy(struct exh_trace *own, struct exh_trace *shown);
 

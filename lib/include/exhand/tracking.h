@@ -7,11 +7,10 @@
  * since it last did. From then on the band of currents coded begins anew, so it
  * does not grow wide by a current that was left long ago.
  *
- * No false alarm by any sequence of codes while the drive's delay, in ticks, and its lag are such
- * that after time + 4 ticks less than tolerance - noise is left of any step. What is not seen:
- * a current within the tolerance of what is coded, or one that is coded again and again.
- * A scene that moves a motor calls both functions for each finger; one whose port has no
- * monitor names EXH_UNTRACKED instead (safety.h).
+ * No false alarm if each step response has settled to within tolerance - noise after time + 4
+ * ticks. What is not seen: a current within the tolerance of what is coded, or one that is coded
+ * again and again. A scene that moves a motor calls both functions for each finger; one whose port
+ * has no monitor names EXH_UNTRACKED instead (safety.h).
  */
 #ifndef EXHAND_TRACKING_H
 #define EXHAND_TRACKING_H

@@ -19,7 +19,7 @@ const struct exh_signal exh_contact_rows[EXH_CONTACT_ROWS] = {
 };
 
 /* Two states: the farthest point since the last reversal moves along; a return of more than the
- * band from it is the next reversal. Either way is one that 32 bits without a sign hold. */
+ * band from it is the next reversal. The distance fits uint32_t in both directions. */
 static inline void follow_reversals(struct exh_contact *s, int32_t pos, int32_t band)
 {
     const int32_t turn = s->turn_m_q30;

@@ -156,7 +156,8 @@ static uint32_t freeze(struct exh_precontact *s, const struct exh_precontact_cfg
 {
     const uint8_t m = s->newest.material;
     s->held = s->newest;
-    s->taken = cfg->material[m < cfg->materials ? m : 0]; /* restored by another set-up */
+    /* A restored state may have a larger index. */
+    s->taken = cfg->material[m < cfg->materials ? m : 0];
     s->frozen_n++;
     s->phase = EXH_PRECONTACT_FROZEN;
     return EXH_PRECONTACT_STANDS | EXH_PRECONTACT_FREEZE;
@@ -216,7 +217,7 @@ uint32_t exh_precontact_step(struct exh_precontact *s, const struct exh_preconta
     const struct exh_precontact_in *in)
 {
     const struct exh_precontact_par *par = cfg->par;
-    /* More there cannot be, but in bytes. */
+    /* Clamped: a restored state may hold more. */
     const uint32_t left = s->left_ticks < cfg->age_ticks ? s->left_ticks : cfg->age_ticks;
     const uint32_t blind = in->tip_age_ticks >= cfg->tip_ticks ? EXH_PRECONTACT_BLIND : 0;
     const int resumed = s->resumed;

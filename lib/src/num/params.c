@@ -17,7 +17,7 @@ const struct exh_signal exh_tune_rows[EXH_TUNE_ROWS] = {
 
 /* --- the two arrays, and the sum over both --- */
 
-/* Odd and each another, so that no one bit of either array leaves the sum as it is. */
+/* Distinct odd weights: any single flipped bit of either array changes the sum. */
 static uint32_t term(const struct exh_params *p, const int32_t *array, uint32_t i, uint32_t value)
 {
     return (4 * i + (array == p->active ? 1 : 3)) * value;

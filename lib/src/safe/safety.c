@@ -254,9 +254,8 @@ uint8_t exh_safety_arm_step(const struct exh_safety *s)
 
 /* --- state --- */
 
-/* A RUN made of a damaged OFF would open the gate, so what was written is sealed. The factor, odd
- * and so losing nothing: bytes with their own CRC behind them say nothing to a CRC around both, be
- * it of a record or a digest. */
+/* A corrupted state must not read as RUN, so it carries a CRC. The CRC is multiplied by an odd
+ * constant: data followed by its own plain CRC makes any enclosing CRC constant. */
 static int sealed(struct exh_bytes *c, uint32_t from)
 {
     const int buffer = c->mode != EXH_BYTES_MEASURE && exh_bytes_ok(c);
