@@ -10,7 +10,7 @@
  * PLANT: lib/src/talk/regs_stage.c: const int high = 2 * i >= s->from, low = 2 * i + 1 < s->end; -> const int high = 2 * i >= s->from, low = 1;
  * PLANT: lib/src/talk/regs_stage.c: if (raw < row->min || raw > row->max) { return EXH_MODBUS_VALUE; } -> (void)0;
  * PLANT: lib/src/talk/regs_stage.c: const uint32_t apply = 1u << EXH_COIL_APPLY, discard = 1u << EXH_COIL_DISCARD; -> const uint32_t apply = 1u << EXH_COILS * at, discard = 1u << EXH_COIL_DISCARD;
- * PLANT: lib/src/talk/regs_trace.c: &what.index[(at >> 1) - 1u] -> &what.index[at >> 1]
+ * PLANT: lib/src/talk/regs_trace.c: &what->index[(at >> 1) - 1u] -> &what->index[at >> 1]
  */
 #include "num/bytes.c"
 #include "num/fix.c"
