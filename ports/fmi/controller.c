@@ -235,9 +235,3 @@ void unit_bytes(struct exh_bytes *c)
     scene->params->locked = started;
     scene->state(c);
 }
-
-void exh_assert_failed(const char *file, int line)
-{
-    (void)fprintf(stderr, "%s: %s:%d: that cannot be\n", unit_name, file, line);
-    for (;;) { *(volatile int *)0 = 0; } /* an importer has no stop of its own */
-}

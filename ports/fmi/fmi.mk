@@ -4,9 +4,10 @@
 # The FMUs hold the sources that are built here. A program per FMU prints its description from its
 # own tables.
 fmi_src        := ports/fmi/fmi3.c ports/fmi/absent.c
-fmi_controller := ports/fmi/controller.c examples/drop/drop.c lib/src/run/calib_set.c $(lib_src)
-fmi_device     := ports/fmi/device.c $(patsubst %,ports/posix/sim/%.c,mass plant device fall bench \
-                  lag)
+fmi_controller := ports/fmi/controller.c ports/fmi/stop.c examples/drop/drop.c \
+                  lib/src/run/calib_set.c $(lib_src)
+fmi_device     := ports/fmi/device.c ports/fmi/stop.c \
+                  $(patsubst %,ports/posix/sim/%.c,mass plant device fall bench lag)
 fmi_folders    := lib/include/exhand=exhand lib/include/exhand/run=exhand/run \
                   $(foreach d,num sense law act safe bench talk run,lib/src/$d=lib/$d) \
                   examples= examples/drop=drop ports/posix/sim=sim ports/fmi=fmi
@@ -23,7 +24,7 @@ $(B)/fmu/ExhandController.fmu: $(B)/fmi/describe-controller $(fmi_controller) $(
 	$(fmi_pack) $(fmi_controller)
 $(B)/fmu/ExhandDevice.fmu: $(B)/fmi/describe-device $(fmi_device) $(fmi_src) ports/fmi/pack.py
 	@mkdir -p $(@D)
-	$(fmi_pack) $(fmi_device) lib/src/num/bytes.c
+	$(fmi_pack) $(fmi_device) lib/src/num/bytes.c lib/src/num/fix.c
 
 $(B)/fmi/native: $(B)/posix/test/walk/fmi/native.o $(filter-out %/main.o,$(cli_obj)) $(sim_obj) \
     $(B)/posix/libexhand.a

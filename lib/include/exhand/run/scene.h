@@ -71,9 +71,7 @@ struct exh_scene {
     const char *name; /* at most 15 characters */
     uint32_t rate_Hz; /* when nobody asks for another */
     uint8_t fingers;
-    struct exh_params *params; /* NULL: constants in ROM */
-    /* exh_params_apply with params, else NULL: only a scene that names it links it. */
-    int (*apply)(struct exh_params *params);
+    struct exh_params *params;              /* NULL: constants in ROM */
     const struct exh_signal_table *signals; /* outputs per tick, or NULL */
     int32_t *signal;                        /* their values, or NULL */
     /* exh_board_read_glove, or NULL: only a scene that names it links it. */
@@ -106,6 +104,8 @@ struct exh_scene {
     void (*answered)(const int32_t *signal);
     /* The loop has ended and the outputs are safe. Or NULL. */
     void (*end)(void);
+    /* exh_params_apply with params, else NULL: only a scene that names it links it. */
+    int (*apply)(struct exh_params *params);
 };
 
 #endif
