@@ -36,8 +36,7 @@ enum exh_command {
     EXH_CMD_NONE, /* nothing */
     EXH_CMD_RUN,  /* OFF -> ARM when every step of arming holds */
     EXH_CMD_OFF,  /* to OFF, by way of RELEASE where there may be a force */
-    /* FAULT -> OFF, if no cause is present and the dead-man was released after the last one. */
-    EXH_CMD_CLEAR
+    EXH_CMD_CLEAR /* FAULT -> OFF, if no cause is present and the dead-man was released since */
 };
 
 /* Causes, as bits; names by exh_fault_name(). */

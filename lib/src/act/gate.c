@@ -30,7 +30,7 @@ void exh_gate_step(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsign
     out->alive = ++s->alive;
     s->limits = 0;
     for (unsigned k = 0; k < EXH_FINGERS; k++) {
-        out->dac_raw[k] = (uint16_t)cfg[k < n ? k : 0].par->dac_zero_raw;
+        out->dac_raw[k] = (uint16_t)cfg[0].par->dac_zero_raw;
     }
     for (unsigned k = 0; k < n; k++) {
         const struct exh_drive_par *par = cfg[k].par;

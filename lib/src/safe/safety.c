@@ -73,11 +73,11 @@ static void count_missed(struct exh_safety *s, uint32_t missed)
     if (s->late > LATE_MOST) { s->late = LATE_MOST; }
 }
 
-/* Most ticks have no limit, or a low bit: it ends with the highest. */
+/* All of them in every tick: the cost must not depend on limits. */
 static void count_limits(struct exh_safety *s)
 {
-    uint32_t left = s->limits & ((1u << EXH_LIMITS) - 1u);
-    for (uint32_t *held = s->held; left != 0; held++, left >>= 1) {
+    uint32_t left = s->limits;
+    for (uint32_t *held = s->held; held < s->held + EXH_LIMITS; held++, left >>= 1) {
         const uint32_t sum = *held + (left & 1u);
         *held = sum - (sum < *held);
     }

@@ -52,7 +52,7 @@ WP_PLANTS = [
      "UINT16_MAX"),
     ("gate", "any_gate@shut", "lib/src/act/gate.c", "= open ? exh_sat32(asked) : 0;",
      "= exh_sat32(asked);"),
-    ("gate", "any_gate@@invariant", "lib/src/act/gate.c", "cfg[k < n ? k : 0].par->dac_zero_raw",
+    ("gate", "any_gate@@invariant", "lib/src/act/gate.c", "cfg[0].par->dac_zero_raw",
      "out->dac_raw[k]"),
     ("drive", "exh_drive_force_step", "lib/src/act/drive.c", "exh_clamp(asked, 0, most)",
      "exh_clamp(asked, -most, most)"),
