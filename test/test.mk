@@ -126,12 +126,12 @@ $(B)/test/gpio/v%_fake.o: test/device/gpio/v%/fake.c $(stamp)
 gpio_parts := $(B)/test/gpio/%.o $(B)/test/gpio/%_fake.o $(B)/posix/test/device/gpio/chip.o
 $(eval $(call tests,device/gpio,$(B)/posix,$(gpio_parts) $(closed_obj) $(posix_lib),$(cli_libs),v%))
 
-# The virtual world, with rays into meshes if their package is there.
+# The virtual world, with meshes if their package is there.
 world_test_obj := $(world_core_obj) $(world_mesh) \
                   $(patsubst %,$(B)/posix/ports/posix/world/%.o,solo link link_put link_param \
                   link_trace)
 $(eval $(call tests,closed/world,$(B)/posix,$(world_test_obj) $(posix_lib),$(if \
-    $(world_rays),-ldl) -lm))
+    $(world_tree),-ldl) -lm))
 $(B)/test/world/window_test: | $(world)
 $(B)/posix/test/closed/world/window_test.o: PORT_HOSTFLAGS += -DWORLD_PROGRAM='"$(world)"'
 

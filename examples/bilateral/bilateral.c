@@ -28,6 +28,18 @@ static void like_the_first(struct bilateral_cfg *cfg)
     }
 }
 
+/* A world that knows how a string bends a finger sees ahead of one that has not moved yet. */
+static void tell_pulls(struct bilateral_cfg *cfg)
+{
+    for (unsigned k = 0; k < cfg->n; k++) {
+        const unsigned f = cfg->at[k];
+        for (unsigned i = 0; i < 2; i++) {
+            cfg->wire.hello.pull_radpm_q7[f][i] = (int16_t)exh_clamp32(
+                cfg->finger[f].hand.pull_radpm_q20[i] >> (20 - 7), INT16_MIN, INT16_MAX);
+        }
+    }
+}
+
 int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct bilateral_par *par,
     struct exh_scene_board board, struct exh_scene_calib *calib)
 {
@@ -52,6 +64,7 @@ int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct
     }
     like_the_first(cfg);
     bilateral_wire_setup(&cfg->wire, &s->wire, (uint32_t)par->own.session, board.T);
+    tell_pulls(cfg);
     if (err == 0) { err = exh_safety_setup(&cfg->safety, &par->safety, board.T); }
     if (err == 0) { err = bilateral_cause_setup(cfg, board.T); }
     return err;
@@ -133,6 +146,8 @@ static void tell_finger(struct bilateral_more *m, const struct bilateral_finger 
     m->ignored = exh_from_u32(p->ignored_n);
     m->stale = exh_from_u32(p->stale_n);
     m->let_go = exh_from_u32(p->let_go_n);
+    m->late = exh_from_u32(p->late_n);
+    m->late_m_q30 = p->late_m_q30;
 }
 
 static int32_t at_most(uint32_t v) { return v < INT32_MAX ? (int32_t)v : INT32_MAX; }
@@ -242,7 +257,8 @@ static void defaults(void)
     active.glove.fc_Hz_q16 = EXH_Q(200, 1, EXH_Q_RAW); /* it lags little: 1.1 ms */
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
         active.precontact[f].from_slope = 1;
-        active.watch[f].stuck_ms = 2000; /* a living finger trembles, a mass does not */
+        active.watch[f].stuck_ms =
+            10000; /* held against a stiff wall, a finger can stand for seconds */
         active.precontact[f].d_lim_m_q30 = -EXH_Q(10, 1000, EXH_Q_POS);
     }
     staged = active;

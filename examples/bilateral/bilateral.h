@@ -65,7 +65,8 @@ struct bilateral_more {
     int32_t joint_turn_q32[EXH_HAND_JOINTS];
     int32_t clamped; /* bit j: joint j at a limit */
     struct exh_vec3 tip_m_q30;
-    int32_t freezes, born, refused, ignored, stale, let_go; /* counts, of exh_precontact */
+    int32_t freezes, born, refused, ignored, stale, let_go, late; /* counts, of exh_precontact */
+    int32_t late_m_q30; /* d where the last late contact began */
 };
 
 struct bilateral_box {

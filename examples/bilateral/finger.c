@@ -74,6 +74,9 @@ static struct exh_contact_par touch(
     if (p->phase == EXH_PRECONTACT_FROZEN && p->taken.f_max_N_q20 < drive->f_max_N_q20) {
         drive->f_max_N_q20 = p->taken.f_max_N_q20;
     }
+    if (p->late && cfg->par->precontact[f].late_slew_Nps < drive->slew_up_Nps) {
+        drive->slew_up_Nps = cfg->par->precontact[f].late_slew_Nps;
+    }
     return law;
 }
 
@@ -100,7 +103,8 @@ uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *
     const unsigned f = bilateral_at(cfg, place);
     struct bilateral_finger *now = &s->finger[f];
     const struct exh_precontact_in where = {now->tip_m_q30, now->slope_q24, p->q_m_q30,
-        bilateral_finger_age(s, cfg, f), now->contact.touching};
+        bilateral_finger_age(s, cfg, f), now->contact.touching, permit->mode == EXH_PERMIT_OPEN,
+        p->qd_mps_q27};
     struct exh_contact_in q = {p->q_m_q30, p->qd_mps_q27, 0};
     struct exh_contact_par law;
     struct exh_force_ledger force;
@@ -119,6 +123,7 @@ uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *
     }
     wind_in(now, cfg->rest_ticks);
     limits = exh_axis_force(&axis, permit, &force, i);
+    if (!(limits & EXH_LIMIT_SLEW)) { exh_precontact_arrived(&now->precontact); }
     p->f_des_N_q20 = force.force_N_q20;
     p->q_lim_m_q30 = q.lim_m_q30;
     return limits;

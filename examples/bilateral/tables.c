@@ -48,7 +48,7 @@ static const struct exh_signal paper_rows[] = {
 static const struct exh_signal more_rows[] = {
     POS(0x8710, 0, "frozen", "",
         "1 q_lim stands, 2 moves, 4 inside, 8 stale, 16 bent, 32 freeze, 64 release, 128 blind, "
-        "256 doubt, 512 let go"),
+        "256 doubt, 512 let go, 1024 late"),
     POS(0x8711, 0, "limits", "", "limits acting, bits"),
     ANY(0x8712, 32, "q0", "turn", "robot: sideways"),
     ANY(0x8713, 32, "q1", "turn", "knuckle"),
@@ -58,11 +58,13 @@ static const struct exh_signal more_rows[] = {
     ANY(0x8717, EXH_Q_POS, "y", "m", ""),
     ANY(0x8718, EXH_Q_POS, "z", "m", ""),
     ANY(0x8719, 0, "freezes", "", "contacts prepared"),
-    ANY(0x871A, 0, "born", "", "planes born at d >= d_lim"),
+    ANY(0x871A, 0, "born", "", "planes born around the finger"),
     ANY(0x871B, 0, "refused", "", "planes refused"),
     ANY(0x871C, 0, "ignored", "", "planes that moved while frozen"),
     ANY(0x871D, 0, "stale", "", "planes that became too old"),
     ANY(0x871E, 0, "let_go", "", "contacts that the glove denied, or could not confirm"),
+    ANY(0x871F, 0, "late", "", "contacts whose plane came when the finger was inside"),
+    ANY(0x8736, EXH_Q_POS, "late_d", "m", "so far inside, the last time"),
 };
 
 static const struct exh_signal box_rows[] = {

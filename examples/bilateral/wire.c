@@ -16,8 +16,9 @@ void bilateral_wire_setup(
     cfg->ms_per_tick_q20 = (uint32_t)exh_udiv64(cfg->tick_us_q20, 1000, NULL);
     cfg->ticks_per_us_q32 =
         (uint32_t)exh_udiv64((uint64_t)T.den << 32, UINT64_C(1000000) * T.num, NULL);
-    cfg->hello = (struct exh_wire_hello){
-        EXH_WIRE_CONTROLLER, EXH_VERSION_NUMBER, exh_signal_crc(&bilateral_params)};
+    cfg->hello = (struct exh_wire_hello){.role = EXH_WIRE_CONTROLLER,
+        .lib_version = EXH_VERSION_NUMBER,
+        .table_crc = exh_signal_crc(&bilateral_params)};
     s->tx.session = session;
     s->age_ticks = UINT32_MAX;
 }
@@ -78,6 +79,9 @@ void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
             session) { /* a world that does not know us yet, and has asked for nothing */
             w->exchanges = 0;
             bilateral_trace_stop(&w->trace);
+            for (unsigned k = 0; k < bilateral_n(cfg); k++) {
+                exh_precontact_forget(&s->finger[bilateral_at(cfg, k)].precontact);
+            }
         }
         if (type == EXH_WIRE_HELLO) {
             w->differs = exh_wire_compare(&cfg->wire.hello, &p.u.hello);

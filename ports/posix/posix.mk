@@ -18,7 +18,7 @@ exh_obj  := $(cli_src:%.c=$(B)/posix/%.o) $(world_core:%.c=$(B)/posix/%.o) $(wor
 # What proves and studies is a program of its own, which has all commands of the other, too.
 lab_obj  := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/lab/*.c test/lab/*/*.c))
 cli_obj  := $(exh_obj) $(lab_obj)
-cli_libs := $(if $(world_rays),-ldl) $(if $(filter libmodbus,$(modbus)),-lmodbus) -pthread -lm
+cli_libs := $(if $(world_tree),-ldl) $(if $(filter libmodbus,$(modbus)),-lmodbus) -pthread -lm
 # Lines of a GPIO chip, by the version of libgpiod. Tests and benches link none, so that they are
 # the same on every machine.
 gives_gpio = $(call gives,gpiod.h,gpiod,$(1))

@@ -106,7 +106,8 @@ static void tick(struct box *b, const struct exh_precontact_cfg *cfg, int on_the
         struct exh_precontact *s = &b->finger[f];
         const struct exh_wire_plane *p = &b->last.u.planes.plane[f];
         const int32_t *at = on_the_plane ? p->point_m_q30 : p->hit_m_q30;
-        const struct exh_precontact_in in = {{at[0], at[1], at[2]}, {0, 0, 0}, at[0] / 2, 0, 0};
+        const struct exh_precontact_in in = {
+            {at[0], at[1], at[2]}, {0, 0, 0}, at[0] / 2, 0, 0, 1, at[1]};
         const struct exh_precontact was = *s;
         const uint32_t bits = exh_precontact_step(s, cfg, &in);
         if (bits & EXH_PRECONTACT_STANDS) {

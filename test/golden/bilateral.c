@@ -113,6 +113,7 @@ static void any_finger(unsigned f, struct golden_rng *r, uint32_t rate_Hz)
     p->precontact[f].doubt_m_q30 = (int32_t)golden_draw(r, 0, INT32_C(1) << 23);
     p->precontact[f].doubt_ms = any_ms(r, 1, 20, rate_Hz);
     p->precontact[f].tip_age_max_ms = any_ms(r, 1, 12, rate_Hz);
+    p->precontact[f].late_slew_Nps = (int32_t)golden_draw(r, 1, 100000);
 }
 
 static int any_crossed(unsigned i) { return i == 3 || i == 10 || i == 14 || i == 18; }
@@ -173,7 +174,8 @@ static void set_up(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
         board.enc_bits = (uint8_t)(board.enc_bits + 4);
     }
     CHECK_EQ_I64(err, 0);
-    rig.cfg.wire.hello = (struct exh_wire_hello){EXH_WIRE_CONTROLLER, VERSION, TABLE};
+    rig.cfg.wire.hello = (struct exh_wire_hello){
+        .role = EXH_WIRE_CONTROLLER, .lib_version = VERSION, .table_crc = TABLE};
     rig.params.locked = 1;
     rig.in.drive.din = HEALTHY;
     rig.tx.session = any_u32(r) | 1;

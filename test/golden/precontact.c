@@ -85,6 +85,7 @@ static void any_setup(unsigned f, struct golden_rng *r, uint32_t rate_Hz, struct
     p->age_max_ms = any_ms(r, 2, 60, rate_Hz);
     p->doubt_ms = any_ms(r, 1, 3, rate_Hz);
     p->tip_age_max_ms = any_ms(r, 1, 8, rate_Hz);
+    p->late_slew_Nps = 100;
     pad = (int32_t)golden_draw(r, 0, 26843545);
     materials = (unsigned)golden_draw(r, 1, MOST);
     CHECK_EQ_I64(exh_precontact_setup(&world.cfg[f], p, world.material, materials, pad, T), 0);
@@ -135,6 +136,8 @@ static int refused(int64_t how, struct exh_period T)
     case 17: p.doubt_m_q30 = INT32_C(1) << 26; break;
     case 18: p.doubt_ms = (T.num & 1) != 0 ? 0 : 60001; break;
     case 19: p.tip_age_max_ms = (T.num & 1) != 0 ? 0 : 60001; break;
+    case 20: p.late_slew_Nps = 0; break;
+    case 21: p.late_slew_Nps = 10000001; break;
     default: break;
     }
     err = exh_precontact_setup(&cfg, &p, world.material, materials, pad, T);
@@ -209,6 +212,8 @@ static struct exh_precontact_in any_in(unsigned f, uint32_t k, int64_t d, struct
     if (golden_draw(r, 0, 7) == 0) {
         in.tip_age_ticks = (uint32_t)(world.cfg[f].tip_ticks + golden_draw(r, 0, 2) - 1);
     }
+    in.pulls = golden_draw(r, 0, 15) != 0;
+    in.vel_mps_q27 = (int32_t)golden_draw(r, -1342177, 3 * INT32_C(1342177));
     return in;
 }
 
@@ -272,6 +277,8 @@ static void one_finger(
     row[2] = in.touching;
     row[3] = exh_precontact_update(s, cfg, &plane, (uint32_t)age);
     row[4] = exh_precontact_step(s, cfg, &in);
+    if (golden_draw(r, 0, 7) == 0) { exh_precontact_forget(s); }
+    if (golden_draw(r, 0, 3) == 0) { exh_precontact_arrived(s); }
     row[5] = s->d_m_q30;
     row[6] = s->lim_m_q30;
 }
@@ -292,7 +299,7 @@ void golden_precontact(struct golden *g, uint32_t rate_Hz)
         int64_t row[FINGERS][7];
         int said;
         set_up(&r, rate_Hz, k);
-        said = refused(golden_draw(&r, 0, 19), T);
+        said = refused(golden_draw(&r, 0, 21), T);
         for (unsigned f = 0; f < FINGERS; f++) {
             one_finger(f, k, way[f].at[k], pos[f].at[k], &r, row[f]);
         }

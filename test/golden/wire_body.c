@@ -68,6 +68,7 @@ void golden_body_list(struct exh_bytes *c, struct exh_wire_packet *p)
         exh_bytes_u8(c, &p->u.hello.role);
         exh_bytes_u32(c, &p->u.hello.lib_version);
         exh_bytes_u32(c, &p->u.hello.table_crc);
+        for (int i = 0; i < 10; i++) { exh_bytes_i16(c, &p->u.hello.pull_radpm_q7[i / 2][i % 2]); }
         break;
     case EXH_WIRE_STATE: state_list(c, &p->u.state); break;
     case EXH_WIRE_PLANES: planes_list(c, &p->u.planes); break;
@@ -89,7 +90,7 @@ void golden_body_list(struct exh_bytes *c, struct exh_wire_packet *p)
 /* Of TRACE: the longest. */
 static uint32_t length_of(int64_t type)
 {
-    static const uint8_t length[] = {0, 9, 214, 209, 8, 14, 12, 231};
+    static const uint8_t length[] = {0, 29, 214, 209, 8, 14, 12, 231};
     return type <= 7 ? length[type] : 0;
 }
 

@@ -6,8 +6,8 @@
  * d = (P_C - P_F).n + t is computed here, negative before contact and 0 at touch, and
  * while d < d_lim the virtual contact moves along: q_lim = q - s*d. From the first tick
  * with d >= d_lim on, q_lim, the plane and the material stay as they are, whatever the
- * world says, until the finger has left: the contact law touches no more and
- * d < d_lim - hyst.
+ * world says, until the finger has left: the contact law touches no more, and
+ * d < d_lim - hyst, or the string is back by |d_lim| from where it was at the freeze.
  *
  * Whether the law touches, the string alone says, and its zero may slip. So what stands is held
  * against the glove: it is in doubt while the law touches and d < d_lim - hyst - doubt, and
@@ -21,10 +21,19 @@
  *   - the plane is older than age_max (only while q_lim moves along; a frozen one does
  *     not age);
  *   - the fingertip is older than tip_age_max, or unknown, and nothing is frozen;
- *   - the plane was born at d >= d_lim: it is new (the first, of another object than the
- *     one before, or come while the finger was frozen) and d < d_lim has not been
- *     seen with it. An object that appears around a finger, or is thrown onto it, gives no
- *     force until the finger has left it once.
+ *   - the finger was inside when the plane was born, and that was not late.
+ *
+ * A plane is born when it is new: the first, of another object than the one before, or come while
+ * the finger was frozen. Born at d_lim <= d < 0, before the touch, q_lim moves along, too, and is
+ * frozen at the touch: until the finger has been at d < d_lim, 0 stands for d_lim everywhere.
+ * Born at d >= 0, in the object, it is
+ *   - late, if the world has spoken of this finger while it was free, and the string runs out: the
+ *     link was too slow for it. The wall is at its true place, q - s*d, at once, and frozen. As it
+ *     would push with all its force at once, the caller limits the rise of force to late_slew for
+ *     as long as `late` is 1 (exh_precontact_arrived()).
+ *   - nobody's fault else: the box has just begun to pull, the world has just begun to speak
+ *     (exh_precontact_forget()), or something came onto a finger that rests. There is no force
+ *     until the finger has left the object by hyst.
  * A plane whose normal is no unit vector, or whose material does not exist, is refused: as
  * if it had not come. What happened is counted, and is in the bits of every tick.
  */
@@ -90,8 +99,9 @@ struct exh_precontact_par {
     int32_t doubt_m_q30;    /* touching at d < d_lim - hyst - this is in doubt, m, 0 .. 0.05 */
     int32_t doubt_ms;       /* let go after so long in doubt, ms, 1 .. 60000 */
     int32_t tip_age_max_ms; /* an older fingertip is unknown, ms, 1 .. 60000 */
+    int32_t late_slew_Nps;  /* rise of force of a late contact, N/s, 1 .. 10^7 */
 };
-#define EXH_PRECONTACT_ROWS 9
+#define EXH_PRECONTACT_ROWS 10
 extern const struct exh_signal exh_precontact_rows[EXH_PRECONTACT_ROWS];
 
 /* One finger as it is set up. */
@@ -119,7 +129,7 @@ struct exh_precontact_plane {
 /* Where a finger is with its plane. */
 enum exh_precontact_phase {
     EXH_PRECONTACT_IDLE,   /* no plane, or too old */
-    EXH_PRECONTACT_INSIDE, /* born at d >= d_lim */
+    EXH_PRECONTACT_INSIDE, /* born at d >= 0, and not late */
     EXH_PRECONTACT_TRACK,  /* q_lim moves along */
     EXH_PRECONTACT_FROZEN  /* q_lim stands */
 };
@@ -134,12 +144,18 @@ struct exh_precontact {
     struct exh_precontact_plane newest, held; /* told last; frozen */
     uint32_t left_ticks;                      /* until the newest is too old */
     uint32_t frozen_n;                        /* freezes; this and the counts below modulo 2^32 */
-    uint32_t born_n;                          /* planes born at d >= d_lim */
+    uint32_t born_n;                          /* planes born at d >= 0 that were not late */
     uint32_t refused_n;                       /* normal no unit vector, or no such material */
     uint32_t ignored_n;                       /* told while frozen, and not what was frozen */
     uint32_t stale_n;                         /* became too old while q_lim moved along */
     uint32_t doubt_ticks;                     /* in doubt on end */
     uint32_t let_go_n;                        /* contacts let go */
+    uint32_t late_n;                          /* late contacts */
+    int32_t late_m_q30;                       /* d of the last of them when it began, m */
+    int32_t ahead_m_q30;                      /* q_lim - q at the last freeze, m */
+    uint8_t met;                              /* 1: the world has spoken of the finger being free */
+    uint8_t near;                             /* 1: 0 stands for d_lim */
+    uint8_t late;                             /* 1: the rise of force is to be limited */
     uint8_t resumed;                          /* read from bytes, no step yet; not in the bytes */
 };
 
@@ -150,6 +166,8 @@ struct exh_precontact_in {
     int32_t pos_m_q30;         /* q, the same that the contact law gets */
     uint32_t tip_age_ticks;    /* since P_F was measured; UINT32_MAX: it is unknown */
     uint8_t touching;          /* what the contact law returned last */
+    uint8_t pulls;             /* 1: the permit is open */
+    int32_t vel_mps_q27;       /* of q */
 };
 
 /* What a tick did. None of the first four: there is no plane, or no fingertip. */
@@ -164,8 +182,9 @@ enum exh_precontact_bit {
                                          as one that has just come */
     EXH_PRECONTACT_BLIND = 1u << 7,   /* the fingertip is too old, or unknown */
     EXH_PRECONTACT_DOUBT = 1u << 8,   /* what stands is in doubt */
-    EXH_PRECONTACT_LETGO = 1u << 9    /* let go in this tick, RELEASE with it: no contact in
+    EXH_PRECONTACT_LETGO = 1u << 9,   /* let go in this tick, RELEASE with it: no contact in
                                          this one; in the next the newest plane counts again */
+    EXH_PRECONTACT_LATE = 1u << 10    /* a late contact: FREEZE with it in its first tick */
 };
 
 /* Set-up (divides); par and the materials must outlive cfg. pad_m_q30: the pad's radius t,
@@ -186,6 +205,13 @@ static inline int exh_precontact_none(const struct exh_precontact *s)
 {
     return s->phase < EXH_PRECONTACT_TRACK;
 }
+
+/* The peer is another one, or has started anew: what it says of a finger first is no late word. */
+static inline void exh_precontact_forget(struct exh_precontact *s) { s->met = 0; }
+
+/* The force of a late contact has come to what the law asks for: its rise was not limited in this
+ * tick. */
+static inline void exh_precontact_arrived(struct exh_precontact *s) { s->late = 0; }
 
 /* Ticks that were missed, before tell() and step() of the next: the plane told last is so much
  * older, and a doubt has lasted so much longer. */

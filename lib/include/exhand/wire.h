@@ -25,7 +25,7 @@
 extern "C" {
 #endif
 
-#define EXH_WIRE_VERSION  2       /* 1: the state in STATE was 0 off, 1 run, 2 fault */
+#define EXH_WIRE_VERSION  3       /* 2: HELLO had no pulls */
 #define EXH_WIRE_MAGIC    0x5758u /* first bytes of every packet, "XW" */
 #define EXH_WIRE_OVERHEAD 22      /* bytes around a payload */
 #define EXH_WIRE_MAX_B    256     /* no packet is longer */
@@ -57,6 +57,9 @@ struct exh_wire_hello {
     uint8_t role;         /* enum exh_wire_role */
     uint32_t lib_version; /* EXH_VERSION_NUMBER */
     uint32_t table_crc;   /* exh_signal_crc() of the parameters; 0: has none */
+    int16_t pull_radpm_q7[EXH_FINGERS]
+                         [2]; /* a controller's: how q1 and q2 turn per metre of string,
+                                 +-250 rad/m; 0: untold */
 };
 
 /* What is not as it should be about a peer that has said HELLO: it is heard, and told of. */
@@ -179,7 +182,7 @@ struct exh_wire_rx {
     uint32_t session, former; /* the peer's, the one before it; 0: none */
     uint32_t quiet_us;        /* since the last that was accepted; 2^32 - 1: longer, too */
     uint32_t open;            /* 1: for too long */
-    uint32_t accepted;        /* taken: of these alone the payload is used */
+    uint32_t accepted;        /* taken: of these, and of late PARAM and ACK, the payload is used */
     uint32_t missing;         /* sequence numbers skipped, less those that came late: lost */
     uint32_t duplicate;       /* came before, or was sent before its session's HELLO */
     uint32_t reordered;       /* late: a newer one had come */
@@ -203,7 +206,8 @@ int exh_wire_poll(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us)
  * than a counter (and, of a reordered one, that it came). Else -EXH_E_SHORT, -EXH_E_CRC (also
  * a value that cannot be), -EXH_E_VERSION, -EXH_E_UNKNOWN, -EXH_E_STATE (stranger),
  * -EXH_E_STALE (duplicate, reordered, old), -EXH_E_RANGE (far). A HELLO of a new session is taken
- * whatever its sequence number: the peer has started anew. So is, of an open receiver, any HELLO
+ * whatever its sequence number: the peer has started anew. A PARAM or ACK that came late, but not
+ * before, is taken, too, once. So is, of an open receiver, any HELLO
  * but the newest packet itself once more. Reads len_B bytes at most. */
 int exh_wire_decode(
     struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf, size_t len_B);

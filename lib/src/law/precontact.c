@@ -5,10 +5,13 @@
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
-#define MATERIALS_MAX 255u
-#define HALF_Q60      (INT64_C(1) << 29) /* of an LSB of d: rounds it half up */
-#define SCALE_MIN_Q24 (INT32_C(1) << 21)
-#define SCALE_MAX_Q24 (INT32_C(1) << 27)
+#define MATERIALS_MAX    255u
+#define HALF_Q60         (INT64_C(1) << 29) /* of an LSB of d: rounds it half up */
+#define SCALE_MIN_Q24    (INT32_C(1) << 21)
+#define SCALE_MAX_Q24    (INT32_C(1) << 27)
+#define TOUCH_M_Q30      (-8) /* nearer than this, s*d can be less than an LSB */
+#define RUNS_OUT_MPS_Q27 EXH_Q(1, 100, EXH_Q_VEL) /* a finger that trembles is slower */
+#define SLEW_MAX_NPS     10000000
 
 const struct exh_signal exh_material_rows[EXH_MATERIAL_ROWS] = {
     {0x0B01, EXH_Q_K, EXH_WHEN_ANY, 0, EXH_K_MAX_NPM_Q10, EXH_Q(20000, 1, EXH_Q_K), "mat_k",
@@ -34,6 +37,8 @@ const struct exh_signal exh_precontact_rows[EXH_PRECONTACT_ROWS] = {
     {0x0C08, 0, EXH_WHEN_SETUP, 1, 60000, 100, "doubt_max", "ms",
         "a contact longer in doubt is let go"},
     {0x0C09, 0, EXH_WHEN_SETUP, 1, 60000, 50, "tip_age_max", "ms", "an older fingertip is unknown"},
+    {0x0C0A, 0, EXH_WHEN_ANY, 1, SLEW_MAX_NPS, 100, "late_slew", "n_per_s",
+        "rise of force where a plane came too late"},
 };
 
 /* The first number of ticks that lasts longer. At 20 kHz and a minute 1.2 million: far from any
@@ -97,7 +102,9 @@ int exh_precontact_update(struct exh_precontact *s, const struct exh_precontact_
     struct exh_precontact_plane now = {0, {0, 0, 0}, 0, 0};
     uint32_t left = 0;
     if (plane->kind == EXH_PLANE_UNTOLD) { return 0; }
-    if (plane->kind != EXH_PLANE_NONE) {
+    if (plane->kind == EXH_PLANE_NONE) {
+        s->met = 1; /* while the box pulls, as the next tick says */
+    } else {
         if (plane->kind != EXH_PLANE_HIT || plane->material >= cfg->materials ||
             !is_unit(&plane->normal_q30)) {
             s->refused_n++;
@@ -138,29 +145,58 @@ static int32_t scale_of_slope(
     return exh_recip_q24(kept_q24);
 }
 
-static uint32_t track(struct exh_precontact *s, const struct exh_precontact_par *par,
+static uint32_t place(struct exh_precontact *s, const struct exh_precontact_par *par,
     const struct exh_precontact_in *in)
 {
-    uint32_t bits = EXH_PRECONTACT_TRACKS;
+    uint32_t bits = 0;
     const int32_t scale_q24 = par->from_slope
                                   ? scale_of_slope(&s->newest.normal_q30, &in->slope_q24, &bits)
                                   : par->scale_q24;
     s->lim_m_q30 = exh_clamp(
         in->pos_m_q30 - exh_mul_shr(scale_q24, s->d_m_q30, 24), INT32_MIN, EXH_PRECONTACT_NO_LIM);
-    s->phase = EXH_PRECONTACT_TRACK;
     return bits;
 }
 
-/* q_lim stays what it was in the tick before. */
-static uint32_t freeze(struct exh_precontact *s, const struct exh_precontact_cfg *cfg)
+/* The d below which q_lim moves along: d_lim for a finger that has been there with this plane; the
+ * touch for one that has not, and a hysteresis before it for one that was inside. */
+static int32_t follows_until(const struct exh_precontact *s, const struct exh_precontact_par *par)
+{
+    const int32_t out_m_q30 = s->phase == EXH_PRECONTACT_INSIDE ? -par->hyst_m_q30 : 0;
+    if (s->phase == EXH_PRECONTACT_TRACK && !s->near) { return par->d_lim_m_q30; }
+    return exh_clamp32(out_m_q30, par->d_lim_m_q30, TOUCH_M_Q30);
+}
+
+static uint32_t track(struct exh_precontact *s, const struct exh_precontact_par *par,
+    const struct exh_precontact_in *in)
+{
+    s->near = s->d_m_q30 >= par->d_lim_m_q30;
+    s->met = in->pulls != 0;
+    s->phase = EXH_PRECONTACT_TRACK;
+    return EXH_PRECONTACT_TRACKS | place(s, par, in);
+}
+
+/* q_lim stays what it is. */
+static uint32_t freeze(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
+    const struct exh_precontact_in *in)
 {
     const uint8_t m = s->newest.material;
     s->held = s->newest;
     /* A restored state may have a larger index. */
     s->taken = cfg->material[m < cfg->materials ? m : 0];
     s->frozen_n++;
+    s->ahead_m_q30 = exh_clamp((int64_t)s->lim_m_q30 - in->pos_m_q30, INT32_MIN, INT32_MAX);
     s->phase = EXH_PRECONTACT_FROZEN;
     return EXH_PRECONTACT_STANDS | EXH_PRECONTACT_FREEZE;
+}
+
+static uint32_t be_late(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
+    const struct exh_precontact_in *in)
+{
+    s->late_n++;
+    s->late_m_q30 = s->d_m_q30;
+    s->late = 1;
+    s->near = 0;
+    return EXH_PRECONTACT_LATE | place(s, cfg->par, in) | freeze(s, cfg, in);
 }
 
 static uint32_t be_inside(struct exh_precontact *s)
@@ -182,24 +218,37 @@ static uint32_t be_idle(struct exh_precontact *s, uint32_t left)
     return stale ? EXH_PRECONTACT_STALE : 0;
 }
 
+/* A finger that went around what it was frozen at, or through it, leaves it by the string alone. */
+static int went_back(const struct exh_precontact *s, const struct exh_precontact_par *par,
+    const struct exh_precontact_in *in)
+{
+    const int64_t ahead_m_q30 = (int64_t)s->lim_m_q30 - in->pos_m_q30;
+    return ahead_m_q30 > (int64_t)s->ahead_m_q30 - par->d_lim_m_q30;
+}
+
 /* One that is frozen: EXH_PRECONTACT_RELEASE among the bits if it is so no longer. */
 static uint32_t stand(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
     const struct exh_precontact_in *in, uint32_t blind)
 {
-    const int64_t free_m_q30 = (int64_t)cfg->par->d_lim_m_q30 - cfg->par->hyst_m_q30;
+    const int64_t free_m_q30 =
+        (s->near ? 0 : (int64_t)cfg->par->d_lim_m_q30) - cfg->par->hyst_m_q30;
+    const uint32_t late = s->late ? EXH_PRECONTACT_LATE : 0u;
     s->d_m_q30 = distance_m_q30(&s->held, &in->tip_m_q30);
     if (blind || (in->touching && s->d_m_q30 < free_m_q30 - cfg->par->doubt_m_q30)) {
         s->doubt_ticks += s->doubt_ticks < UINT32_MAX;
         if (s->doubt_ticks <= cfg->doubt_ticks) {
-            return EXH_PRECONTACT_STANDS | EXH_PRECONTACT_DOUBT;
+            return EXH_PRECONTACT_STANDS | EXH_PRECONTACT_DOUBT | late;
         }
         s->let_go_n++;
+        s->late = 0;
         s->lim_m_q30 = EXH_PRECONTACT_NO_LIM;
         s->phase = EXH_PRECONTACT_IDLE;
         return EXH_PRECONTACT_RELEASE | EXH_PRECONTACT_DOUBT | EXH_PRECONTACT_LETGO;
     }
     s->doubt_ticks = 0;
-    if (in->touching || s->d_m_q30 >= free_m_q30) { return EXH_PRECONTACT_STANDS; }
+    if (in->touching || (s->d_m_q30 >= free_m_q30 && !went_back(s, cfg->par, in))) {
+        return EXH_PRECONTACT_STANDS | late;
+    }
     s->phase = EXH_PRECONTACT_IDLE;
     return EXH_PRECONTACT_RELEASE;
 }
@@ -224,18 +273,25 @@ uint32_t exh_precontact_step(struct exh_precontact *s, const struct exh_preconta
     uint32_t bits = blind;
     s->resumed = 0;
     s->left_ticks = left - (left > 0);
+    if (!in->pulls) { s->met = 0; }
     if (s->phase == EXH_PRECONTACT_FROZEN) {
         bits |= stand(s, cfg, in, blind);
         if (bits & (EXH_PRECONTACT_STANDS | EXH_PRECONTACT_LETGO)) { return bits; }
     }
     s->doubt_ticks = 0;
+    s->late = 0;
     if (left == 0 || blind) { return bits | be_idle(s, left); }
     s->d_m_q30 = distance_m_q30(&s->newest, &in->tip_m_q30);
-    if (s->d_m_q30 < par->d_lim_m_q30) { return bits | track(s, par, in); }
-    if (s->phase != EXH_PRECONTACT_TRACK || (resumed && in->pos_m_q30 >= s->lim_m_q30)) {
-        return bits | be_inside(s);
+    if (s->d_m_q30 < follows_until(s, par)) { return bits | track(s, par, in); }
+    if (s->phase == EXH_PRECONTACT_TRACK) {
+        return bits |
+               (resumed && in->pos_m_q30 >= s->lim_m_q30 ? be_inside(s) : freeze(s, cfg, in));
     }
-    return bits | freeze(s, cfg);
+    if (s->phase == EXH_PRECONTACT_IDLE && s->met && !resumed &&
+        in->vel_mps_q27 > RUNS_OUT_MPS_Q27) {
+        return bits | be_late(s, cfg, in);
+    }
+    return bits | be_inside(s);
 }
 
 /* --- state --- */
@@ -282,6 +338,15 @@ void exh_precontact_serialize(struct exh_bytes *c, struct exh_precontact *s)
     exh_bytes_u32(c, &s->stale_n);
     exh_bytes_u32(c, &s->doubt_ticks);
     exh_bytes_u32(c, &s->let_go_n);
+    exh_bytes_u32(c, &s->late_n);
+    exh_bytes_i32(c, &s->late_m_q30);
+    exh_bytes_i32(c, &s->ahead_m_q30);
+    exh_bytes_u8(c, &s->met);
+    exh_bytes_u8(c, &s->near);
+    exh_bytes_u8(c, &s->late);
+    s->met &= 1u;
+    s->near &= 1u;
+    s->late &= 1u;
     if (c->mode == EXH_BYTES_READ) { s->resumed = 1; }
     if (s->phase > EXH_PRECONTACT_FROZEN || !(s->phase == EXH_PRECONTACT_FROZEN ? held : told)) {
         s->phase = EXH_PRECONTACT_IDLE;

@@ -77,7 +77,7 @@ int cli_param_set(struct exh_params *p, const char *name, double value)
     return err;
 }
 
-void cli_signal_print(FILE *f, const struct exh_signal_table *t)
+void cli_signal_print(FILE *f, const struct exh_signal_table *t, const int32_t *raw)
 {
     static const char *const when[] = {"output", "set-up", "any time", "slewed", "limit"};
     const uint32_t n = exh_signal_count(t);
@@ -86,7 +86,7 @@ void cli_signal_print(FILE *f, const struct exh_signal_table *t)
         const struct exh_signal *r = exh_signal_at(t, i, &instance);
         if (instance > 0) { continue; }
         fprintf(f, "  %-13s %-8s %14.12g  %14.12g .. %-14.12g %-8s %s\n", r->name, r->unit,
-            cli_signal_value(r, r->dflt), cli_signal_value(r, r->min), cli_signal_value(r, r->max),
-            when[r->when], r->help);
+            cli_signal_value(r, raw ? raw[i] : r->dflt), cli_signal_value(r, r->min),
+            cli_signal_value(r, r->max), when[r->when], r->help);
     }
 }

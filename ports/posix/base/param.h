@@ -23,7 +23,8 @@ int cli_param_set(struct exh_params *p, const char *name, double value);
  * that would do. */
 void cli_setup_complain(const struct exh_params *p, double rate_Hz, int err);
 
-/* Name, unit, range, default, help: one row a line, whatever its instances. */
-void cli_signal_print(FILE *f, const struct exh_signal_table *t);
+/* Name, unit, value (of the first instance; raw NULL: the row's own start), range, help: one row a
+ * line. */
+void cli_signal_print(FILE *f, const struct exh_signal_table *t, const int32_t *raw);
 
 #endif

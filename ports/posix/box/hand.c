@@ -101,7 +101,10 @@ static int one_finger(unsigned f)
                     : 0,
         phase == SIM_PATH_HOLD, plant->plant.x_m};
     widen(&t->range, &s, sig->more[f].joint_turn_q32, run.r->ticks == 1);
-    t->freezes += (s.bits & EXH_PRECONTACT_FREEZE) != 0;
+    if (s.bits & EXH_PRECONTACT_FREEZE) {
+        t->freezes++;
+        t->scale = ((double)s.raw.q_lim_m_q30 - s.raw.q_m_q30) / -(double)s.raw.d_m_q30;
+    }
     t->frozen_yet |= (s.bits & EXH_PRECONTACT_STANDS) != 0;
     t->contacts += s.raw.c && !t->c;
     t->unfrozen += s.raw.c && !(s.bits & EXH_PRECONTACT_STANDS);
@@ -150,40 +153,6 @@ static struct bilateral_finger_is finger_is(const struct bilateral_run_cfg *c, u
     return w;
 }
 
-/* String per way of the fingertip from where q_lim is frozen, or from rest if that is nearer, to
- * the touch, as somebody would find by closing the hand once, slowly. 1 where there is no such way:
- * nothing is there, it is touched at rest, or the finger goes along it. */
-static double scale_to(const struct bilateral_finger_is *w, double touch_m, double d_lim_m)
-{
-    const struct exh_signal *row = &exh_precontact_rows[2];
-    const double from_m = touch_m < 0 ? -1 : bilateral_string_m(&run.world, w, 0, d_lim_m);
-    const int at_rest = from_m <= 0;
-    const double way_m = at_rest ? -bilateral_gap_m(&run.world, w, 0, 0) : -d_lim_m;
-    const double scale = (touch_m - (at_rest ? 0 : from_m)) / way_m;
-    if (touch_m <= 0 || way_m <= 0) { return 1; }
-    return scale >= cli_signal_value(row, row->min) && scale <= cli_signal_value(row, row->max)
-               ? scale
-               : 1;
-}
-
-static int fit_scale(const struct bilateral_run_cfg *c, struct bilateral_run *r)
-{
-    struct exh_params *p = exh_scene_bilateral.params;
-    int err = cli_param_set(p, exh_precontact_rows[3].name, 0);
-    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
-        const struct bilateral_finger_is w = finger_is(c, f);
-        struct bilateral_track *t = &r->finger[f];
-        const int32_t index = exh_signal_find(p->table, exh_precontact_rows[0].id, (uint16_t)f);
-        t->scale =
-            scale_to(&w, t->touch_m, cli_signal_value(&exh_precontact_rows[0], p->staged[index]));
-        if (err == 0) {
-            err = exh_params_stage(p, exh_precontact_rows[2].id, (uint16_t)f,
-                (int32_t)(t->scale * (1 << exh_precontact_rows[2].frac)));
-        }
-    }
-    return err;
-}
-
 /* A world elsewhere may have heard this seed before: another at every start, and logged. */
 static double session_of(const struct bilateral_run_cfg *c)
 {
@@ -192,7 +161,27 @@ static double session_of(const struct bilateral_run_cfg *c)
                                    : 1 + (double)(c->board.seed % 1000000);
 }
 
-static int set_parameters(const struct bilateral_run_cfg *c)
+/* One s is not used while the other is. */
+static int refuse_scale(const struct bilateral_run_cfg *c)
+{
+    const char *const per_tip = exh_precontact_rows[2].name;
+    const char *const from_slope = exh_precontact_rows[3].name;
+    uint32_t index;
+    if (!cli_signal_find(exh_scene_bilateral.params->table, from_slope, &index) ||
+        !exh_scene_bilateral.params->staged[index]) {
+        return 0;
+    }
+    for (int i = 0; i < c->settings; i++) {
+        if (strcmp(c->setting[i].name, per_tip) == 0) {
+            cli_complain("--set %s: it is not used while %s is 1: give --set %s=0, too", per_tip,
+                from_slope, from_slope);
+            return -EXH_E_RANGE;
+        }
+    }
+    return 0;
+}
+
+int bilateral_stage(const struct bilateral_run_cfg *c)
 {
     const struct sim_device *d = &c->board.device;
     const struct run_setting known[] = {
@@ -231,7 +220,7 @@ static int set_parameters(const struct bilateral_run_cfg *c)
     for (int i = 0; err == 0 && i < c->settings; i++) {
         err = cli_param_set(p, c->setting[i].name, c->setting[i].value);
     }
-    return err;
+    return err ? err : refuse_scale(c);
 }
 
 static void want(struct peer_cfg *p, const struct exh_signal *row, int instance, double value)
@@ -279,7 +268,7 @@ static void put_up(const struct bilateral_run_cfg *c)
         if (!(c->board.exo.fingers >> f & 1)) { continue; }
         run.world.wall.fingers = (uint8_t)(run.world.wall.fingers | 1u << f);
         bilateral_wall(&run.world.wall.plane[f], &w, c->at_m);
-        run.r->finger[f].touch_m = bilateral_string_m(&run.world, &w, 0, 0);
+        run.r->finger[f].touch_m = bilateral_string_m(&run.world, &w, 0);
     }
 }
 
@@ -325,9 +314,8 @@ int bilateral_run(const struct bilateral_run_cfg *c, struct bilateral_run *r)
     run.r = r;
     run.logged = c->board.log != NULL;
     run.done_s = -1;
-    err = set_parameters(c);
+    err = bilateral_stage(c);
     if (err == 0) { put_up(c); }
-    if (err == 0 && c->fit_scale) { err = fit_scale(c, r); }
     if (err < 0) { return err; }
     board = board_of(c);
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) { /* who knows what a world elsewhere holds */

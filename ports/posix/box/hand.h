@@ -27,7 +27,6 @@ struct bilateral_run_cfg {
     double at_m;                                 /* where, as string */
     double fps, from_s, until_s, again_s, ray_m; /* of the world (peer_cfg); ray 0: no end */
     int32_t session; /* of the controller; 0: of the seed, over UDP of the clock */
-    int fit_scale;   /* s of each finger: as it fits, not as the scene has it */
     int keep;        /* keep samples */
     const struct exh_glove_cal *glove_cal; /* of board.glove_tty; NULL: nobody's */
     const struct images *images;       /* calibrations of fingers; NULL, or none: uncalibrated */
@@ -50,7 +49,7 @@ struct bilateral_track {
     struct bilateral_sample *at;
     size_t n, cap;
     double touch_m; /* string at which pad and object touch; < 0: never */
-    double scale;   /* s, if it was fitted */
+    double scale;   /* s of the last freeze */
     long freezes;
     long contacts;   /* times that c set */
     long unfrozen;   /* ticks with c and no q_lim that stands: must stay 0 */
@@ -79,6 +78,9 @@ struct bilateral_run {
     int params, acked, refused; /* over the link */
 };
 
+/* The scene's parameters as a run has them from its start. 0 or -EXH_E… after a line on stderr. */
+int bilateral_stage(const struct bilateral_run_cfg *c);
+
 /* 0 or -EXH_E… after a line on stderr. Free it after an error, too. */
 int bilateral_run(const struct bilateral_run_cfg *c, struct bilateral_run *r);
 void bilateral_run_free(struct bilateral_run *r);
@@ -96,12 +98,13 @@ struct bilateral_finger_is {
 /* A wall across its way where it has drawn x_m out. */
 void bilateral_wall(struct exh_wire_plane *to, const struct bilateral_finger_is *w, double x_m);
 
-/* d of it with what it would be told there at t_s; -1e3: nothing. */
+/* d of it where it has drawn x_m out: of its wall, or of the nearest surface of the scene as it is
+ * at first; -1e3: nothing. */
 double bilateral_gap_m(
-    const struct peer_world *world, const struct bilateral_finger_is *w, double x_m, double t_s);
+    const struct peer_world *world, const struct bilateral_finger_is *w, double x_m);
 
 /* The string at which d first is d_m; -1: nowhere. */
 double bilateral_string_m(
-    const struct peer_world *world, const struct bilateral_finger_is *w, double t_s, double d_m);
+    const struct peer_world *world, const struct bilateral_finger_is *w, double d_m);
 
 #endif

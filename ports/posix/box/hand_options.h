@@ -20,8 +20,7 @@ struct bilateral_options {
     struct bilateral_speed speed[BILATERAL_SPEEDS_MAX];
     int speeds;
     int64_t approaches, seed, jobs;
-    int study, cards, own_scale; /* own_scale: s was set, it is not fitted; study: the lab
-                                  * runs many */
+    int study, cards; /* study: the lab runs many */
     const char *scene, *out, *udp, *link, *record;
     double record_Hz;
     struct run_setting setting[BILATERAL_SETTINGS_MAX];
@@ -42,7 +41,7 @@ int bilateral_take_fingers(void *ctx, const char *text);
 int bilateral_take_pose(void *ctx, const char *text);
 int bilateral_take_setting(void *ctx, const char *text);
 int bilateral_take_device(void *ctx, const char *text);
-void bilateral_print_params(void);
+int bilateral_print_params(const struct bilateral_options *o);
 
 /* The run of one speed. */
 struct bilateral_run_cfg bilateral_at_speed(const struct bilateral_options *o, double mps);

@@ -9,9 +9,10 @@
 #include <string.h>
 
 #define HELLO_EVERY_S 0.5
-#define PARAM_EVERY_S 0.05
+#define PARAM_EVERY_S 0.02
 #define TRACE_EVERY_S \
-    0.5 /* longer than the way there and back: an answer is of the newest request */
+    0.5              /* longer than the way there and back: an answer is of the newest request */
+#define HOLDS_S  1.0 /* planes wait so long for the answers to parameters */
 #define QUIET_US 1000000 /* nothing heard for so long: any HELLO begins anew */
 
 double peer_gap_m(const struct exh_wire_plane *p, const int32_t tip_m_q30[3])
@@ -24,11 +25,11 @@ double peer_gap_m(const struct exh_wire_plane *p, const int32_t tip_m_q30[3])
     return (sum / 1073741824.0 + exh_hand_rows[3].dflt) / 1073741824.0;
 }
 
-void peer_look(const struct peer_world *w, const struct exh_wire_state *in, double t_s,
-    struct exh_wire_planes *out)
+void peer_look(const struct peer_world *w, const struct exh_wire_state *in, const struct pace *pace,
+    double t_s, struct exh_wire_planes *out)
 {
     if (w->scene) {
-        world_frame(w->scene, in, t_s, out, NULL);
+        world_frame(w->scene, in, pace, t_s, out, NULL);
         return;
     }
     *out = w->wall;
@@ -52,7 +53,7 @@ void peer_start(struct peer *p, const struct peer_cfg *cfg, uint32_t session)
     memset(p, 0, sizeof *p);
     p->cfg = *cfg;
     p->tx.session = session;
-    p->hello_s = p->param_s = p->trace_s = -1;
+    p->hello_s = p->param_s = p->trace_s = p->met_s = -1;
 }
 
 /* Frames of another request than ours are of a world before. */
@@ -79,10 +80,14 @@ static void take(struct peer *p, const void *buf, size_t len_B)
 {
     struct exh_wire_packet in;
     const int type = exh_wire_decode(&p->rx, &in, buf, len_B);
-    if (type == EXH_WIRE_HELLO) { p->hello_s = -1; } /* it is new here: answer at once */
+    if (type == EXH_WIRE_HELLO) {
+        p->hello_s = -1; /* it is new here: answer at once */
+        pace_pull(&p->pace, &in.u.hello);
+    }
     if (type == EXH_WIRE_TRACE) { take_trace(p, &in.u.trace); }
     if (type == EXH_WIRE_STATE) {
         p->state = in.u.state;
+        pace_take(&p->pace, &p->state, in.stamp_us);
         p->echo_seq = in.seq;
         p->echo_stamp_us = in.stamp_us;
         p->told = 1;
@@ -129,7 +134,8 @@ static void put(struct peer *p, struct sim_link *link, struct exh_wire_packet *o
 static void put_hello(struct peer *p, struct sim_link *link, double t_s)
 {
     struct exh_wire_packet out = {.type = EXH_WIRE_HELLO};
-    out.u.hello = (struct exh_wire_hello){EXH_WIRE_WORLD, EXH_VERSION_NUMBER, 0};
+    out.u.hello = (struct exh_wire_hello){
+        .role = EXH_WIRE_WORLD, .lib_version = EXH_VERSION_NUMBER, .table_crc = 0};
     put(p, link, &out, t_s);
     p->hello_s = t_s;
 }
@@ -154,10 +160,26 @@ static void put_trace_ask(struct peer *p, struct sim_link *link, double t_s)
     p->trace_s = t_s;
 }
 
+/* So that the first contact has its material, planes wait for the answers, but not for long. */
+static void hide(const struct peer *p, struct exh_wire_planes *planes, double t_s)
+{
+    if (t_s < p->cfg.param_from_s || t_s - p->met_s >= HOLDS_S) { return; }
+    for (int i = 0; i < p->cfg.params; i++) {
+        const struct exh_wire_param *ask = &p->cfg.param[i];
+        if (p->acked >> i & 1 || ask->id >> 8 != exh_material_rows[0].id >> 8) { continue; }
+        for (unsigned f = 0; f < EXH_FINGERS; f++) {
+            if (planes->plane[f].material == ask->instance) {
+                planes->plane[f].kind = EXH_PLANE_UNTOLD;
+            }
+        }
+    }
+}
+
 static void answer(struct peer *p, struct sim_link *link, double t_s)
 {
     struct exh_wire_packet out = {.type = EXH_WIRE_PLANES};
-    peer_look(p->cfg.world, &p->state, t_s, &out.u.planes);
+    peer_look(p->cfg.world, &p->state, &p->pace, t_s, &out.u.planes);
+    hide(p, &out.u.planes, t_s);
     out.u.planes.echo_seq = p->echo_seq;
     out.u.planes.echo_stamp_us = p->echo_stamp_us;
     put(p, link, &out, t_s);
@@ -197,5 +219,6 @@ void peer_frame(void *ctx, struct sim_link *link, double t_s)
         (p->trace_s < 0 || t_s - p->trace_s >= TRACE_EVERY_S)) {
         put_trace_ask(p, link, t_s);
     }
+    if (p->met_s < 0) { p->met_s = t_s; }
     if (p->told) { answer(p, link, t_s); }
 }

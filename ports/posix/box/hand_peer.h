@@ -5,6 +5,7 @@
 #define CLI_BILATERAL_PEER_H
 
 #include "sim/link.h"
+#include "world/pace.h"
 
 #include "exhand/wire.h"
 
@@ -25,9 +26,9 @@ struct peer_world {
 /* d of a tip, n.(P - tip) + pad, m; of a plane that is none: -1e3. */
 double peer_gap_m(const struct exh_wire_plane *p, const int32_t tip_m_q30[3]);
 
-/* What the fingers of this state are about to touch. */
-void peer_look(const struct peer_world *w, const struct exh_wire_state *in, double t_s,
-    struct exh_wire_planes *out);
+/* What the fingers of this state, whose joints turn at this pace, are about to touch. */
+void peer_look(const struct peer_world *w, const struct exh_wire_state *in, const struct pace *pace,
+    double t_s, struct exh_wire_planes *out);
 
 /* It is there from from_s to until_s, and again, started anew, from again_s on (0: not): else
  * packets to it are lost. It sets the parameters until each was acknowledged. */
@@ -56,8 +57,10 @@ struct peer {
     struct exh_wire_tx tx;
     struct exh_wire_rx rx;
     struct exh_wire_state state;
+    struct pace pace;
     uint32_t echo_seq, echo_stamp_us;
     double hello_s, param_s; /* when the last went out */
+    double met_s;            /* when the controller was first heard of; < 0: not yet */
     double heard_s;          /* when it last looked what came */
     unsigned acked, refused; /* masks of parameters */
     uint64_t frames, answers;

@@ -2,6 +2,8 @@
 /* Where things are: the glove's calibration, a finger by its string, walls, first touch. */
 #include "box/hand.h"
 
+#include "world/world.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -51,7 +53,7 @@ static const signed char bends[BILATERAL_FINGERS][3] = {
     {1, 2, -1}, {4, 5, 6}, {7, 8, 9}, {11, 12, 13}, {15, 16, 17}};
 
 /* Joints and tip when it has drawn so much string out. */
-static void finger_at(const struct bilateral_finger_is *w, double x_m,
+static void drawn_out(const struct bilateral_finger_is *w, double x_m,
     int32_t joint_turn_q32[EXH_HAND_JOINTS], struct exh_vec3 *tip_m_q30)
 {
     const double rest = w->arm_m[1] + w->arm_m[2], square = w->arm_m[0] * w->arm_m[0] + rest * rest;
@@ -74,13 +76,13 @@ void bilateral_wall(struct exh_wire_plane *to, const struct bilateral_finger_is 
     int32_t joint[EXH_HAND_JOINTS];
     struct exh_vec3 a, b;
     double n[3], length, offset;
-    finger_at(w, x_m - STEP_M, joint, &a);
-    finger_at(w, x_m + STEP_M, joint, &b);
+    drawn_out(w, x_m - STEP_M, joint, &a);
+    drawn_out(w, x_m + STEP_M, joint, &b);
     n[0] = (double)a.x - b.x;
     n[1] = (double)a.y - b.y;
     n[2] = (double)a.z - b.z;
     length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    finger_at(w, x_m, joint, &a);
+    drawn_out(w, x_m, joint, &a);
     offset = (n[0] * a.x + n[1] * a.y + n[2] * a.z) / length - exh_hand_rows[3].dflt;
     memset(to, 0, sizeof *to);
     to->kind = EXH_PLANE_HIT;
@@ -93,30 +95,29 @@ void bilateral_wall(struct exh_wire_plane *to, const struct bilateral_finger_is 
 }
 
 double bilateral_gap_m(
-    const struct peer_world *world, const struct bilateral_finger_is *w, double x_m, double t_s)
+    const struct peer_world *world, const struct bilateral_finger_is *w, double x_m)
 {
-    struct exh_wire_state in = {.fingers = (uint8_t)(1u << w->f)};
-    struct exh_wire_planes out;
+    int32_t joint[EXH_HAND_JOINTS], tip_q30[3];
     struct exh_vec3 tip;
-    finger_at(w, x_m, in.joint_turn_q32[w->f], &tip);
-    in.tip_m_q30[w->f][0] = tip.x;
-    in.tip_m_q30[w->f][1] = tip.y;
-    in.tip_m_q30[w->f][2] = tip.z;
-    peer_look(world, &in, t_s, &out);
-    return peer_gap_m(&out.plane[w->f], in.tip_m_q30[w->f]);
+    drawn_out(w, x_m, joint, &tip);
+    tip_q30[0] = tip.x;
+    tip_q30[1] = tip.y;
+    tip_q30[2] = tip.z;
+    return world->scene ? -world_gap_m(world->scene, w->f, joint)
+                        : peer_gap_m(&world->wall.plane[w->f], tip_q30);
 }
 
 double bilateral_string_m(
-    const struct peer_world *world, const struct bilateral_finger_is *w, double t_s, double d_m)
+    const struct peer_world *world, const struct bilateral_finger_is *w, double d_m)
 {
     double lo, hi, x = 0;
-    while (x <= TOP_M && bilateral_gap_m(world, w, x, t_s) < d_m) { x += STEP_M; }
+    while (x <= TOP_M && bilateral_gap_m(world, w, x) < d_m) { x += STEP_M; }
     if (x > TOP_M) { return -1; }
     lo = x - STEP_M;
     hi = x;
     for (int i = 0; i < 30; i++) {
         const double mid = 0.5 * (lo + hi);
-        if (bilateral_gap_m(world, w, mid, t_s) < d_m) {
+        if (bilateral_gap_m(world, w, mid) < d_m) {
             lo = mid;
         } else {
             hi = mid;

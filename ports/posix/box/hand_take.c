@@ -43,7 +43,6 @@ struct bilateral_run_cfg bilateral_at_speed(const struct bilateral_options *o, d
     c.settings = o->settings;
     c.board.seed = (uint64_t)o->seed;
     c.board.cards.how = o->cards ? POSIX_CARDS_INSTANT : POSIX_CARDS_NONE;
-    c.fit_scale = !o->own_scale;
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
         c.board.exo.path[f].speed_mps = mps;
         c.board.exo.path[f].approaches = (double)o->approaches;
@@ -143,10 +142,6 @@ int bilateral_take_setting(void *ctx, const char *text)
     }
     exh_scene_bilateral.defaults();
     if (cli_param_set(exh_scene_bilateral.params, name, value) < 0) { return 2; }
-    if (strcmp(name, exh_precontact_rows[2].name) == 0 ||
-        strcmp(name, exh_precontact_rows[3].name) == 0) {
-        o->own_scale = 1;
-    }
     o->setting[o->settings++] = (struct run_setting){
         cli_signal_find(exh_scene_bilateral.params->table, name, NULL)->name, value};
     return 0;
@@ -191,14 +186,17 @@ static void print_rows(const char *title, const struct sim_device_row *row, int 
     }
 }
 
-void bilateral_print_params(void)
+int bilateral_print_params(const struct bilateral_options *o)
 {
-    exh_scene_bilateral.defaults();
+    const struct bilateral_run_cfg c = bilateral_at_speed(o, o->speed[0].mps);
+    const struct exh_params *p = exh_scene_bilateral.params;
+    if (bilateral_stage(&c) < 0) { return 2; }
     printf("Parameters of the scene (--set NAME=VALUE, of all fingers)\n");
-    cli_signal_print(stdout, exh_scene_bilateral.params->table);
+    cli_signal_print(stdout, p->table, p->staged);
     print_rows("A finger (--device NAME=VALUE, all of them)", sim_finger_row, sim_finger_rows);
     print_rows("What it does", sim_path_row, sim_path_rows);
     print_rows("The glove's chain", sim_glove_row, sim_glove_rows);
     print_rows("The motor's device", sim_device_row, sim_device_rows);
     print_rows("The network (--link NAME=VALUE, both ways)", sim_link_row, sim_link_rows);
+    return 0;
 }

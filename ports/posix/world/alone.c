@@ -19,6 +19,7 @@ struct alone {
     struct view view;
     struct draw_moment m;
     struct world_stats stats;
+    struct pace pace;
 };
 
 static int save(struct alone *a, const char *path)
@@ -62,7 +63,8 @@ static int frames(struct alone *a)
         if (r->script) { solo_script(&solo, a->m.t_s); }
         solo_step(&solo, r->world, &a->m.out, dt, &a->m.in);
         a->m.hand = world_hand_at(r->world, a->m.t_s);
-        world_frame(r->world, &a->m.in, a->m.t_s, &a->m.out, &a->stats);
+        pace_take(&a->pace, &a->m.in, (uint32_t)(1e6 * a->m.t_s));
+        world_frame(r->world, &a->m.in, &a->pace, a->m.t_s, &a->m.out, &a->stats);
         if (film(a, k)) { return 1; }
     }
     return r->png ? save(a, r->png) : 0;
@@ -70,9 +72,9 @@ static int frames(struct alone *a)
 
 static void report(const struct world_stats *s)
 {
-    printf("frames %lu  rays %lu  hits %lu  bodies asked %lu  put aside by their ball %lu  "
+    printf("frames %lu  looks %lu  hits %lu  bodies asked %lu  put aside by their ball %lu  "
            "objects asleep %lu\n",
-        s->frames, s->rays, s->hits, s->tests, s->culled, s->slept);
+        s->frames, s->looks, s->hits, s->tests, s->culled, s->slept);
 }
 
 int run_alone(struct run *r)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Frames and rays a second on one core, with and without culling, and with the picture drawn. */
+/* Frames and looks a second on one core, with and without culling, and with the picture drawn. */
 #include "run.h"
 
 #include "mesh.h"
@@ -21,7 +21,7 @@
 #define STATES 512
 #define RUN_S  0.4
 
-static const char *const frame_of_all = "hand at 0 0 0\nmaterial m\nfingers all\nray length 0.1\n";
+static const char *const frame_of_all = "hand at 0 0 0\nmaterial m\nfingers all\nlook ahead 0.1\n";
 
 /* Of the processor, all threads together: what one core would do in that time were it free. */
 static double now_s(void)
@@ -150,7 +150,7 @@ static double frames_per_s(struct world *w, int cull, struct world_stats *s)
     memset(s, 0, sizeof *s);
     while (t - start < RUN_S) {
         for (int k = 0; k < STATES; k++) {
-            world_frame(w, &state[k], (double)s->frames / 400, &out, s);
+            world_frame(w, &state[k], NULL, (double)s->frames / 400, &out, s);
         }
         t = now_s();
     }
@@ -180,7 +180,7 @@ static double pictures_per_s(struct picture *p, struct world *w, int turning, do
         solo_script(&solo, m.t_s);
         solo_step(&solo, w, &m.out, 1.0 / 400, &m.in);
         m.hand = world_hand_at(w, m.t_s);
-        world_frame(w, &m.in, m.t_s, &m.out, NULL);
+        world_frame(w, &m.in, NULL, m.t_s, &m.out, NULL);
         world_draw(w, &m, &list);
         picture_paint(p, &list);
         picture_wait(p);
@@ -210,8 +210,8 @@ static void row(const char *name, struct world *w, const struct picture_want *wa
     struct world_stats on, off;
     const double a = frames_per_s(w, 1, &on), b = frames_per_s(w, 0, &off);
     printf("%-26s %9.0f %9.0f %7.1f %5.1f %9.0f %7.1f", name, a, 5 * a,
-        (double)(on.tests - on.culled) / (double)on.rays, 100 * (double)on.hits / (double)on.rays,
-        5 * b, (double)off.tests / (double)off.rays);
+        (double)(on.tests - on.culled) / (double)on.looks, 100 * (double)on.hits / (double)on.looks,
+        5 * b, (double)off.tests / (double)off.looks);
     world_cull(w, 1);
     drawn(w, want);
     putchar('\n');
@@ -265,12 +265,12 @@ int run_bench(struct run *r)
     picture_close(p);
     make_states();
     printf(
-        "One core, five fingers. Frames, rays and pictures (%d x %d, view still or turning) a "
+        "One core, five fingers. Frames, looks and pictures (%d x %d, view still or turning) a "
         "second of the\n"
         "processor's time, all threads together, and of pictures also by the clock on the wall.\n",
         want.width, want.height);
-    printf("%-26s %9s %9s %7s %5s %9s %7s %8s %8s %8s %8s\n", "", "frames", "rays", "bodies",
-        "hits", "rays un-", "bodies", "pictures", "wall", "turning", "wall");
-    printf("%-26s %9s %9s %7s %5s %9s %7s\n", "", "", "", "a ray", "%", "culled", "a ray");
+    printf("%-26s %9s %9s %7s %5s %9s %7s %8s %8s %8s %8s\n", "", "frames", "looks", "bodies",
+        "hits", "looks un-", "bodies", "pictures", "wall", "turning", "wall");
+    printf("%-26s %9s %9s %7s %5s %9s %7s\n", "", "", "", "a look", "%", "culled", "a look");
     return rows(r, p ? &want : NULL);
 }

@@ -63,7 +63,7 @@ static void state_colour(const struct exh_wire_state *in, int f, struct draw_ite
     }
 }
 
-/* The collision plane as a disc around P_C, and dots along the ray from P_F to it. */
+/* The collision plane as a disc around P_C, and dots from P_F to it. */
 static void plane(
     const struct draw_moment *m, const struct pose *hand, int f, struct draw_list *list)
 {
@@ -77,31 +77,32 @@ static void plane(
     i->size.x = DISC_M;
     state_colour(&m->in, f, i, 0.42);
     for (int k = 1; k < dots; k++) {
-        i = draw_add(list, DRAW_SPHERE, DRAW_RAY, f);
+        i = draw_add(list, DRAW_SPHERE, DRAW_WAY, f);
         i->at.at = v3_along(tip, (double)k / dots, way);
         i->size.x = DOT_M;
         state_colour(&m->in, f, i, 1);
     }
 }
 
-/* A box that stands on the nail's side of the fingertip: the force is its height. Around it, as
- * glass, the highest force of the material that is touched. */
+/* A box on the fingertip, where the surface pushes it: the force is its height, along the contact's
+ * normal. Around it, as glass, the highest force of the material. Without a contact there is none:
+ * what pulls then (F0) comes of no surface. */
 static void bar(const struct scene *s, const struct draw_moment *m, const struct finger *f,
     const struct pose *hand, int which, struct draw_list *list)
 {
-    const struct v3 up = v3_times(m3_by(&hand->turn, f->pad), -1);
+    const struct exh_wire_plane *p = &m->out.plane[which];
+    const struct v3 up = v3_unit(m3_by(&hand->turn, from_q30(p->normal_q30)));
     const struct v3 foot = v3_along(pose_by(hand, f->tip), FINGER_PAD_M, up);
     const double high = m->in.force_N_q20[which] * 0x1p-20 * DRAW_BAR_M_PER_N;
-    const unsigned material = m->out.plane[which].material;
     double most = 0;
     struct draw_item *i;
-    if (!(high > 0)) { return; }
+    if (!(high > 0) || !(m->in.touching >> which & 1) || p->kind != EXH_PLANE_HIT) { return; }
     i = draw_add(list, DRAW_BOX, DRAW_BAR, which);
     i->at = looking(v3_along(foot, high / 2, up), up);
     i->size = v3(0.0042, 0.0042, high / 2);
     paint(i, 0.93, 0.07, 0.07, 1);
-    if (m->out.plane[which].kind == EXH_PLANE_HIT && (int)material < s->materials) {
-        most = s->material[material].f_max * DRAW_BAR_M_PER_N;
+    if ((int)p->material < s->materials) {
+        most = s->material[p->material].f_max * DRAW_BAR_M_PER_N;
     }
     if (!(most > high)) { return; }
     i = draw_add(list, DRAW_BOX, DRAW_BAR_SCALE, which);

@@ -19,7 +19,7 @@ enum draw_kind {
     DRAW_DISC     /* z = 0, radius size.x */
 };
 
-enum draw_what { DRAW_OBJECT, DRAW_HAND, DRAW_PLANE, DRAW_RAY, DRAW_BAR, DRAW_BAR_SCALE };
+enum draw_what { DRAW_OBJECT, DRAW_HAND, DRAW_PLANE, DRAW_WAY, DRAW_BAR, DRAW_BAR_SCALE };
 
 struct draw_item {
     enum draw_kind kind;

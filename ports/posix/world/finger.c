@@ -64,5 +64,4 @@ void finger_at(
         if (i < 2) { bent = sum(bent, q2); }
     }
     f->tip = pose_by(b, v3(q0.c * out, q0.s * out, up));
-    f->pad = m3_by(&b->turn, v3(-q0.c * bent.s, -q0.s * bent.s, bent.c));
 }

@@ -3,8 +3,7 @@
  * x out of the palm (the way the fingers close), y towards the thumb's side; metres.
  *
  * A finger has four joints: q0 sideways, then q1, q2 and q3 = q2, which bend. P_F is the middle
- * of the pad's sphere, FINGER_PAD_M its radius. The ray starts there, along the pad's
- * direction: square to the last link, in the plane the finger bends in, to the side it closes to.
+ * of the pad's sphere, FINGER_PAD_M its radius.
  */
 #ifndef WORLD_FINGER_H
 #define WORLD_FINGER_H
@@ -32,7 +31,6 @@ void hand_hit2(struct hand *h);
 struct finger {
     struct v3 joint[3]; /* where q1, q2, q3 are */
     struct v3 tip;      /* P_F */
-    struct v3 pad;      /* r, length 1 */
 };
 
 /* One finger (0 thumb .. 4 little) at the angles q0, q1, q2; P_F within 1e-15 m. */

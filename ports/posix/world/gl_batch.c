@@ -49,7 +49,7 @@ static void paint(
     switch (b->item->what) {
     case DRAW_PLANE: c[3] = (float)fmin(1, (double)c[3] * (1 + 1.2 * k->carried)); return;
     case DRAW_BAR_SCALE:
-    case DRAW_RAY: return;
+    case DRAW_WAY: return;
     case DRAW_BAR:
         for (int i = 0; i < 3; i++) { c[i] *= (float)(0.86 + 0.14 * v3_dot(n, gl_light)); }
         return;

@@ -196,7 +196,7 @@ static int form_of(const struct gl_solid *g, const struct draw_item *i, int shad
     case DRAW_MESH: return -1;
     }
     if (shade) { return g->fine || i->what == DRAW_OBJECT ? GL_FORM_SHADE : GL_FORM_DIM; }
-    if (i->what == DRAW_RAY) { return GL_FORM_DOT; }
+    if (i->what == DRAW_WAY) { return GL_FORM_DOT; }
     if (g->fine || (i->what == DRAW_OBJECT && i->size.x > 0.018)) { return GL_FORM_FINE; }
     return i->hidden == 2 || (i->what == DRAW_HAND && i->which < 0) ? GL_FORM_TUBE : GL_FORM_BALL;
 }

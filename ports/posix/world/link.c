@@ -102,7 +102,8 @@ static int same_peer(const struct sockaddr_storage *a, const struct sockaddr_sto
 
 static struct exh_wire_hello hello_of_ours(const struct link *l)
 {
-    const struct exh_wire_hello h = {EXH_WIRE_WORLD, EXH_VERSION_NUMBER, l->table_crc};
+    const struct exh_wire_hello h = {
+        .role = EXH_WIRE_WORLD, .lib_version = EXH_VERSION_NUMBER, .table_crc = l->table_crc};
     return h;
 }
 
@@ -196,9 +197,10 @@ void link_answer(struct link *l, const struct exh_wire_planes *planes, int64_t n
     if (l->rx.session == 0) { return; }
     link_params_ask(l, now_us);
     link_trace_ask(l, now_us);
-    if (planes == NULL || link_params_hold(l, now_us)) { return; }
+    if (planes == NULL) { return; }
     p.type = EXH_WIRE_PLANES;
     p.u.planes = *planes;
+    link_params_hide(l, &p.u.planes, now_us);
     p.u.planes.echo_seq = l->echo_seq;
     p.u.planes.echo_stamp_us = l->echo_stamp_us;
     link_put(l, &p, now_us);

@@ -79,7 +79,8 @@ void link_close(struct link *l);
 
 /* The scene's materials, each checked against its row, are what the controller is to have: asked
  * for when it has said HELLO and till it answers, and again of one that has started anew. Planes
- * wait for the answers, but for no longer than a second. What is refused here or there is said. */
+ * of a material wait for its answers, but for no longer than a second. What is refused here or
+ * there is said. */
 void link_materials(struct link *l, const struct scene *s);
 
 /* One value of one material; 1: refused. */

@@ -75,10 +75,12 @@ void link_params_answered(struct link *l, const struct exh_wire_ack *a)
         struct link_want *w = &l->want[i];
         const struct exh_wire_param *p = &w->param;
         char why[200];
-        if (w->answered || p->id != a->param.id || p->instance != a->param.instance ||
-            p->value != a->param.value) {
-            continue;
+        if (p->id != a->param.id || p->instance != a->param.instance) { continue; }
+        if (p->value != a->param.value) { /* an old one came late and holds now: ask again */
+            l->waiting += w->answered;
+            w->answered = 0;
         }
+        if (w->answered || p->value != a->param.value) { continue; }
         w->answered = 1;
         l->waiting--;
         if (a->result == 0) { continue; }
@@ -104,10 +106,8 @@ void link_params_ask(struct link *l, int64_t now_us)
     }
 }
 
-int link_params_hold(struct link *l, int64_t now_us)
+static void lose_patience(struct link *l)
 {
-    if (l->waiting == 0 || l->impatient) { return 0; }
-    if (now_us - l->anew_us < PATIENT_US) { return 1; }
     l->impatient = 1;
     for (int i = 0; i < l->wants; i++) {
         if (!l->want[i].answered) {
@@ -119,5 +119,20 @@ int link_params_hold(struct link *l, int64_t now_us)
             break;
         }
     }
-    return 0;
+}
+
+void link_params_hide(struct link *l, struct exh_wire_planes *planes, int64_t now_us)
+{
+    if (l->waiting == 0 || l->impatient) { return; }
+    if (now_us - l->anew_us >= PATIENT_US) {
+        lose_patience(l);
+        return;
+    }
+    for (int i = 0; i < l->wants; i++) {
+        for (unsigned f = 0; f < EXH_FINGERS && !l->want[i].answered; f++) {
+            if (planes->plane[f].material == l->want[i].param.instance) {
+                planes->plane[f].kind = EXH_PLANE_UNTOLD;
+            }
+        }
+    }
 }

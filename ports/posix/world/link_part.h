@@ -17,7 +17,8 @@ void link_trace_anew(struct link *l, int64_t now_us);
 void link_trace_ask(struct link *l, int64_t now_us);
 void link_trace_take(struct link *l, const struct exh_wire_trace *in);
 
-/* 1: planes wait, for what they would be felt with is not known there yet. */
-int link_params_hold(struct link *l, int64_t now_us);
+/* Planes of a material that the controller has not answered for become UNTOLD: it does not know yet
+ * what they are to be felt with. */
+void link_params_hide(struct link *l, struct exh_wire_planes *planes, int64_t now_us);
 
 #endif

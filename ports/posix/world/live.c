@@ -60,6 +60,7 @@ static void sleep_till(int64_t us)
 struct exchange {
     struct draw_moment m;
     struct solo solo;
+    struct pace pace;
     int64_t state_us, began_us, frame_us;
     unsigned long done;
 };
@@ -81,16 +82,21 @@ static void one_exchange(struct live *l, struct exchange *x, double dt_s)
     const int64_t now = now_us();
     take_wishes(l, x);
     if (!x->m.paused) { x->m.t_s += dt_s; }
-    if (l->has_link && link_receive(&l->link, &x->m.in, now)) { x->state_us = now; }
+    if (l->has_link && link_receive(&l->link, &x->m.in, now)) {
+        x->state_us = now;
+        pace_pull(&x->pace, &l->link.theirs);
+        pace_take(&x->pace, &x->m.in, l->link.echo_stamp_us);
+    }
     x->m.linked = x->state_us && now - x->state_us < LINK_LOST_US;
     x->m.age_ms = x->state_us ? (double)(now - x->state_us) / 1000 : -1;
     x->m.lost = l->link.rx.missing;
     if (!x->m.linked) {
         if (l->run->script) { solo_script(&x->solo, x->m.t_s); }
         solo_step(&x->solo, l->run->world, &x->m.out, dt_s, &x->m.in);
+        pace_take(&x->pace, &x->m.in, (uint32_t)now);
     }
     x->m.hand = world_hand_at(l->run->world, x->m.t_s);
-    world_frame(l->run->world, &x->m.in, x->m.t_s, &x->m.out, &l->stats);
+    world_frame(l->run->world, &x->m.in, &x->pace, x->m.t_s, &x->m.out, &l->stats);
     /* The world's own hand is not the controller's: its planes would be felt where nothing is. */
     if (l->has_link) { link_answer(&l->link, x->m.linked ? &x->m.out : NULL, now_us()); }
     x->done++;
@@ -298,7 +304,7 @@ static void report(const struct live *l)
 {
     const struct world_stats *s = &l->stats;
     const struct exh_wire_rx *rx = &l->link.rx;
-    printf("frames %lu  rays %lu  hits %lu", s->frames, s->rays, s->hits);
+    printf("frames %lu  looks %lu  hits %lu", s->frames, s->looks, s->hits);
     if (l->has_link) {
         printf("  sent %lu  taken %lu  lost %lu  late %lu  twice %lu  bad %lu  refused %lu",
             l->link.sent, (unsigned long)rx->accepted, (unsigned long)rx->missing,

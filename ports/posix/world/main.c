@@ -38,7 +38,7 @@
         {"height", CLI_INT, &(r).height, 120, 8192, "PIXELS", "of the picture; 600"}, \
         {"smooth", CLI_INT, &(r).samples, 0, 16, "N", \
             "samples a pixel; 4 for --png and --video, else 0"}, \
-        {"bench", CLI_FLAG, &(r).bench, 0, 0, NULL, "print frames and rays a second"},
+        {"bench", CLI_FLAG, &(r).bench, 0, 0, NULL, "print frames and looks a second"},
 
 void exh_assert_failed(const char *file, int line)
 {

@@ -60,7 +60,7 @@ static int take_triangle(struct reading *r, int a, int b, int c)
     const struct triangle t = {{a, b, c}};
     const struct v3 n =
         v3_cross(v3_sub(m->point[b], m->point[a]), v3_sub(m->point[c], m->point[a]));
-    if (!(v3_len(n) > 0)) { return 0; } /* without area no ray hits it */
+    if (!(v3_len(n) > 0)) { return 0; } /* without area it has no normal */
     if (m->triangles == MESH_TRIANGLES_MAX ||
         grow((void **)&m->triangle, &r->triangle_room, m->triangles, sizeof *m->triangle)) {
         return complain(r, "f: too many triangles: use a smaller mesh");

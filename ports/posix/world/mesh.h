@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Triangle meshes: read from OBJ files; rays into them by Embree, which is loaded when the first
- * mesh is, and only then: a world without one neither needs nor loads it. */
+/* Triangle meshes: read from OBJ files; the point nearest to another one by Embree, which is loaded
+ * when the first mesh is, and only then: a world without one neither needs nor loads it. */
 #ifndef WORLD_MESH_H
 #define WORLD_MESH_H
 
@@ -19,7 +19,7 @@ struct mesh {
     struct triangle *triangle;
     int points, triangles;
     double bound_m; /* of the ball around the origin that holds it */
-    void *rays;     /* what mesh_cast() needs */
+    void *tree;     /* what mesh_away_m() needs */
 };
 
 /* Reads v and f lines of an OBJ file (polygons become fans; everything else is passed over) and
@@ -27,13 +27,17 @@ struct mesh {
 struct mesh *mesh_read(const char *path, double scale, char *error, size_t error_B);
 void mesh_free(struct mesh *m);
 
-/* Makes ready for rays; 0, or 1 with the reason in error: which package is missing. */
+/* Makes ready for being asked; 0, or 1 with the reason in error: which package is missing. */
 int mesh_ready(struct mesh *m, char *error, size_t error_B);
 void mesh_unready(struct mesh *m);
 
-/* Where the ray (in the mesh's frame) enters at t and through which triangle: 1, or 0 for nowhere.
- * A ray that meets a triangle from behind first started inside: the entry then lies behind it. */
-int mesh_cast(const struct mesh *m, const struct ray *r, double *t, int *triangle);
+/* The distance of p (in the mesh's frame) from the surface, m; below 0: p is on the inner side of
+ * the nearest triangle. `most` where none is nearer. */
+double mesh_away_m(const struct mesh *m, struct v3 p, double most);
+
+/* The plane that touches the mesh where it is nearest to p: its outward normal and a point on it.
+ * Nearest to the inside of a triangle, both are the triangle's, whatever p is. */
+void mesh_tangent(const struct mesh *m, struct v3 p, struct v3 *n, struct v3 *on);
 
 /* Of one triangle: its outward normal, and a point on it. */
 static inline struct v3 mesh_normal(const struct mesh *m, int triangle, struct v3 *on)

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Rays into meshes by Embree 3 or 4. Its library has 44 MB: it is loaded when the first mesh is.
+/* The triangle nearest to a point by Embree 3 or 4. Its library has 44 MB: it is loaded when the
+ * first mesh is.
  *
- * Embree answers in floats which triangle is hit; where, is then computed from the triangle in
- * doubles, so that no rounding of Embree's is in a plane. */
+ * Embree tells in floats which triangles may be nearest; each is then asked in doubles, so that no
+ * rounding of Embree's is in a plane. */
 #include "mesh.h"
 
 #include <dlfcn.h>
@@ -22,7 +23,7 @@
 #define EACH(F) \
     F(rtcNewDevice) F(rtcReleaseDevice) F(rtcNewScene) F(rtcReleaseScene) F(rtcSetSceneFlags) \
     F(rtcCommitScene) F(rtcNewGeometry) F(rtcReleaseGeometry) F(rtcCommitGeometry) \
-    F(rtcSetNewGeometryBuffer) F(rtcAttachGeometry) F(rtcIntersect1)
+    F(rtcSetNewGeometryBuffer) F(rtcAttachGeometry) F(rtcPointQuery)
 /* clang-format on */
 
 static struct {
@@ -82,7 +83,7 @@ int mesh_ready(struct mesh *m, char *error, size_t error_B)
     s = embree.rtcNewScene(embree.device);
     g = embree.rtcNewGeometry(embree.device, RTC_GEOMETRY_TYPE_TRIANGLE);
     if (s == NULL || g == NULL || fill(g, m)) {
-        snprintf(error, error_B, "no memory for its rays: use a smaller mesh");
+        snprintf(error, error_B, "no memory for its tree: use a smaller mesh");
         return 1;
     }
     embree.rtcCommitGeometry(g);
@@ -90,53 +91,92 @@ int mesh_ready(struct mesh *m, char *error, size_t error_B)
     embree.rtcReleaseGeometry(g);
     embree.rtcSetSceneFlags(s, RTC_SCENE_FLAG_ROBUST);
     embree.rtcCommitScene(s);
-    m->rays = s;
+    m->tree = s;
     return 0;
 }
 
 void mesh_unready(struct mesh *m)
 {
-    if (m->rays) { embree.rtcReleaseScene(m->rays); }
-    m->rays = NULL;
+    if (m->tree) { embree.rtcReleaseScene(m->tree); }
+    m->tree = NULL;
 }
 
-/* The first triangle on the way, or -1. */
-static int first(const struct mesh *m, struct v3 from, struct v3 along, double len)
+/* What of a triangle is nearest to p. */
+static struct v3 nearest(const struct mesh *m, const int *corner, struct v3 p, int *inside)
 {
-    struct RTCRayHit r;
-    memset(&r, 0, sizeof r);
-    r.ray.org_x = (float)from.x;
-    r.ray.org_y = (float)from.y;
-    r.ray.org_z = (float)from.z;
-    r.ray.dir_x = (float)along.x;
-    r.ray.dir_y = (float)along.y;
-    r.ray.dir_z = (float)along.z;
-    r.ray.tfar = (float)len;
-    r.ray.mask = ~0u;
-    r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-#if WORLD_EMBREE == 4
-    embree.rtcIntersect1(m->rays, &r, NULL);
-#else
-    struct RTCIntersectContext c;
-    rtcInitIntersectContext(&c);
-    embree.rtcIntersect1(m->rays, &c, &r);
-#endif
-    return r.hit.geomID == RTC_INVALID_GEOMETRY_ID ? -1 : (int)r.hit.primID;
-}
-
-int mesh_cast(const struct mesh *m, const struct ray *r, double *t, int *triangle)
-{
-    struct v3 on, n;
-    int hit = first(m, r->from, r->along, r->len);
-    if (hit < 0) { return 0; }
-    n = mesh_normal(m, hit, &on);
-    if (v3_dot(n, r->along) >= 0) { /* from behind: it starts inside, look back */
-        hit = first(m, r->from, v3_times(r->along, -1), r->back);
-        if (hit < 0) { return 0; }
-        n = mesh_normal(m, hit, &on);
-        if (v3_dot(n, r->along) >= 0) { return 0; }
+    const struct v3 a = m->point[corner[0]], ab = v3_sub(m->point[corner[1]], a),
+                    ac = v3_sub(m->point[corner[2]], a), n = v3_cross(ab, ac), to = v3_sub(p, a);
+    const double nn = v3_dot(n, n), w = v3_dot(v3_cross(ab, to), n) / nn,
+                 v = v3_dot(v3_cross(to, ac), n) / nn;
+    struct v3 best = a;
+    double least = ENDLESS;
+    *inside = v > 0 && w > 0 && v + w < 1;
+    if (*inside) { return v3_along(v3_along(a, v, ab), w, ac); }
+    for (int k = 0; k < 3; k++) { /* else of one of its edges */
+        const struct v3 from = m->point[corner[k]],
+                        edge = v3_sub(m->point[corner[(k + 1) % 3]], from);
+        const double at = v3_dot(v3_sub(p, from), edge) / v3_dot(edge, edge);
+        const struct v3 on = v3_along(from, at < 0 ? 0 : at > 1 ? 1 : at, edge);
+        const double far = v3_len(v3_sub(p, on));
+        if (far < least) { least = far, best = on; }
     }
-    *t = v3_dot(n, v3_sub(on, r->from)) / v3_dot(n, r->along);
-    *triangle = hit;
-    return 1;
+    return best;
+}
+
+/* The nearest triangle so far. Of two at one distance, which share an edge, the one that p is more
+ * in front of or behind says on which side p is. */
+struct search {
+    const struct mesh *m;
+    struct v3 p, on, n;
+    double far_m, aside;
+    int found, inside;
+};
+
+#define SAME_M 1e-9
+
+static bool look(struct RTCPointQueryFunctionArguments *q)
+{
+    struct search *s = q->userPtr;
+    const int *corner = s->m->triangle[q->primID].corner;
+    int inside;
+    const struct v3 on = nearest(s->m, corner, s->p, &inside), to = v3_sub(s->p, on);
+    const double far_m = v3_len(to);
+    struct v3 a;
+    const struct v3 n = mesh_normal(s->m, (int)q->primID, &a);
+    const double aside = v3_dot(n, to);
+    if (far_m > s->far_m + SAME_M) { return false; }
+    if (s->found && far_m > s->far_m - SAME_M && fabs(aside) <= fabs(s->aside)) { return false; }
+    s->found = 1;
+    s->far_m = far_m;
+    s->aside = aside;
+    s->on = inside ? a : on;
+    s->n = inside || far_m <= 0 ? n : v3_times(to, (aside < 0 ? -1 : 1) / far_m);
+    s->inside = aside < 0;
+    q->query->radius = (float)(far_m * (1 + 1e-6) + 1e-6);
+    return true;
+}
+
+static void seek(struct search *s, const struct mesh *m, struct v3 p, double most)
+{
+    struct RTCPointQuery q = {
+        (float)p.x, (float)p.y, (float)p.z, 0, (float)(most * (1 + 1e-6) + 1e-6)};
+    struct RTCPointQueryContext context;
+    *s = (struct search){.m = m, .p = p, .n = v3(0, 0, 1), .on = p, .far_m = most};
+    rtcInitPointQueryContext(&context);
+    (void)embree.rtcPointQuery(m->tree, &q, &context, look, s);
+}
+
+double mesh_away_m(const struct mesh *m, struct v3 p, double most)
+{
+    struct search s;
+    seek(&s, m, p, most);
+    return s.found && s.inside ? -s.far_m : s.far_m;
+}
+
+void mesh_tangent(const struct mesh *m, struct v3 p, struct v3 *n, struct v3 *on)
+{
+    struct search s;
+    seek(&s, m, p, 1e3);
+    *n = s.n;
+    *on = s.on;
 }

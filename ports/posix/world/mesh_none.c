@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Built without Embree: meshes can be read and drawn, but no ray can be cast into them. */
+/* Built without Embree: meshes can be read, but nothing can touch them. */
 #include "mesh.h"
 
 #include <stdio.h>
@@ -15,8 +15,15 @@ int mesh_ready(struct mesh *m, char *error, size_t error_B)
 
 void mesh_unready(struct mesh *m) { (void)m; }
 
-int mesh_cast(const struct mesh *m, const struct ray *r, double *t, int *triangle)
+double mesh_away_m(const struct mesh *m, struct v3 p, double most)
 {
-    (void)m, (void)r, (void)t, (void)triangle;
-    return 0;
+    (void)m, (void)p;
+    return most;
+}
+
+void mesh_tangent(const struct mesh *m, struct v3 p, struct v3 *n, struct v3 *on)
+{
+    (void)m;
+    *n = v3(0, 0, 1);
+    *on = p;
 }

@@ -27,8 +27,8 @@ int reach_start(struct reach *r, const struct scene *s, const struct hand *h)
         }
     }
     r->centre = v3_times(r->centre, 1.0 / used);
-    r->radius_m =
-        farthest(h, s->fingers, r->centre) + FINGER_SPAN_M + fmax(s->ray_m, s->back_m) + SLACK_M;
+    r->span_m = farthest(h, s->fingers, r->centre) + FINGER_SPAN_M + SLACK_M;
+    r->radius_m = r->span_m + FINGER_PAD_M + s->look_m;
     r->speed = motion_speed(&s->motion) + motion_turning(&s->motion) * v3_len(r->centre);
     r->asleep = calloc(n, sizeof *r->asleep);
     r->near = calloc(n, sizeof *r->near);

@@ -19,10 +19,10 @@ struct reach {
     struct body *near;
     unsigned char *placed; /* of near[]: its pose is that of all times */
     int sleepers, nears;
-    int all;                /* nobody is put to sleep */
-    struct v3 centre;       /* in {R}: P_F and its ray stay within radius_m of it */
-    double radius_m, speed; /* of centre in {W}, at most */
-    double t_s;             /* of the last frame */
+    int all;          /* nobody is put to sleep */
+    struct v3 centre; /* in {R}: P_F stays within span_m of it, what is looked at within */
+    double span_m, radius_m, speed; /* radius_m; speed of centre in {W}, at most */
+    double t_s;                     /* of the last frame */
 };
 
 /* 0, or 1 for no memory. */

@@ -22,7 +22,7 @@ int run_live(struct run *r);
 /* Headless and without a link: in the scene's own time, as fast as it goes. */
 int run_alone(struct run *r);
 
-/* The table of frames and rays a second. */
+/* The table of frames and looks a second. */
 int run_bench(struct run *r);
 
 #endif

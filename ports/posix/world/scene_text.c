@@ -50,12 +50,12 @@ static int take_fingers(struct reading *r)
     return r->s->fingers ? 0 : tokens_complain(w, "fingers: none: name those in use, or all");
 }
 
-static int take_ray(struct reading *r)
+static int take_look(struct reading *r)
 {
     double graze = GRAZE_DEG;
-    struct pair p[] = {{"length", 1, &r->s->ray_m, 0.001, 1, 0, 0},
-        {"back", 1, &r->s->back_m, 0, 0.2, 0, 0}, {"graze", 1, &graze, 0, 89, 0, 0}};
-    if (tokens_pairs(&r->w, 1, p, 3)) { return 1; }
+    struct pair p[] = {
+        {"ahead", 1, &r->s->look_m, 0.001, 1, 0, 0}, {"graze", 1, &graze, 0, 89, 0, 0}};
+    if (tokens_pairs(&r->w, 1, p, 2)) { return 1; }
     r->s->graze = sim_sin(graze * RAD_PER_DEG);
     return 0;
 }
@@ -123,7 +123,7 @@ static const struct {
 } statement[] = {
     {"world", take_world},
     {"fingers", take_fingers},
-    {"ray", take_ray},
+    {"look", take_look},
     {"hand", take_hand},
     {"camera", take_camera},
     {"material", take_material},
@@ -145,7 +145,7 @@ static int take_line(struct reading *r, char *text)
         if (strcmp(statement[i].name, w->word[0]) == 0) { return statement[i].take(r); }
     }
     return tokens_complain(w,
-        "%.30s: no such statement: use world, fingers, ray, hand, camera, material, "
+        "%.30s: no such statement: use world, fingers, look, hand, camera, material, "
         "plane, sphere, box, capsule, mesh, motion or key",
         w->word[0]);
 }
@@ -182,8 +182,7 @@ struct scene *scene_read(const char *name, const char *text, char *error, size_t
         return NULL;
     }
     r.s->fingers = (1u << FINGERS) - 1;
-    r.s->ray_m = 0.1;
-    r.s->back_m = 0.05;
+    r.s->look_m = 0.1;
     r.s->graze = sim_sin(GRAZE_DEG * RAD_PER_DEG);
     frame_from_z(&r.s->hand.turn, v3(0, 1, 0), v3(0, 0, -1));
     if (take_text(&r, text)) {

@@ -33,9 +33,9 @@ struct scene {
     unsigned fingers;     /* mask: which are in use */
     struct pose hand;     /* {R} in {W}, at rest */
     struct motion motion; /* of the hand */
-    double ray_m, back_m;
-    double graze;        /* least sine between ray and surface, beyond the pad's reach */
-    struct v3 eye, look; /* camera */
+    double look_m;        /* how far ahead of a pad, and around it */
+    double graze;         /* least sine between a pad's way and a far surface */
+    struct v3 eye, look;  /* camera */
     int eye_set;
     struct scene_material *material;
     struct scene_object *object;

@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Shapes and the ray: where does a ray enter one of many bodies?
- *
- * All bodies are convex but the mesh. A ray enters a body where it passes its surface inwards,
- * ahead of its origin (up to `len`), or behind it (up to `back`) if it starts inside: then the
- * finger is in the body already, and the plane it came through goes on being the answer. */
+/* Shapes, and how far a point is from them. All are solid; all are convex but the mesh. */
 #ifndef WORLD_SHAPE_H
 #define WORLD_SHAPE_H
 
@@ -28,45 +24,23 @@ struct shape {
     const struct mesh *mesh;
 };
 
-/* A shape where it stands: in the frame of the rays. */
+/* A shape where it stands: in the frame of the points. */
 struct body {
     struct pose at;
     struct shape is;
-    double radius2;  /* is.radius_m squared */
     double offset;   /* PLANE: of it along z from the frame's origin */
-    double bound2;   /* is.bound_m squared */
     unsigned object; /* whose shape it is, for the caller */
 };
 
 void body_set(struct body *b, const struct shape *is, const struct pose *at, unsigned object);
 
-struct ray {
-    struct v3 from, along; /* along has length 1 */
-    double len, back;
-};
+/* The distance of p from the surface, m; below 0 inside. Exact where it is below `most`; else any
+ * value from `most` on may come instead. */
+double body_away_m(const struct body *b, struct v3 p, double most);
 
-struct hit {
-    double t; /* the ray enters at from + t along */
-    int body; /* of the array, -1: none */
-    int face; /* MESH: triangle */
-};
-
-struct cast_stats {
-    unsigned long tested, culled; /* bodies looked at; of these put aside by their ball */
-};
-
-#define CAST_MAX 6
-
-/* The first entry of each of up to CAST_MAX rays into any of n bodies: h[i] is that of r[i]. All
- * have the len and back of the first. Two rays go at a time, lane by lane with the bits that each
- * alone would give. With cull 0 no ball is asked. */
-void cast(const struct body *b, int n, const struct ray *r, int rays, int cull, struct hit *h,
-    struct cast_stats *s);
-
-/* The outward normal (length 1) where r enters, and how far the tangent plane there is from the
- * origin of the frame, along it. Of a flat face both are of the body's pose alone and so the same
- * bits wherever the ray comes from. */
-struct v3 hit_normal(
-    const struct body *b, const struct ray *r, const struct hit *h, double *offset);
+/* The plane that touches the body where it is nearest to p: its outward normal (length 1), and how
+ * far it is from the frame's origin along it. Nearest to a flat face, both are of the body's pose
+ * alone: the same bits for every such p. Beside an edge or a corner the normal points to p. */
+struct v3 body_plane(const struct body *b, struct v3 p, double *offset_m);
 
 #endif

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include "world.h"
 
+#include "ahead.h"
 #include "reach.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define GRAZE_FROM_M (3 * FINGER_PAD_M)
 
 struct world {
     struct scene *scene;
@@ -120,63 +119,86 @@ static void to_q30(int32_t to[3], struct v3 v)
     to[2] = q30(v.z);
 }
 
-static void answer(
-    const struct world *w, const struct ray *r, const struct hit *h, struct exh_wire_plane *to)
+/* One finger's frame. */
+struct moment {
+    const struct world *w;
+    double t_s;
+};
+
+static struct pose hand_later(const void *ctx, double later_s)
 {
-    const struct body *b = &w->reach.near[h->body < 0 ? 0 : h->body];
-    double offset;
-    struct v3 n;
-    to->kind = EXH_PLANE_NONE;
-    if (h->body < 0) { return; }
-    n = hit_normal(b, r, h, &offset);
-    /* The plane of a distant surface that the ray merely grazes passes near the finger long before
-     * the surface itself does: no plane for the finger to be frozen at. */
-    if (h->t > GRAZE_FROM_M && -v3_dot(n, r->along) < w->scene->graze) { return; }
-    to->kind = EXH_PLANE_HIT;
-    to->object = (uint16_t)b->object;
-    to->material = (uint8_t)w->scene->object[b->object].material;
-    to_q30(to->normal_q30, n);
-    to_q30(to->point_m_q30, v3_times(n, offset));
-    to_q30(to->hit_m_q30, v3_along(r->from, h->t, r->along));
+    const struct moment *m = ctx;
+    return world_hand_at(m->w, m->t_s + later_s);
 }
 
-static void count(struct world_stats *s, const struct world *w, const struct cast_stats *cs,
+static void answer(
+    const struct world *w, const struct ahead_patch *patch, struct exh_wire_plane *to)
+{
+    to->kind = EXH_PLANE_NONE;
+    if (patch->body < 0) { return; }
+    to->kind = EXH_PLANE_HIT;
+    to->object = (uint16_t)w->reach.near[patch->body].object;
+    to->material = (uint8_t)w->scene->object[to->object].material;
+    to_q30(to->normal_q30, patch->normal);
+    to_q30(to->point_m_q30, v3_times(patch->normal, patch->offset_m));
+    to_q30(to->hit_m_q30, patch->point);
+}
+
+static void count(struct world_stats *s, const struct world *w, const struct ahead_stats *as,
     const struct exh_wire_planes *out, unsigned moved)
 {
     s->frames++;
     s->moved += moved;
     s->slept += (unsigned long)w->reach.sleepers;
-    s->tests += cs->tested;
-    s->culled += cs->culled;
+    s->tests += as->tested;
+    s->culled += as->culled;
     for (unsigned f = 0; f < FINGERS; f++) {
-        s->rays += out->plane[f].kind != EXH_PLANE_UNTOLD;
+        s->looks += out->plane[f].kind != EXH_PLANE_UNTOLD;
         s->hits += out->plane[f].kind == EXH_PLANE_HIT;
     }
 }
 
-void world_frame(struct world *w, const struct exh_wire_state *in, double t_s,
-    struct exh_wire_planes *out, struct world_stats *stats)
+void world_frame(struct world *w, const struct exh_wire_state *in, const struct pace *pace,
+    double t_s, struct exh_wire_planes *out, struct world_stats *stats)
 {
     const struct pose hand = world_hand_at(w, t_s);
     const unsigned moved = reach_update(&w->reach, w->scene, &hand, t_s);
-    struct cast_stats cs = {0, 0};
-    struct ray ray[FINGERS];
-    struct hit hit[FINGERS];
-    int n = 0;
+    const struct moment m = {w, t_s};
+    const int still = w->scene->motion.kind == MOTION_NONE;
+    struct ahead a = {.body = w->reach.near,
+        .bodies = w->reach.nears,
+        .cull = w->cull,
+        .hand = &w->hand,
+        .hand_at = still ? NULL : hand_later,
+        .ctx = &m,
+        .hand_mps = w->reach.speed + motion_turning(&w->scene->motion) * w->reach.span_m,
+        .look_m = w->scene->look_m,
+        .graze = w->scene->graze};
+    struct ahead_stats as = {0, 0};
     memset(out->plane, 0, sizeof out->plane); /* UNTOLD */
     out->fingers = (uint8_t)(in->fingers & w->scene->fingers);
-    for (unsigned i = 0; i < FINGERS; i++) {
-        struct finger f;
-        if (!(out->fingers >> i & 1)) { continue; }
-        finger_at(&f, &w->hand, i, in->joint_turn_q32[i]);
-        ray[n].from = f.tip;
-        ray[n].along = f.pad;
-        ray[n].len = w->scene->ray_m;
-        ray[n++].back = w->scene->back_m;
+    for (unsigned f = 0; f < FINGERS; f++) {
+        struct ahead_patch patch;
+        if (!(out->fingers >> f & 1)) { continue; }
+        a.finger = f;
+        a.joint_turn_q32 = in->joint_turn_q32[f];
+        a.turn_q32ps = pace ? pace->turn_q32ps[f] : NULL;
+        a.pull_turn_q32ps = pace ? pace->pull_turn_q32ps[f] : NULL;
+        ahead_look(&a, &patch, &as);
+        answer(w, &patch, &out->plane[f]);
     }
-    if (n > 0) { cast(w->reach.near, w->reach.nears, ray, n, w->cull, hit, &cs); }
-    for (int i = 0, k = 0; i < FINGERS; i++) {
-        if (out->fingers >> i & 1) { answer(w, &ray[k], &hit[k], &out->plane[i]), k++; }
+    if (stats) { count(stats, w, &as, out, moved); }
+}
+
+double world_gap_m(struct world *w, unsigned finger, const int32_t joint_turn_q32[3])
+{
+    const struct pose hand = world_hand_at(w, 0);
+    double least = 1e3 + FINGER_PAD_M;
+    struct finger f;
+    finger_at(&f, &w->hand, finger, joint_turn_q32);
+    (void)reach_update(&w->reach, w->scene, &hand, 0);
+    for (int i = 0; i < w->reach.nears; i++) {
+        least = fmin(least, body_away_m(&w->reach.near[i], f.tip, least));
     }
-    if (stats) { count(stats, w, &cs, out, moved); }
+    return least - FINGER_PAD_M;
 }

@@ -2,12 +2,13 @@
 /* The world simulator's core: no clock, no socket, no graphics. A frame answers the hand's joints
  * with the planes its fingers are about to touch.
  *
- * It computes only what the scene needs: a finger that is off casts no ray; an object out of the
+ * It computes only what the scene needs: a finger that is off costs nothing; an object out of the
  * hand's reach sleeps until it could be in reach at the earliest, and costs nothing till then.
  * Same scene, times and inputs: same bits, on every machine. */
 #ifndef WORLD_WORLD_H
 #define WORLD_WORLD_H
 
+#include "pace.h"
 #include "scene_text.h"
 
 #include "exhand/wire.h"
@@ -16,8 +17,8 @@
 
 /* since world_load() or as the caller cleared them */
 struct world_stats {
-    unsigned long frames, rays, hits;
-    unsigned long tests;  /* bodies asked whether a ray enters them */
+    unsigned long frames, looks, hits;
+    unsigned long tests;  /* bodies asked for their distance */
     unsigned long culled; /* bodies of these put aside by the ball around them */
     unsigned long slept;  /* objects not looked at, summed over the frames */
     unsigned long moved;  /* objects whose place was computed */
@@ -44,8 +45,13 @@ void world_carry(struct world *w, struct v3 by_m);
 struct pose world_hand_at(const struct world *w, double t_s);
 
 /* The planes of the fingers in use, in->fingers and the scene's; t_s, the scene's time, may also go
- * back. echo_* of out are left alone. stats may be NULL. */
-void world_frame(struct world *w, const struct exh_wire_state *in, double t_s,
-    struct exh_wire_planes *out, struct world_stats *stats);
+ * back. pace: how the joints turn; NULL: they rest. echo_* of out are left alone. stats may be
+ * NULL. */
+void world_frame(struct world *w, const struct exh_wire_state *in, const struct pace *pace,
+    double t_s, struct exh_wire_planes *out, struct world_stats *stats);
+
+/* How far the pad of a finger is from the nearest surface at the scene's time 0, m; below 0:
+ * inside; 1e3: nothing is there. */
+double world_gap_m(struct world *w, unsigned finger, const int32_t joint_turn_q32[3]);
 
 #endif

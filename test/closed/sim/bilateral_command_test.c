@@ -305,7 +305,7 @@ TEST(what_comes_into_view_around_a_finger_ends_no_run)
     static struct said s;
     FILE *f = fopen(path, "w");
     CHECK(f != NULL, "%s", path);
-    fputs("ray length 0.08\nhand at -0.03 -0.145 0.072 palm 0 0 -1 point 0 1 0\nmaterial m\n"
+    fputs("look ahead 0.08\nhand at -0.03 -0.145 0.072 palm 0 0 -1 point 0 1 0\nmaterial m\n"
           "capsule ridge at -0.045 0.01 0.004 rpy 90 0 15 radius 0.014 length 0.09 material m\n",
         f);
     CHECK_EQ_I64(fclose(f), 0);

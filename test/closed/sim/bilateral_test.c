@@ -152,7 +152,6 @@ TEST(s_of_the_slope_finds_the_wall_with_every_finger)
         const struct bilateral_track *t = &r.finger[f];
         const struct bilateral_sample *s;
         double off_mm;
-        c.fit_scale = 0;
         c.at_m = at_m[k / BILATERAL_FINGERS];
         r = run(&c);
         s = &t->at[contact_of(t)];

@@ -51,7 +51,8 @@ static void post(struct exh_wire_packet *p)
 static void hello(void)
 {
     struct exh_wire_packet p = {.type = EXH_WIRE_HELLO};
-    p.u.hello = (struct exh_wire_hello){EXH_WIRE_WORLD, EXH_VERSION_NUMBER, 0};
+    p.u.hello = (struct exh_wire_hello){
+        .role = EXH_WIRE_WORLD, .lib_version = EXH_VERSION_NUMBER, .table_crc = 0};
     post(&p);
 }
 

@@ -33,7 +33,8 @@ static void confuse(struct udp *udp, const struct peer *peer)
     int32_t n = exh_wire_encode(&far, &p, 0, buf, sizeof buf);
     (void)udp_send(udp, buf, (size_t)n);
     p.type = EXH_WIRE_HELLO;
-    p.u.hello = (struct exh_wire_hello){EXH_WIRE_WORLD, EXH_VERSION_NUMBER, 0};
+    p.u.hello = (struct exh_wire_hello){
+        .role = EXH_WIRE_WORLD, .lib_version = EXH_VERSION_NUMBER, .table_crc = 0};
     n = exh_wire_encode(&gone, &p, 0, buf, sizeof buf);
     (void)udp_send(udp, buf, (size_t)n);
 }

@@ -76,7 +76,6 @@ static uint32_t faults(
     c.at_m = 0.03;
     c.fps = 400;
     c.until_s = quiet_s;
-    c.fit_scale = 1;
     c.more = &more;
     for (unsigned k = 0; k < EXH_FAULTS; k++) { at_s[k] = -1; }
     CHECK_EQ_I64(bilateral_run(&c, &r), 0);

@@ -25,7 +25,7 @@ static inline struct bilateral_run_cfg plain(unsigned fingers, double mps, int a
     c.at_m = 0.03;
     c.fps = 400;
     c.until_s = 1e30;
-    c.fit_scale = c.keep = 1;
+    c.keep = 1;
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
         c.board.exo.path[f].speed_mps = mps;
         c.board.exo.path[f].approaches = approaches;

@@ -22,7 +22,7 @@ static struct bilateral_run_cfg hand_in(const char *path, char *why, size_t why_
     c.k_Npm = c.b_Nspm = -1;
     c.fps = 400;
     c.until_s = 1e30;
-    c.fit_scale = c.keep = 1;
+    c.keep = 1;
     return c;
 }
 

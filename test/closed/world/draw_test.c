@@ -21,7 +21,7 @@ static void begin(unsigned fingers)
     m.in.fingers = (uint8_t)fingers;
     m.hand = world_hand_at(w, 0);
     m.trip_ms = -1;
-    world_frame(w, &m.in, 0, &m.out, NULL);
+    world_frame(w, &m.in, NULL, 0, &m.out, NULL);
     for (int f = 0; f < FINGERS; f++) {
         struct finger at;
         finger_at(&at, world_hand(w), (unsigned)f, m.in.joint_turn_q32[f]);
@@ -58,11 +58,14 @@ static int said(const char *what)
     return 0;
 }
 
-TEST(a_bar_is_6_mm_high_for_each_newton_and_stands_on_the_nail)
+TEST(a_bar_is_6_mm_high_for_each_newton_along_the_normal)
 {
     int n;
     begin(31);
     for (int f = 0; f < FINGERS; f++) { m.in.force_N_q20[f] = (f * 5 << 20) / 2; }
+    world_draw(w, &m, &l);
+    CHECK(find(DRAW_BAR, 4, &n) == NULL, "a bar without a contact");
+    m.in.touching = 31;
     world_draw(w, &m, &l);
     CHECK(find(DRAW_BAR, 0, &n) == NULL, "a bar without a force");
     for (int f = 1; f < FINGERS; f++) {
@@ -82,7 +85,7 @@ TEST(a_bar_is_6_mm_high_for_each_newton_and_stands_on_the_nail)
     end();
 }
 
-TEST(a_disc_lies_where_the_ray_hits_and_tells_the_state)
+TEST(a_disc_lies_where_the_pad_will_touch_and_tells_the_state)
 {
     int n;
     begin(31);
@@ -96,7 +99,7 @@ TEST(a_disc_lies_where_the_ray_hits_and_tells_the_state)
         CHECK(d->colour[3] > 0 && d->colour[3] < 1, "not to be seen through");
         CHECK((d->colour[2] > 0.9F) == (f == 1 || f == 4), "blue means near");
         CHECK((d->colour[1] > 0.6F && d->colour[0] > 0.9F) == (f == 2), "amber means frozen");
-        CHECK(find(DRAW_RAY, f, &n) && n > 5, "%d dots", n);
+        CHECK(find(DRAW_WAY, f, &n) && n > 5, "%d dots", n);
     }
     CHECK(said("contact") && said("frozen") && said("near"), "not in words");
     end();
@@ -143,6 +146,6 @@ TEST(numbers_are_on_the_screen)
     end();
 }
 
-TEST_MAIN("world: the draw list", a_bar_is_6_mm_high_for_each_newton_and_stands_on_the_nail,
-    a_disc_lies_where_the_ray_hits_and_tells_the_state, all_objects_and_the_whole_hand_are_there,
-    numbers_are_on_the_screen);
+TEST_MAIN("world: the draw list", a_bar_is_6_mm_high_for_each_newton_along_the_normal,
+    a_disc_lies_where_the_pad_will_touch_and_tells_the_state,
+    all_objects_and_the_whole_hand_are_there, numbers_are_on_the_screen);

@@ -90,26 +90,6 @@ TEST(the_controllers_hand_is_the_same_one)
     check_note("world's and controller's fingertips: %.1f nm apart at most", most * 1e9);
 }
 
-TEST(the_ray_is_square_to_the_last_link_and_points_to_where_the_finger_closes)
-{
-    struct hand h;
-    hand_hit2(&h);
-    while (check_case(1000)) {
-        struct exh_wire_state in;
-        random_state(&in);
-        for (unsigned i = 0; i < FINGERS; i++) {
-            struct finger a, b;
-            int32_t *q = in.joint_turn_q32[i];
-            finger_at(&a, &h, i, q);
-            q[1] += turn(1e-4);
-            finger_at(&b, &h, i, q);
-            CHECK(fabs(v3_len(a.pad) - 1) < 1e-12, "length %g", v3_len(a.pad));
-            CHECK(fabs(v3_dot(a.pad, v3_sub(a.tip, a.joint[2]))) < 1e-12, "not square");
-            CHECK(v3_dot(a.pad, v3_sub(b.tip, a.tip)) > 0, "points away");
-        }
-    }
-}
-
 /* --- planes --- */
 
 #define TABLE "hand at 0 0 0.1\nmaterial m\nplane table at 0 0 0.03 normal 0.1 0.05 1 material m\n"
@@ -128,7 +108,7 @@ TEST(a_static_plane_has_the_same_bits_whatever_the_fingers_do)
             struct exh_wire_state in;
             struct exh_wire_planes out;
             random_state(&in);
-            world_frame(w, &in, t_s += 0.0025, &out, NULL);
+            world_frame(w, &in, NULL, t_s += 0.0025, &out, NULL);
             for (int f = 0; f < FINGERS; f++) {
                 const struct exh_wire_plane *p = &out.plane[f];
                 int same = 0;
@@ -153,7 +133,7 @@ TEST(the_canonical_point_is_the_planes_nearest_to_the_origin)
     struct world *w = load(TABLE);
     struct exh_wire_state in = {.fingers = 31};
     struct exh_wire_planes out;
-    world_frame(w, &in, 0, &out, NULL);
+    world_frame(w, &in, NULL, 0, &out, NULL);
     for (int f = 1; f < FINGERS; f++) {
         const struct exh_wire_plane *p = &out.plane[f];
         const struct v3 n =
@@ -173,16 +153,16 @@ TEST(the_canonical_point_is_the_planes_nearest_to_the_origin)
     world_free(w);
 }
 
-TEST(fingers_that_are_off_are_untold_and_cost_no_ray)
+TEST(fingers_that_are_off_are_untold_and_cost_nothing)
 {
     struct world *w = load("fingers index ring\n" TABLE);
     struct exh_wire_state in = {.fingers = 1 << 1 | 1 << 2};
     struct exh_wire_planes out;
     struct world_stats s = {0};
-    world_frame(w, &in, 0, &out, &s);
+    world_frame(w, &in, NULL, 0, &out, &s);
     CHECK_EQ_I64(out.fingers, 1 << 1);
-    CHECK_EQ_I64((int64_t)s.rays, 1);
-    CHECK_EQ_I64((int64_t)s.tests, 1);
+    CHECK_EQ_I64((int64_t)s.looks, 1);
+    CHECK(s.tests > 0 && s.tests < 100, "%lu bodies asked", s.tests);
     for (int f = 0; f < FINGERS; f++) {
         CHECK(out.plane[f].kind == (f == 1 ? EXH_PLANE_HIT : EXH_PLANE_UNTOLD), "%d: %d", f,
             out.plane[f].kind);
@@ -190,16 +170,29 @@ TEST(fingers_that_are_off_are_untold_and_cost_no_ray)
     world_free(w);
 }
 
-TEST(beyond_the_ray_there_is_no_plane)
+TEST(what_no_finger_reaches_is_no_plane)
 {
-    struct world *w = load("ray length 0.05\n" TABLE);
+    struct world *w = load("look ahead 0.02\nhand at 0 0 0.3\nmaterial m\nplane table at 0 0 0 "
+                           "material m\n");
     struct exh_wire_state in = {.fingers = 4};
     struct exh_wire_planes out;
-    world_frame(w, &in, 0, &out, NULL);
+    world_frame(w, &in, NULL, 0, &out, NULL);
     CHECK_EQ_I64(out.plane[2].kind, EXH_PLANE_NONE);
-    world_carry(w, v3(0, 0, -0.05));
-    world_frame(w, &in, 0, &out, NULL);
+    world_carry(w, v3(0, 0, -0.22)); /* now it would touch the table if it closed */
+    world_frame(w, &in, NULL, 0, &out, NULL);
     CHECK_EQ_I64(out.plane[2].kind, EXH_PLANE_HIT);
+    world_free(w);
+}
+
+TEST(a_hand_that_comes_down_sees_what_it_will_touch)
+{
+    struct world *w = load("look ahead 0.15\nhand at 0 0 0.3\nmaterial m\nplane table at 0 0 0 "
+                           "material m\nmotion hand linear move 0 0 -0.5\n");
+    struct exh_wire_state in = {.fingers = 4};
+    struct exh_wire_planes out;
+    world_frame(w, &in, NULL, 0.5, &out, NULL); /* 50 mm above: the palm looks down */
+    CHECK_EQ_I64(out.plane[2].kind, EXH_PLANE_HIT);
+    CHECK(out.plane[2].normal_q30[0] < -0.999 * 0x1p30, "%d", (int)out.plane[2].normal_q30[0]);
     world_free(w);
 }
 
@@ -274,18 +267,19 @@ TEST(culling_changes_no_plane_and_spares_work)
                 const struct v3 by = v3(real_in(-0.2, 0.2), real_in(-0.2, 0.2), 0);
                 world_carry(culled, by), world_carry(all, by);
             }
-            world_frame(culled, &in, t_s, &x, &a);
-            world_frame(all, &in, t_s, &y, &b);
+            world_frame(culled, &in, NULL, t_s, &x, &a);
+            world_frame(all, &in, NULL, t_s, &y, &b);
             CHECK(memcmp(&x, &y, sizeof x) == 0, "frame %d at %g s: planes differ", k, t_s);
         }
         world_free(culled), world_free(all);
     }
-    CHECK(a.rays == b.rays && a.hits == b.hits && a.hits > 0, "%lu rays, %lu hits", a.rays, a.hits);
+    CHECK(a.looks == b.looks && a.hits == b.hits && a.hits > 0, "%lu looks, %lu hits", a.looks,
+        a.hits);
     CHECK(b.slept == 0 && a.slept > 0 && a.moved < b.moved, "asleep %lu, placed %lu of %lu",
         a.slept, a.moved, b.moved);
     CHECK(3 * (a.tests - a.culled) < b.tests, "%lu of %lu", a.tests - a.culled, b.tests);
-    check_note("culling: %.1f bodies a ray instead of %.1f; %lu places computed instead of %lu",
-        (double)(a.tests - a.culled) / (double)a.rays, (double)b.tests / (double)b.rays, a.moved,
+    check_note("culling: %.1f bodies a look instead of %.1f; %lu places computed instead of %lu",
+        (double)(a.tests - a.culled) / (double)a.looks, (double)b.tests / (double)b.looks, a.moved,
         b.moved);
 }
 
@@ -297,10 +291,10 @@ TEST(an_object_out_of_reach_costs_nothing)
     struct exh_wire_state in = {.fingers = 31};
     struct exh_wire_planes out;
     struct world_stats s = {0};
-    for (int k = 0; k < 1000; k++) { world_frame(w, &in, k * 0.0025, &out, &s); }
+    for (int k = 0; k < 1000; k++) { world_frame(w, &in, NULL, k * 0.0025, &out, &s); }
     CHECK_EQ_I64((int64_t)s.tests, 0);
     CHECK(s.moved < 10, "%lu places computed", s.moved);
-    for (int k = 1000; k < 1500; k++) { world_frame(w, &in, k * 0.0025, &out, &s); }
+    for (int k = 1000; k < 1500; k++) { world_frame(w, &in, NULL, k * 0.0025, &out, &s); }
     CHECK(s.tests > 0, "it came and was not seen");
     world_free(w);
 }
@@ -317,8 +311,8 @@ TEST(a_hand_that_only_turns_finds_what_it_turns_to)
         struct exh_wire_state in = {.fingers = 31};
         struct exh_wire_planes x = {0}, y = {0};
         for (int f = 0; f < FINGERS; f++) { in.joint_turn_q32[f][1] = turn(0.3); }
-        world_frame(culled, &in, k * 0.0025, &x, &s);
-        world_frame(all, &in, k * 0.0025, &y, NULL);
+        world_frame(culled, &in, NULL, k * 0.0025, &x, &s);
+        world_frame(all, &in, NULL, k * 0.0025, &y, NULL);
         CHECK(memcmp(&x, &y, sizeof x) == 0, "frame %d: planes differ", k);
     }
     CHECK(s.slept > 0 && s.hits > 0, "asleep %lu, hits %lu: tells nothing", s.slept, s.hits);
@@ -338,10 +332,10 @@ TEST(the_same_inputs_give_the_same_bits)
     (void)check_case(1000000);
     for (int k = 0; k < 300; k++) {
         random_state(&in[k]);
-        world_frame(a, &in[k], k * 0.03, &first[k], NULL);
+        world_frame(a, &in[k], NULL, k * 0.03, &first[k], NULL);
     }
     for (int k = 299; k >= 0; k--) { /* backwards, by the other one */
-        world_frame(b, &in[k], k * 0.03, &again, NULL);
+        world_frame(b, &in[k], NULL, k * 0.03, &again, NULL);
         CHECK(memcmp(&again, &first[k], sizeof again) == 0, "frame %d", k);
     }
     while (check_case(1000000)) {}
@@ -363,7 +357,7 @@ TEST(five_fingers_hold_the_ball)
     for (int k = 0; k < 1600; k++) {
         solo_script(&s, k * 0.0025);
         solo_step(&s, w, &out, 0.0025, &in);
-        world_frame(w, &in, k * 0.0025, &out, NULL);
+        world_frame(w, &in, NULL, k * 0.0025, &out, NULL);
     }
     CHECK_EQ_I64(in.touching, 31);
     for (int f = 0; f < FINGERS; f++) {
@@ -375,11 +369,9 @@ TEST(five_fingers_hold_the_ball)
 }
 
 TEST_MAIN("world: frames", the_fingertips_are_where_the_published_chain_has_them,
-    the_controllers_hand_is_the_same_one,
-    the_ray_is_square_to_the_last_link_and_points_to_where_the_finger_closes,
-    a_static_plane_has_the_same_bits_whatever_the_fingers_do,
+    the_controllers_hand_is_the_same_one, a_static_plane_has_the_same_bits_whatever_the_fingers_do,
     the_canonical_point_is_the_planes_nearest_to_the_origin,
-    fingers_that_are_off_are_untold_and_cost_no_ray, beyond_the_ray_there_is_no_plane,
-    culling_changes_no_plane_and_spares_work, an_object_out_of_reach_costs_nothing,
-    a_hand_that_only_turns_finds_what_it_turns_to, the_same_inputs_give_the_same_bits,
-    five_fingers_hold_the_ball);
+    fingers_that_are_off_are_untold_and_cost_nothing, what_no_finger_reaches_is_no_plane,
+    a_hand_that_comes_down_sees_what_it_will_touch, culling_changes_no_plane_and_spares_work,
+    an_object_out_of_reach_costs_nothing, a_hand_that_only_turns_finds_what_it_turns_to,
+    the_same_inputs_give_the_same_bits, five_fingers_hold_the_ball);

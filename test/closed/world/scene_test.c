@@ -13,7 +13,7 @@ static const struct {
     const char *text, *error;
 } wrong[] = {
     {"sfere a",
-        "t:1: sfere: no such statement: use world, fingers, ray, hand, camera, material, plane, "
+        "t:1: sfere: no such statement: use world, fingers, look, hand, camera, material, plane, "
         "sphere, box, capsule, mesh, motion or key"},
     {"\n\n# x\nmaterial", "t:4: material: its name is missing: add one word"},
     {M "material m", "t:2: material m: defined twice: use another name"},
@@ -93,7 +93,7 @@ TEST(a_short_buffer_is_not_overrun)
 /* Any bytes: a world or an error, and nothing else. */
 TEST(damaged_scenes_do_no_harm)
 {
-    static const char whole[] = "world a b\nfingers index\nray length 0.1 back 0.02 graze 10\nhand "
+    static const char whole[] = "world a b\nfingers index\nlook ahead 0.1 graze 10\nhand "
                                 "at 0 0 0 palm 1 0 0 point 0 0 1\n"
                                 "camera eye 1 1 1 look 0 0 0\nmaterial m k 1 b 2 fmax 3 colour 1 1 "
                                 "1\nplane p at 0 0 0 normal 0 1 0 "
@@ -124,7 +124,7 @@ TEST(damaged_scenes_do_no_harm)
 TEST(numbers_arrive)
 {
     static const char text[] =
-        "world A  title\nfingers index little\nray length 0.07 back 0.01\n"
+        "world A  title\nfingers index little\nlook ahead 0.07 graze 0\n"
         "hand at 1 2 3 palm 0 0 -1 point 0 1 0\nmaterial a\nmaterial b k 5 b 6 fmax 7 colour 0 0.5 "
         "1\n"
         "capsule c at 1 0 0 rpy 0 90 0 radius 0.5 length 3 material b # end\n"
@@ -137,7 +137,7 @@ TEST(numbers_arrive)
     if (w == NULL) { return; }
     CHECK(strcmp(s->title, "A title") == 0, "%s", s->title);
     CHECK_EQ_I64(s->fingers, 1 << 1 | 1 << 4);
-    CHECK(s->ray_m == 0.07 && s->back_m == 0.01, "%g %g", s->ray_m, s->back_m);
+    CHECK(s->look_m == 0.07 && s->graze == 0, "%g %g", s->look_m, s->graze);
     CHECK(v3_len(v3_sub(s->hand.turn.x, v3(0, 0, -1))) < 1e-15, "palm");
     CHECK(v3_len(v3_sub(s->hand.turn.y, v3(-1, 0, 0))) < 1e-15,
         "the thumb is on the left of a right hand");

@@ -43,7 +43,7 @@ static void fill(void)
             const int32_t off = MM(60) - MM(70) / 512 * (u < 512 ? u : 1024 - u);
             struct exh_precontact_in *in = &at[f][i];
             *in = (struct exh_precontact_in){{MM(60) + off / 10 * 6, MM(3), MM(80) + off / 10 * 8},
-                {-6 * (1 << 20), 0, -8 * (1 << 20)}, MM(100) - off, 0, off < -MM(7)};
+                {-6 * (1 << 20), 0, -8 * (1 << 20)}, MM(100) - off, 0, off < -MM(7), 1, 0};
             dbl.tip[f][i][0] = si(in->tip_m_q30.x);
             dbl.tip[f][i][1] = si(in->tip_m_q30.y);
             dbl.tip[f][i][2] = si(in->tip_m_q30.z);
@@ -61,7 +61,8 @@ static void fill(void)
 static void start_with(int from_slope)
 {
     const struct exh_period T = {1, 2000};
-    par = (struct exh_precontact_par){-MM(5), MM(1), 1 << 24, from_slope, 0, 60000, MM(5), 100, 50};
+    par = (struct exh_precontact_par){
+        -MM(5), MM(1), 1 << 24, from_slope, 0, 60000, MM(5), 100, 50, 100};
     EXH_ASSERT(exh_precontact_setup(&cfg, &par, material, 1, MM(7), T) == 0);
     fill();
     for (uint32_t f = 0; f < FINGERS; f++) { exh_precontact_update(&finger[f], &cfg, &plane, 0); }
@@ -129,7 +130,8 @@ static void error_of(struct error *e, int from_slope)
     bench_seed();
     for (int i = 0; i < CASES; i++) {
         const struct exh_plane p = {EXH_PLANE_HIT, 0, 1, any_unit(), any_vec(MM(500))};
-        struct exh_precontact_in in = {any_vec(MM(500)), {0, 0, 0}, bench_in(0, MM(500)), 0, 0};
+        struct exh_precontact_in in = {
+            any_vec(MM(500)), {0, 0, 0}, bench_in(0, MM(500)), 0, 0, 1, 0};
         const long double pad = MM(7);
         struct exh_precontact s = {0};
         long double d, g;

@@ -103,8 +103,8 @@ int32_t tick_once(struct tick_box *b, const struct tick_in *in)
     int32_t all = 0;
     exh_filter_step(b->channel, &b->filter, in->angle_turn_q32, angle_turn_q32, EXH_GLOVE_SENSORS);
     for (unsigned f = 0; f < EXH_FINGERS; f++) {
-        struct exh_precontact_in at = {
-            {0, 0, 0}, {0, 0, 0}, in->pos_m_q30[f], 0, b->contact[f].touching};
+        struct exh_precontact_in at = {{0, 0, 0}, {0, 0, 0}, in->pos_m_q30[f], 0,
+            b->contact[f].touching, 1, in->vel_mps_q27[f]};
         struct exh_contact_in q = {in->pos_m_q30[f], in->vel_mps_q27[f], 0};
         exh_hand_tip(&b->hand[f], &angle_turn_q32[3 * f], &at.tip_m_q30);
         (void)exh_precontact_step(&b->plane[f], &b->precontact, &at);

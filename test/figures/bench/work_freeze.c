@@ -43,7 +43,7 @@ static struct exh_precontact_in on_path(uint32_t i, uint32_t f)
     const int32_t u = (int32_t)((i + 205 * f) % BENCH_OPS);
     const int32_t off = MM(60) - MM(70) / 512 * (u < 512 ? u : 1024 - u);
     return (struct exh_precontact_in){{MM(60) + off / 10 * 6, MM(3), MM(80) + off / 10 * 8},
-        {0, 0, 0}, MM(100) - off, 0, off < -MM(7)};
+        {0, 0, 0}, MM(100) - off, 0, off < -MM(7), 1, 0};
 }
 
 static void setup(void)
@@ -155,7 +155,7 @@ void freeze_path(uint32_t i, uint32_t f, struct freeze_case *c)
 
 long double freeze_any(struct freeze_case *c)
 {
-    struct exh_precontact_in in = {{0, 0, 0}, {0, 0, 0}, 0, 0, 0};
+    struct exh_precontact_in in = {{0, 0, 0}, {0, 0, 0}, 0, 0, 0, 1, 0};
     struct exh_plane any;
     const long double d = any_case(&any, &in.tip_m_q30);
     as_case(c, &any, &in);
@@ -164,7 +164,7 @@ long double freeze_any(struct freeze_case *c)
 
 static long double ours_off(uint32_t i)
 {
-    struct exh_precontact_in in = {{0, 0, 0}, {0, 0, 0}, 0, 0, 0};
+    struct exh_precontact_in in = {{0, 0, 0}, {0, 0, 0}, 0, 0, 0, 1, 0};
     const long double d = next(&in.tip_m_q30);
     (void)i;
     (void)exh_precontact_step(&finger[0], &cfg, &in);

@@ -6,14 +6,14 @@ from struct import Struct, pack, unpack_from
 
 from . import precontact as pre
 from .contact import Contact
-from .drive import Drive, Table, any_par as any_drive
+from .drive import SLEW, Drive, Table, any_par as any_drive
 from .filter import Channel
 from .glove import NONE as NO_SENSOR, SENSORS, Glove, any_par as any_glove
 from .guard import Rail, Supply, any_supply
 from .hand import any_turn, joints
 from .hit2 import BENT, MAP, bones, sensors_of
 from .num import (AGAIN, M32, M64, MAX32, RANGE, STATE, TICKS, UNKNOWN, Rng, clamp, div, period,
-                  sat32, shr, wave, wrap)
+                  gain, sat32, shr, times, wave, wrap)
 from .quad import Quad, narrowest, position
 from .safety import ENCODER, FAULT, GLOVE, HEALTHY, LINK, SUPPLY, TRACKING, Safety, any_safety
 from .trace import Trace
@@ -23,7 +23,7 @@ from .watch import Watch, any_par as any_watch
 from .wire import ACK, HELLO, PARAM, PLANES, TELL, TRACE, TRACE_ASK, Receiver, Sender
 
 FINGERS, MATERIALS, ROOM, LATE = 5, 8, 8, 4
-SIGNALS = FINGERS * (8 + 15) + 22
+SIGNALS = FINGERS * (8 + 17) + 22
 # of the library, and of the parameters: not these, which may change
 VERSION, TABLE = 0x00010203, 0x89ABCDEF
 
@@ -54,6 +54,7 @@ class FingerPar:
         self.age_max = any_ms(rng, 20, 120, rate)
         self.doubt, self.doubt_max = rng.draw(0, 1 << 23), any_ms(rng, 1, 20, rate)
         self.tip_age_max = any_ms(rng, 1, 12, rate)
+        self.late_slew = rng.draw(1, 100000)
 
 
 def any_sensor(rng, i):
@@ -132,6 +133,8 @@ class Finger:
         top = sat32(shr(par.kf * peak, 26))
         self.drive = Drive(par.drive, T, Table([(0, 0), (top, peak)]),
                            Table([(-peak, -top), (peak, top)]))
+        self.slew_up = self.drive.up
+        self.late_up = max(1, times(gain(T[0] << 20, T[1]), par.late_slew))
         self.track, self.last, self.monitor = Track(par.track, T), 0, Monitor()
         self.joint, self.tip, self.slope, self.clamped = [0] * 3, [0] * 3, [0] * 3, 0
         self.watch, self.cnt = Watch(par.watch, T), 0
@@ -157,15 +160,19 @@ class Finger:
 
     def feel(self, age, permit, materials, rest_ticks, q, v):
         """(bits, d, q_lim, c, limits, force, current)"""
-        bits = self.pre.step(self.tip, self.slope, age, q, self.contact.touching, materials)
+        bits = self.pre.step(self.tip, self.slope, age, q, self.contact.touching, materials,
+                             permit[0] == 1, v)
         d, lim = self.pre.d, self.pre.lim
         self.pre.taken = k, b, most = tuple(self.pre.taken)  # it keeps what it took
         own = self.par.drive[0]
         self.drive.f_max = min(own, most) if self.pre.phase == pre.FROZEN else own
         there = lim if self.pre.phase >= pre.TRACK else None
+        self.drive.up = min(self.slew_up, self.late_up) if self.pre.late else self.slew_up
         c, spring, damper, pull = self.contact.tick((k, b, *self.par.f0), q, v, there)
         self.wind_in(rest_ticks)
         limits, _, _, _, force = self.drive.take(permit, spring + damper + pull)
+        if not limits & SLEW:
+            self.pre.late = 0
         more, i0, peak, i2t = self.drive.current()
         return bits, d, lim, c, limits | more, force, i0 + peak + i2t
 
@@ -233,6 +240,8 @@ class Bilateral:
             session = w.rx.session
             got = w.rx.take(p)
             if w.rx.session != session:
+                for f in self.at:
+                    self.finger[f].pre.met = 0
                 w.exchanges = 0
                 w.trace.stop()
             if got == HELLO:
@@ -302,7 +311,7 @@ class Bilateral:
         gated, enable = self.safety.gate([par.finger[f].drive for f in at],
                                          [felt[f][6] for f in at],
                                          [felt[f][4] | early[f] for f in at])
-        paper, more = [[0] * 8 for _ in range(FINGERS)], [[0] * 15 for _ in range(FINGERS)]
+        paper, more = [[0] * 8 for _ in range(FINGERS)], [[0] * 17 for _ in range(FINGERS)]
         dac, enabled = [par.finger[at[0]].drive[6]] * FINGERS, 0
         for k, f in enumerate(at):
             s, (bits, d, lim, c, _, force, _) = self.finger[f], felt[f]
@@ -314,7 +323,8 @@ class Bilateral:
             s.last = coded
             p = s.pre
             more[f] = [bits, limits, *s.joint, s.clamped, *s.tip,
-                       *map(wrap, (p.frozen, p.born, p.refused, p.ignored, p.stale, p.let_go))]
+                       *map(wrap, (p.frozen, p.born, p.refused, p.ignored, p.stale, p.let_go,
+                                   p.late_n)), p.late_d]
         w, sf = self.wire, self.safety
         box = [sf.state_, sf.faults, sf.present, self.faulty, glove_age, min(w.age, MAX32),
                min(w.trip, MAX32), wrap(w.set),
@@ -334,7 +344,7 @@ class Bilateral:
             often = 8 if w.age == M32 or w.rx.open else 128
             w.wait = self.par.state_every
             if w.exchanges % often == 0:
-                self.put(out, HELLO, pack("<BII", 0, VERSION, TABLE))
+                self.put(out, HELLO, pack("<BII20x", 0, VERSION, TABLE))
             w.exchanges += 1
             self.put(out, TELL, self.told(paper))
         w.wait -= 1
@@ -475,7 +485,7 @@ class World:
             self.tx, self.begun = Sender(rng.u64() & M32 | 1, self.tx.seq), 0
         if not self.begun and rng.draw(0, 1):
             self.begun = 1
-            self.send(rng, HELLO, pack("<BII", rng.draw(0, 1), VERSION + rng.draw(0, 1),
+            self.send(rng, HELLO, pack("<BII20x", rng.draw(0, 1), VERSION + rng.draw(0, 1),
                                        TABLE * rng.draw(0, 2) & M32))
         if rng.draw(0, 1) and not away(k):
             self.planes(rng, rate)

@@ -10,8 +10,9 @@ FINGERS = 4
 NEVER = MAX32
 UNTOLD, NONE, HIT = range(3)
 IDLE, INSIDE, TRACK, FROZEN = range(4)
-STANDS, TRACKS, AROUND, STALE, BENT, FREEZE, RELEASE, BLIND, DOUBT, LETGO = (1 << i
-                                                                             for i in range(10))
+STANDS, TRACKS, AROUND, STALE, BENT, FREEZE, RELEASE, BLIND, DOUBT, LETGO, LATE = (
+    1 << i for i in range(11))
+TOUCH, RUNS_OUT = -8, 1342177  # LSB of d; of velocity, 0.01 m/s
 RESTORED = 100  # the first tick after the state was read back
 NO_PLANE = 0, (0, 0, 0), 0, 0
 
@@ -54,13 +55,14 @@ class Par:
 
 class Finger:
     plane = Struct("<q3iHB").pack
-    first, last = Struct("<5iB").pack, Struct("<8I").pack
+    first, last = Struct("<5iB").pack, Struct("<9I2i3B").pack
 
     def __init__(self):
         self.d, self.lim, self.taken, self.phase = 0, 0, (0, 0, 0), IDLE
         self.newest = self.held = NO_PLANE
         self.left = self.frozen = self.born = self.refused = self.ignored = self.stale = 0
         self.doubts = self.let_go = 0
+        self.late_n = self.late_d = self.ahead = self.met = self.near = self.late = 0
         self.resumed = False
 
     def setup(self, par, T):
@@ -77,6 +79,8 @@ class Finger:
             self.refused += 1
             return -RANGE
         before, self.newest, self.left = self.newest, NO_PLANE, 0
+        if kind == NONE:
+            self.met = 1
         if kind == HIT:
             self.newest = dot(n, point) + self.pad + (1 << 29), tuple(n), number, material
             self.left = max(0, self.age_ticks - age)
@@ -99,30 +103,47 @@ class Finger:
         if self.doubts:
             self.doubts = min(self.doubts + missed, (1 << 32) - 1)
 
-    def step(self, tip, slope, age, pos, touching, material):
+    def step(self, tip, slope, age, pos, touching, material, pulls, vel):
         blind = age >= self.tip_ticks
-        bits = self.phases(tip, slope, blind, pos, touching, material)
+        self.met = self.met if pulls else 0
+        bits = self.phases(tip, slope, blind, pos, touching, material, pulls, vel)
         self.resumed = False
+        bits |= LATE if self.late else 0
         return bits | (0, AROUND, TRACKS, STANDS)[self.phase] | (BLIND if blind else 0)
 
-    def phases(self, tip, slope, blind, pos, touching, material):
+    def until(self):
+        """The d below which q_lim moves along."""
+        if self.phase == TRACK and not self.near:
+            return self.par.d_lim
+        return clamp(-self.par.hyst if self.phase == INSIDE else 0, self.par.d_lim, TOUCH)
+
+    def freeze(self, material, pos):
+        self.ahead = sat32(self.lim - pos)
+        self.held, self.phase = self.newest, FROZEN
+        self.taken = material[self.held[3] if self.held[3] < self.materials else 0]
+        self.frozen += 1
+        return FREEZE
+
+    def phases(self, tip, slope, blind, pos, touching, material, pulls, vel):
         left = min(self.left, self.age_ticks)
         self.left = max(0, left - 1)
         par, bits, doubts = self.par, 0, self.doubts
         self.doubts = 0
         if self.phase == FROZEN:
             self.d = sat32((self.held[0] - dot(self.held[1], tip)) >> 30)
-            free = par.d_lim - par.hyst
+            free = (0 if self.near else par.d_lim) - par.hyst
             if blind or touching and self.d < free - par.doubt:
                 self.doubts = min(doubts + 1, (1 << 32) - 1)
                 if self.doubts <= self.doubt_ticks:
                     return DOUBT
                 self.let_go += 1
-                self.lim, self.phase = NEVER, IDLE
+                self.lim, self.phase, self.late = NEVER, IDLE, 0
                 return RELEASE | DOUBT | LETGO
-            if touching or self.d >= free:
+            back = self.lim - pos > self.ahead - par.d_lim
+            if touching or self.d >= free and not back:
                 return 0
             self.phase, bits = IDLE, RELEASE
+        self.late = 0
         if left == 0 or blind:
             self.d, self.lim = MIN32, NEVER
             if left == 0 and self.newest[1] != (0, 0, 0):
@@ -131,15 +152,18 @@ class Finger:
             self.phase = IDLE
             return bits
         self.d = sat32((self.newest[0] - dot(self.newest[1], tip)) >> 30)
-        if self.d < par.d_lim:
-            s, bent = self.scale(slope)
-            self.lim, self.phase = sat32(pos - shr(s * self.d, 24)), TRACK
+        s, bent = self.scale(slope)
+        lim = sat32(pos - shr(s * self.d, 24))
+        if self.d < self.until():
+            self.near, self.met = int(self.d >= par.d_lim), int(pulls != 0)
+            self.lim, self.phase = lim, TRACK
             return bits | bent
         if self.phase == TRACK and not (self.resumed and pos >= self.lim):
-            self.held, self.phase = self.newest, FROZEN
-            self.taken = material[self.held[3] if self.held[3] < self.materials else 0]
-            self.frozen += 1
-            return bits | FREEZE
+            return bits | self.freeze(material, pos)
+        if self.phase == IDLE and self.met and not self.resumed and vel > RUNS_OUT:
+            self.late_n, self.late_d, self.late, self.near = self.late_n + 1, self.d, 1, 0
+            self.lim = lim
+            return bits | bent | self.freeze(material, pos)
         self.born += self.phase != INSIDE
         self.lim, self.phase = NEVER, INSIDE
         return bits
@@ -148,12 +172,13 @@ class Finger:
         return (self.first(self.d, self.lim, *self.taken, self.phase) +
                 b"".join(self.plane(p[0], *p[1], p[2], p[3]) for p in (self.newest, self.held)) +
                 self.last(self.left, self.frozen, self.born, self.refused, self.ignored, self.stale,
-                          self.doubts, self.let_go))
+                          self.doubts, self.let_go, self.late_n, self.late_d, self.ahead, self.met,
+                          self.near, self.late))
 
 
 # --- what is asked for at set-up ---
 
-SPOILT = 20
+SPOILT = 22
 
 
 def refused(how):
@@ -247,7 +272,8 @@ def any_told(rng, finger, objects, at, f):
 
 
 def any_in(rng, k, obj, finger, d):
-    """(fingertip, slope, touching, age), about d before the object, now and then about d_lim."""
+    """(fingertip, slope, touching, age, pulls, velocity), about d before the object, now and then
+    about d_lim."""
     n, point = obj[:2]
     if rng.draw(0, 1) == 0:
         d = (finger.par.d_lim - (finger.pad >> 30) -
@@ -261,7 +287,10 @@ def any_in(rng, k, obj, finger, d):
     if rng.draw(0, 15) == 0:
         slope = [rng.draw(MIN32, MAX32) for _ in range(3)]
     touching = rng.draw(1, 255) if rng.draw(0, 1) == 0 else 0
-    return tip, slope, touching, finger.tip_ticks + rng.draw(0, 2) - 1 if rng.draw(0, 7) == 0 else 0
+    age = finger.tip_ticks + rng.draw(0, 2) - 1 if rng.draw(0, 7) == 0 else 0
+    pulls = int(rng.draw(0, 15) != 0)
+    vel = rng.draw(-RUNS_OUT, 3 * RUNS_OUT)
+    return tip, slope, touching, age, pulls, vel
 
 
 def precontact(rate):
@@ -284,12 +313,16 @@ def precontact(rate):
         said, row = refused(rng.draw(0, SPOILT - 1)), []
         for f, s in enumerate(finger):
             told = any_told(rng, s, objects, at, f)
-            tip, slope, touching, tip_age = any_in(rng, k, objects[at[f]], s, way[f][k])
+            tip, slope, touching, tip_age, pulls, vel = any_in(rng, k, objects[at[f]], s, way[f][k])
             if rng.draw(0, 2) == 0:
                 s.skip(rng.draw(0, 4))
             s.resumed = k == RESTORED
             err = s.tell(*told)
-            bits = s.step(tip, slope, tip_age, pos[f][k], touching, material)
+            bits = s.step(tip, slope, tip_age, pos[f][k], touching, material, pulls, vel)
+            if rng.draw(0, 7) == 0:
+                s.met = 0
+            if rng.draw(0, 3) == 0:
+                s.late = 0
             row.append((told[0], told[5], touching, err, bits, s.d, s.lim))
         yield ((*(v[i] for i in range(7) for v in row), said, *advise(T, *any_need(rng))),
                b"".join(s.state() for s in finger))

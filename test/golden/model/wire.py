@@ -9,7 +9,7 @@ from .signal import VALUES, Params
 
 HELLO, TELL, PLANES, PARAM, ACK, TRACE_ASK, TRACE = range(1, 8)
 # of TRACE: the longest
-LENGTH = {HELLO: 9, TELL: 214, PLANES: 209, PARAM: 8, ACK: 14, TRACE_ASK: 12, TRACE: 231}
+LENGTH = {HELLO: 29, TELL: 214, PLANES: 209, PARAM: 8, ACK: 14, TRACE_ASK: 12, TRACE: 231}
 MASKS = {TELL: (4, 6, 7), PLANES: (8,)}
 COUNTS = ("accepted missing duplicate reordered old stranger corrupt version unknown far "
           "silences").split()
@@ -52,7 +52,7 @@ class Sender:
             return -RANGE
         if len(body) + 22 > cap:
             return -SHORT
-        p = sealed(pack("<HBBHIII", 0x5758, 2, kind, len(body), self.session, self.seq, stamp) +
+        p = sealed(pack("<HBBHIII", 0x5758, 3, kind, len(body), self.session, self.seq, stamp) +
                    body)
         self.seq = self.seq + 1 & M32
         return p
@@ -76,7 +76,7 @@ class Receiver:
         magic, version, kind, n, session, seq = unpack_from("<HBBHII", p)
         if magic != 0x5758 or session == 0 or sealed(p[:-4]) != p:
             return self.wrong("corrupt", CRC)
-        if version != 2:
+        if version != 3:
             return self.wrong("version", VERSION)
         if kind not in LENGTH:
             return self.wrong("unknown", UNKNOWN)
@@ -94,7 +94,7 @@ class Receiver:
             self.session, self.seq, self.seen = session, seq, (1 << 64) - 1
             return self.accepted(kind)
         if same:
-            return self.not_next(ahead)
+            return self.not_next(ahead, kind)
         return self.wrong("old", STALE) if session == self.former else self.wrong("stranger", STATE)
 
     def accepted(self, kind):
@@ -111,7 +111,7 @@ class Receiver:
         self.count["silences"] += self.open > was
         return int(self.open > was)
 
-    def not_next(self, ahead):
+    def not_next(self, ahead, kind):
         count = self.count
         if ahead and ahead < 1 << 31:
             return self.wrong("far", RANGE)
@@ -122,7 +122,8 @@ class Receiver:
             return self.wrong("duplicate", STALE)
         self.seen |= 1 << back
         count["missing"] = count["missing"] - 1 & M32
-        return self.wrong("reordered", STALE)
+        late = self.wrong("reordered", STALE)
+        return kind if kind in (PARAM, ACK) else late
 
     def state(self):
         return self.pack(self.seen, self.seq, self.session, self.former, self.quiet, self.open,

@@ -42,7 +42,6 @@ static int run_box(const struct emu_fault *fault, uint32_t ticks, int keep, stru
     c.at_m = 0.03;
     c.fps = 400;
     c.until_s = 1e30;
-    c.fit_scale = 1;
     c.keep = keep;
     c.setting = own;
     c.settings = 1;

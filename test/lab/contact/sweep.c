@@ -99,17 +99,22 @@ static int same(const struct cell *cell, int i)
  * 1/fps and a state later must be known before the finger is at d_lim. */
 static double allowed_s(const struct bilateral_options *o)
 {
+    struct bilateral_run_cfg c = bilateral_at_speed(o, o->speed[0].mps);
+    struct bilateral_run r;
     const struct bilateral_par *par = (const void *)exh_scene_bilateral.params->active;
     const struct sim_exo_par *e = &o->run.board.exo;
     unsigned f = 0;
-    double tip_mps, left_m;
+    double tip_mps, left_m, scale = 1;
     while (!(e->fingers >> f & 1)) { f++; }
-    tip_mps = o->speed[0].mps * (1 + e->path[f].vary) * (1 << 24) / par->precontact[f].scale_q24;
+    for (unsigned i = 0; i < BILATERAL_FINGERS; i++) { c.board.exo.path[i].approaches = 1; }
+    if (bilateral_run(&c, &r) == 0 && r.finger[f].freezes) { scale = r.finger[f].scale; }
+    bilateral_run_free(&r);
+    tip_mps = o->speed[0].mps * (1 + e->path[f].vary) / scale;
     left_m = o->run.ray_m + par->precontact[f].d_lim_m_q30 / 1073741824.0;
     return left_m / tip_mps - 1 / o->run.fps - (1.0 + par->own.state_every) / o->run.rate_Hz;
 }
 
-static int files(const struct bilateral_options *o, const struct cell *cell)
+static int files(const struct bilateral_options *o, const struct cell *cell, double allowed_ms)
 {
     FILE *f = bilateral_out_file(o->out, "sweep.csv");
     FILE *g = bilateral_out_file(o->out, "sweep.gp");
@@ -127,7 +132,7 @@ static int files(const struct bilateral_options *o, const struct cell *cell)
         "# Made by exhand bilateral --sweep: gnuplot -c sweep.gp PLOTS\nplots=ARG1\n"
         "data='sweep.csv'; speed='%.3g'; ray_mm='%.3g'; fps='%.4g'; allowed_ms=%.4g\n"
         "jitters='0 0.5 1'; losses='0 0.1 0.3 0.6'\nload plots.'/bilateral_sweep.gp'\n",
-        o->speed[0].mps, 1e3 * o->run.ray_m, o->run.fps, 1e3 * allowed_s(o));
+        o->speed[0].mps, 1e3 * o->run.ray_m, o->run.fps, allowed_ms);
     return (fclose(f) | fclose(g)) != 0;
 }
 
@@ -163,6 +168,7 @@ int bilateral_sweep(const struct bilateral_options *given)
     const struct jobs jobs = {
         CELLS, (int)given->jobs, sizeof cell[0], cell, work, &o, "cells", posix_interrupt};
     int ran, err = 0, unfrozen = 0;
+    double allowed_ms;
     o = *given;
     if (o.speeds > 1) { (void)snprintf(o.speed[0].name, BILATERAL_NAME_B, "natural"); }
     if (o.speeds > 1) { o.speed[0].mps = sim_path_speed("natural"); }
@@ -170,23 +176,16 @@ int bilateral_sweep(const struct bilateral_options *given)
     if (o.run.ray_m <= 0 && o.run.scene == NULL) { o.run.ray_m = 0.04; }
     ran = jobs_run(&jobs);
     if (ran) { return ran; }
+    allowed_ms = 1e3 * allowed_s(&o);
     print(cell);
     if (o.run.scene == NULL) {
-        struct bilateral_run_cfg c = bilateral_at_speed(&o, o.speed[0].mps);
-        struct bilateral_run r;
-        for (unsigned f = 0; f < BILATERAL_FINGERS; f++) { c.board.exo.path[f].approaches = 1; }
-        if (bilateral_run(&c, &r) ==
-            0) { /* the parameters as a run has them, in this process too */
-            printf("walls are seen from %.0f mm: by the advice in time up to %.1f ms there and "
-                   "back, jitter and "
-                   "lost\npackets' waits included\n",
-                1e3 * o.run.ray_m, 1e3 * allowed_s(&o));
-        }
-        bilateral_run_free(&r);
+        printf("walls are seen from %.0f mm: by the advice in time up to %.1f ms there and back, "
+               "jitter and lost\npackets' waits included\n",
+            1e3 * o.run.ray_m, allowed_ms);
     }
     for (int i = 0; i < CELLS; i++) {
         unfrozen += cell[i].unfrozen || cell[i].done < cell[i].tries;
     }
-    if (o.out) { err = files(&o, cell); }
+    if (o.out) { err = files(&o, cell, allowed_ms); }
     return unfrozen ? 1 : err;
 }

@@ -212,7 +212,6 @@ static int run_finger(const struct faults_base *b)
     c.at_m = 0.03;
     c.fps = FAULTS_LINK_HZ;
     c.until_s = 1e30;
-    c.fit_scale = 1;
     c.setting = set;
     c.settings = sizeof set / sizeof set[0];
     c.more = &hooks;

@@ -93,11 +93,11 @@ TEST(distance_and_limit_are_exact)
 {
     while (check_case(1)) {
         const struct exh_precontact_par par = {
-            in_row(0), in_row(1), in_row(2), 0, check_i32_in(0, 1), 100, MM(5), 100, 50};
+            in_row(0), in_row(1), in_row(2), 0, check_i32_in(0, 1), 100, MM(5), 100, 50, 100};
         const int32_t pad = check_i32_in(0, EXH_Q(25, 1000, EXH_Q_POS));
         const struct exh_precontact_cfg cfg = set_up(&par, pad);
         const struct exh_plane p = {EXH_PLANE_HIT, 0, 0, any_unit(), any_vec()};
-        const struct exh_precontact_in in = {any_vec(), {0, 0, 0}, check_i32(), 0, 0};
+        const struct exh_precontact_in in = {any_vec(), {0, 0, 0}, check_i32(), 0, 0, 1, 0};
         struct exh_precontact s = {0};
         struct wide d = wide_sub(dot(p.normal_q30, p.point_m_q30), dot(p.normal_q30, in.tip_m_q30));
         int32_t want;
@@ -106,7 +106,7 @@ TEST(distance_and_limit_are_exact)
         CHECK(exh_precontact_update(&s, &cfg, &p, 0) == 0, "told");
         (void)exh_precontact_step(&s, &cfg, &in);
         CHECK(s.d_m_q30 == want, "d %" PRId32 ", exact %" PRId32, s.d_m_q30, want);
-        if (want < par.d_lim_m_q30) {
+        if (want < -8) { /* not touched, and free before: q_lim moves along */
             const struct wide lim =
                 wide_sub(wide_shl(wide_of(in.pos_m_q30), 24), wide_mul(par.scale_q24, want));
             const struct wide off = wide_sub(wide_shl(wide_of(s.lim_m_q30), 24), lim);
@@ -122,11 +122,11 @@ TEST(distance_and_limit_are_exact)
 /* s from the slope: s*g = 1 within the bound said, g the approach per string. */
 TEST(scale_of_the_slope)
 {
-    const struct exh_precontact_par par = {-MM(5), 0, 1 << 24, 1, 0, 100, MM(5), 100, 50};
+    const struct exh_precontact_par par = {-MM(5), 0, 1 << 24, 1, 0, 100, MM(5), 100, 50, 100};
     const struct exh_precontact_cfg cfg = set_up(&par, 0);
     while (check_case(1)) {
         const struct exh_plane p = {EXH_PLANE_HIT, 0, 0, any_unit(), {0, 0, 0}};
-        struct exh_precontact_in in = {{0, 0, 0}, {0, 0, 0}, 0, 0, 0};
+        struct exh_precontact_in in = {{0, 0, 0}, {0, 0, 0}, 0, 0, 0, 1, 0};
         const struct exh_precontact_cfg one = {
             cfg.par, cfg.material, -(INT64_C(1) << 60), 9, 9, 9, 3};
         struct exh_precontact s = {0};
@@ -173,6 +173,9 @@ struct account {
     uint32_t doubts; /* ticks in doubt on end */
     uint32_t frozen_n, born_n, refused_n, ignored_n, stale_n, let_go_n;
     int counted;
+    int near, met; /* 0 stands for d_lim; told of while free */
+    uint32_t late_n;
+    int64_t ahead; /* q_lim - q at the freeze */
 };
 
 static int32_t distance(const struct exh_plane *p, struct exh_vec3 tip, int32_t pad)
@@ -197,6 +200,7 @@ static void account_tell(struct account *a, const struct exh_plane *p, uint32_t 
         a->refused_n++;
         return;
     }
+    if (p->kind == EXH_PLANE_NONE) { a->met = 1; }
     if (a->frozen && !same_plane(p, &a->held)) { a->ignored_n++; }
     if (a->now.kind != EXH_PLANE_HIT || p->kind != EXH_PLANE_HIT || p->object != a->now.object ||
         age > 100) {
@@ -212,15 +216,17 @@ static int32_t account_step(struct account *a, const struct exh_precontact_par *
 {
     const struct wide moved = wide_shl(wide_of(in->pos_m_q30), 24);
     const int seen = in->tip_age_ticks <= 50;
-    int32_t d = INT32_MIN;
+    int32_t d = INT32_MIN, until;
     int known;
+    if (!in->pulls) { a->met = 0; }
     if (a->frozen) {
-        const int64_t free = (int64_t)par->d_lim_m_q30 - par->hyst_m_q30;
+        const int64_t free = (a->near ? 0 : (int64_t)par->d_lim_m_q30) - par->hyst_m_q30;
         int go;
         d = distance(&a->held, in->tip_m_q30, pad);
         a->doubts = !seen || (in->touching && d < free - par->doubt_m_q30) ? a->doubts + 1 : 0;
+        const int back = (int64_t)a->lim - in->pos_m_q30 > a->ahead - par->d_lim_m_q30;
         go = a->doubts > 5; /* 4 ms, and what has begun */
-        if (!go && (a->doubts > 0 || in->touching || d >= free)) {
+        if (!go && (a->doubts > 0 || in->touching || (d >= free && !back))) {
             a->age += a->age <= 100;
             return d;
         }
@@ -247,16 +253,31 @@ static int32_t account_step(struct account *a, const struct exh_precontact_par *
         return d;
     }
     d = distance(&a->now, in->tip_m_q30, pad);
-    if (d < par->d_lim_m_q30) {
+    /* It follows to d_lim where it has been there, else to the touch, or hyst before it. */
+    until = a->seen_far && !a->near ? par->d_lim_m_q30 : -8;
+    if (a->counted && -par->hyst_m_q30 < until) { until = -par->hyst_m_q30; }
+    if (d < par->d_lim_m_q30 || d < until) {
         a->seen_far = 1;
+        a->met = in->pulls != 0;
+        a->near = d >= par->d_lim_m_q30;
         a->counted = 0;
         a->lim = wide_sat32(wide_shr_floor(
             wide_add(wide_sub(moved, wide_mul(par->scale_q24, d)), wide_of(1 << 23)), 24));
     } else if (a->seen_far) {
         a->frozen = 1;
         a->frozen_n++;
+        a->ahead = (int64_t)a->lim - in->pos_m_q30;
         a->held = a->now;
         a->seen_far = 0;
+    } else if (!a->counted && a->met && in->vel_mps_q27 > 1342177) { /* 0.01 m/s */
+        a->frozen = 1;
+        a->near = 0;
+        a->frozen_n++;
+        a->late_n++;
+        a->held = a->now;
+        a->lim = wide_sat32(wide_shr_floor(
+            wide_add(wide_sub(moved, wide_mul(par->scale_q24, d)), wide_of(1 << 23)), 24));
+        a->ahead = (int64_t)a->lim - in->pos_m_q30;
     } else {
         a->born_n += !a->counted;
         a->counted = 1;
@@ -282,13 +303,13 @@ static struct exh_plane any_plane(const struct exh_plane *before)
 /* Around the plane z = 0, steps of up to 4 mm, messages now and then. */
 TEST(states_against_a_second_account)
 {
-    uint64_t freezes = 0, borns = 0, stales = 0, let_gos = 0;
+    uint64_t freezes = 0, borns = 0, stales = 0, let_gos = 0, lates = 0;
     while (check_case(200)) {
         const struct exh_precontact_par par = {
-            -MM(5), check_i32_in(0, MM(3)), 1 << 24, 0, 0, 100, MM(1), 4, 50};
+            -MM(5), check_i32_in(0, MM(3)), 1 << 24, 0, 0, 100, MM(1), 4, 50, 100};
         const struct exh_precontact_cfg cfg = set_up(&par, MM(7));
         struct exh_plane p = {EXH_PLANE_HIT, 0, 1, {0, 0, 1 << 30}, {0, 0, 0}};
-        struct exh_precontact_in in = {{0, 0, MM(20)}, {0, 0, 0}, 0, 0, 0};
+        struct exh_precontact_in in = {{0, 0, MM(20)}, {0, 0, 0}, 0, 0, 0, 1, 0};
         struct exh_precontact s = {0};
         struct account a = {.now = {.kind = EXH_PLANE_NONE}, .lim = INT32_MAX};
         const uint64_t rare = 1 + check_u64() % 300;
@@ -306,6 +327,8 @@ TEST(states_against_a_second_account)
             if (check_u64() % 16 == 0) {
                 in.tip_age_ticks = check_u64() % 4 ? 0 : (uint32_t)(check_u64() % 3) + 49;
             }
+            if (check_u64() % 64 == 0) { in.pulls = check_u64() % 4 != 0; }
+            in.vel_mps_q27 = check_i32_in(-2 * 1342177, 4 * 1342177);
             if (check_u64() % 64 == 0) {
                 const uint32_t missed = (uint32_t)(check_u64() % 4);
                 exh_precontact_advance(&s, missed);
@@ -321,14 +344,17 @@ TEST(states_against_a_second_account)
                 t, s.d_m_q30, d, s.lim_m_q30, a.lim, s.phase, a.frozen);
         }
         CHECK(s.frozen_n == a.frozen_n && s.born_n == a.born_n && s.refused_n == a.refused_n &&
-                  s.ignored_n == a.ignored_n && s.stale_n == a.stale_n && s.let_go_n == a.let_go_n,
+                  s.ignored_n == a.ignored_n && s.stale_n == a.stale_n &&
+                  s.let_go_n == a.let_go_n && s.late_n == a.late_n,
             "counts");
+        lates += a.late_n;
         let_gos += a.let_go_n;
         freezes += a.frozen_n;
         borns += a.born_n;
         stales += a.stale_n;
     }
-    CHECK(check_count < 1000000 || (freezes > 100 && borns > 100 && stales > 0 && let_gos > 100),
+    CHECK(check_count < 1000000 ||
+              (freezes > 100 && borns > 100 && stales > 0 && let_gos > 100 && lates > 100),
         "all states seen");
 }
 
@@ -336,11 +362,12 @@ TEST(states_against_a_second_account)
 TEST(no_message_after_the_freeze_is_felt)
 {
     while (check_case(100)) {
-        const struct exh_precontact_par par = {-MM(5), MM(1), 1 << 24, 0, 0, 100, MM(5), 100, 50};
+        const struct exh_precontact_par par = {
+            -MM(5), MM(1), 1 << 24, 0, 0, 100, MM(5), 100, 50, 100};
         const struct exh_precontact_cfg cfg = set_up(&par, MM(7));
         const struct exh_plane p = {EXH_PLANE_HIT, 0, 1, any_unit(), {0, 0, 0}};
         struct exh_plane q = p;
-        struct exh_precontact_in in = {{0, 0, 0}, {0, 0, 0}, 0, 0, 0};
+        struct exh_precontact_in in = {{0, 0, 0}, {0, 0, 0}, 0, 0, 0, 1, 0};
         struct exh_precontact quiet = {0}, busy;
         (void)exh_precontact_update(&quiet, &cfg, &p, 0);
         for (int t = 60; t >= 0; t--) { /* along the normal, 1 mm a tick, to 7 mm off */
@@ -375,7 +402,7 @@ TEST(no_touch_before_the_freeze_whatever_comes)
     const struct exh_contact_par law = {1, 1, 0, 0, MM(10)};
     while (check_case(1)) {
         const struct exh_precontact_par par = {
-            in_row(0), in_row(1), in_row(2), check_i32_in(0, 1), 0, 100, in_row(6), 5, 50};
+            in_row(0), in_row(1), in_row(2), check_i32_in(0, 1), 0, 100, in_row(6), 5, 50, 100};
         const struct exh_precontact_cfg cfg = set_up(&par, 0);
         const struct exh_plane p = {EXH_PLANE_HIT, 0, 1, any_unit(), any_vec()};
         struct exh_precontact s = {0};
@@ -440,7 +467,7 @@ static struct outcome run(const struct approach *a)
         const int64_t d = NM_Q10_TO_Q30(a->start_nm_q10 + a->step_nm_q10 * t);
         const int64_t felt = NM_Q10_TO_Q30(a->start_nm_q10 + a->step_nm_q10 * (t - a->lag_ticks)) +
                              check_i32_in(-a->noise_m_q30, a->noise_m_q30);
-        struct exh_precontact_in in = {{0, 0, 0}, {0, 0, 0}, (int32_t)d, 0, c.touching};
+        struct exh_precontact_in in = {{0, 0, 0}, {0, 0, 0}, (int32_t)d, 0, c.touching, 1, 0};
         struct exh_force_ledger f;
         in.tip_m_q30 = along(a->plane.normal_q30, -felt); /* the plane goes through 0 */
         if (t == (a->first_tick > near ? a->first_tick : near)) {
@@ -481,8 +508,8 @@ static struct approach any_approach(uint32_t percent, int fastest, int32_t *want
     need.age_us = check_i32_in(2000, 200000);
     CHECK(exh_precontact_advise(&advice, &need, a.T, -MM(5)) == 0, "advice");
     *want = advice.d_lim_m_q30;
-    a.par = (struct exh_precontact_par){
-        (int32_t)((int64_t)*want * percent / 100), MM(1), 1 << 24, 0, 0, 60000, MM(5), 100, 50};
+    a.par = (struct exh_precontact_par){(int32_t)((int64_t)*want * percent / 100), MM(1), 1 << 24,
+        0, 0, 60000, MM(5), 100, 50, 100};
     if (a.par.d_lim_m_q30 > exh_precontact_rows[0].max) {
         a.par.d_lim_m_q30 = exh_precontact_rows[0].max;
     }
@@ -601,7 +628,7 @@ TEST(curved_and_moving_objects_within_the_bound)
     int64_t worst_late = 0, worst_early = 0;
     while (check_case(20)) {
         const struct exh_precontact_par par = {
-            -check_i32_in(MM(1), MM(8)), MM(1), 1 << 24, 1, 0, 60000, MM(5), 100, 50};
+            -check_i32_in(MM(1), MM(8)), MM(1), 1 << 24, 1, 0, 60000, MM(5), 100, 50, 100};
         const struct exh_precontact_cfg cfg = set_up(&par, 0);
         struct slide m = {check_i32_in(MM(20), MM(200)), check_i32_in(MM(1) / 20, MM(1)),
             check_i32_in(0, MM(1) / 4), check_i32_in(0, MM(1) / 20), 0, 0};
@@ -615,7 +642,8 @@ TEST(curved_and_moving_objects_within_the_bound)
         for (int t = age; t < 3000 && !is_frozen(&s); t++) {
             const struct exh_precontact_in in = {
                 {(int32_t)(m.x0 + m.aside * t), 0, (int32_t)(m.z0 - m.down * t)},
-                {(int32_t)((m.aside << 24) / m.down), 0, -(1 << 24)}, (int32_t)(m.down * t), 0, 0};
+                {(int32_t)((m.aside << 24) / m.down), 0, -(1 << 24)}, (int32_t)(m.down * t), 0, 0,
+                1, 0};
             n_lim = n;
             taken_lim = taken;
             if ((t - age) % frame == 0) {

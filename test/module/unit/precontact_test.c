@@ -23,13 +23,16 @@ static struct exh_precontact s;
 static struct exh_precontact_in in;
 static uint32_t bits;
 
+#define MPS_CENTI 1342177 /* 0.01 m/s */
+
 static const struct exh_plane floor_plane = {EXH_PLANE_HIT, 0, 1, {0, 0, ONE}, {0, 0, MM(100)}};
 
 static void start(void)
 {
-    par = (struct exh_precontact_par){-MM(5), MM(1), INT32_C(1) << 24, 0, 0, 100, MM(5), 10, 20};
+    par =
+        (struct exh_precontact_par){-MM(5), MM(1), INT32_C(1) << 24, 0, 0, 100, MM(5), 10, 20, 100};
     s = (struct exh_precontact){0};
-    in = (struct exh_precontact_in){{0, 0, 0}, {0, 0, 0}, 0, 0, 0};
+    in = (struct exh_precontact_in){{0, 0, 0}, {0, 0, 0}, 0, 0, 0, 1, 0};
     CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, MM(10), TICK), 0);
 }
 
@@ -228,8 +231,8 @@ TEST(an_unknown_fingertip)
               s.d_m_q30 == INT32_MIN && s.stale_n == 0,
         "tracking: no contact, %" PRIx32, bits);
     in.tip_age_ticks = 0;
-    at(MM(112));
-    CHECK(bits == EXH_PRECONTACT_AROUND, "came near unseen");
+    at(MM(108));
+    CHECK(bits == EXH_PRECONTACT_AROUND, "came in unseen");
     at(MM(150));
     at(MM(114));
     CHECK(bits & EXH_PRECONTACT_FREEZE, "left, and back");
@@ -313,7 +316,7 @@ TEST(born_inside_gives_no_contact_until_left)
     struct exh_plane p = floor_plane;
     start();
     tell(p);
-    at(MM(112));
+    at(MM(108));
     CHECK(bits == EXH_PRECONTACT_AROUND, "bits %" PRIx32, bits);
     CHECK(s.lim_m_q30 == EXH_PRECONTACT_NO_LIM && s.born_n == 1, "first");
     tell(p);
@@ -323,10 +326,108 @@ TEST(born_inside_gives_no_contact_until_left)
     tell(p);
     at(MM(90));
     CHECK(s.born_n == 2, "another object");
-    at(MM(117));
+    at(TOUCH + MM(1));
+    CHECK(bits & EXH_PRECONTACT_AROUND, "d = -1 mm: not by more than hyst");
+    at(TOUCH + MM(1) + 1);
     CHECK(bits & EXH_PRECONTACT_TRACKS, "left");
+    at(TOUCH + 9);
+    CHECK((bits & EXH_PRECONTACT_TRACKS) && s.lim_m_q30 > in.pos_m_q30, "not yet touched");
+    at(TOUCH + 8);
+    CHECK((bits & EXH_PRECONTACT_FREEZE) && s.lim_m_q30 == Q_AT_0 - TOUCH, "and back");
+}
+
+TEST(born_near_follows_to_the_touch)
+{
+    struct exh_plane p = floor_plane;
+    start();
+    tell(p);
     at(MM(112));
-    CHECK(bits & EXH_PRECONTACT_FREEZE, "and back");
+    CHECK(bits == EXH_PRECONTACT_TRACKS && s.lim_m_q30 == Q_AT_0 - MM(110), "d = -2 mm");
+    p.point_m_q30.z = MM(99);
+    tell(p);
+    at(MM(111));
+    CHECK(bits == EXH_PRECONTACT_TRACKS && s.lim_m_q30 == Q_AT_0 - MM(109), "the object left");
+    at(MM(109));
+    CHECK(bits == (EXH_PRECONTACT_STANDS | EXH_PRECONTACT_FREEZE) &&
+              s.lim_m_q30 == Q_AT_0 - MM(109) && s.late_n == 0,
+        "frozen at the touch, where it was");
+    at(MM(99) + MM(10) + MM(1));
+    CHECK(bits == EXH_PRECONTACT_STANDS, "d = -1 mm: no more than hyst");
+    at(MM(99) + MM(10) + MM(1) + 1);
+    CHECK(bits == (EXH_PRECONTACT_RELEASE | EXH_PRECONTACT_TRACKS), "released before d_lim");
+    at(MM(115));
+    at(MM(113));
+    CHECK(bits & EXH_PRECONTACT_FREEZE, "who has been beyond d_lim is frozen there");
+}
+
+TEST(who_went_around_it_leaves_by_the_string)
+{
+    frozen_at_116();
+    in.tip_m_q30.z = MM(60); /* by the glove far behind the floor, while the string goes back */
+    in.pos_m_q30 = s.lim_m_q30 - MM(4) - MM(5);
+    bits = exh_precontact_step(&s, &cfg, &in);
+    CHECK(bits == EXH_PRECONTACT_STANDS, "by |d_lim| since the freeze");
+    in.touching = 1;
+    in.pos_m_q30--;
+    bits = exh_precontact_step(&s, &cfg, &in);
+    CHECK(bits == EXH_PRECONTACT_STANDS, "but it touches");
+    in.touching = 0;
+    bits = exh_precontact_step(&s, &cfg, &in);
+    CHECK(bits == (EXH_PRECONTACT_RELEASE | EXH_PRECONTACT_AROUND), "by more: %" PRIx32, bits);
+}
+
+/* Free, as the world said; then inside, running out. */
+static void late_at(int32_t z_m_q30, int32_t vel_mps_q27)
+{
+    start();
+    tell((struct exh_plane){EXH_PLANE_NONE, 0, 0, {0, 0, 0}, {0, 0, 0}});
+    at(MM(150));
+    tell(floor_plane);
+    in.vel_mps_q27 = vel_mps_q27;
+    at(z_m_q30);
+}
+
+TEST(late_is_at_the_true_place_and_slow)
+{
+    late_at(MM(107), MPS_CENTI + 1);
+    CHECK(bits == (EXH_PRECONTACT_STANDS | EXH_PRECONTACT_FREEZE | EXH_PRECONTACT_LATE), "%" PRIx32,
+        bits);
+    CHECK(s.late_n == 1 && s.late_m_q30 == MM(103) - MM(100) && s.born_n == 0, "counted");
+    CHECK(s.lim_m_q30 == Q_AT_0 - TOUCH && s.late, "where the object is");
+    at(MM(106));
+    CHECK(bits == (EXH_PRECONTACT_STANDS | EXH_PRECONTACT_LATE), "still");
+    exh_precontact_arrived(&s);
+    at(MM(106));
+    CHECK(bits == EXH_PRECONTACT_STANDS, "no more");
+    at(MM(150));
+    CHECK(bits == (EXH_PRECONTACT_RELEASE | EXH_PRECONTACT_TRACKS), "left");
+}
+
+TEST(never_is_who_rests_or_has_just_begun)
+{
+    late_at(MM(107), MPS_CENTI);
+    CHECK(bits == EXH_PRECONTACT_AROUND && s.born_n == 1 && s.late_n == 0, "it rests");
+    in.vel_mps_q27 = INT32_MAX;
+    at(MM(106));
+    CHECK(bits == EXH_PRECONTACT_AROUND, "and stays so");
+    start(); /* the first word of the world */
+    in.vel_mps_q27 = INT32_MAX;
+    at(MM(150));
+    tell(floor_plane);
+    at(MM(107));
+    CHECK(bits == EXH_PRECONTACT_AROUND, "armed just now");
+    late_at(MM(150), INT32_MAX);
+    exh_precontact_forget(&s);
+    tell((struct exh_plane){EXH_PLANE_HIT, 0, 2, {0, 0, ONE}, {0, 0, MM(100)}});
+    at(MM(107));
+    CHECK(bits == EXH_PRECONTACT_AROUND, "a peer that has started anew");
+    late_at(MM(150), INT32_MAX);
+    in.pulls = 0;
+    at(MM(150));
+    in.pulls = 1;
+    s.phase = EXH_PRECONTACT_IDLE; /* as if its plane had become too old meanwhile */
+    at(MM(107));
+    CHECK(bits == EXH_PRECONTACT_AROUND, "a fault between");
 }
 
 TEST(another_object_has_to_be_left_first)
@@ -338,7 +439,7 @@ TEST(another_object_has_to_be_left_first)
     p.object = 2;
     p.point_m_q30.z = MM(125);
     tell(p);
-    at(MM(129)); /* d = 6 mm from one tick to the next */
+    at(MM(129)); /* d = 6 mm from one tick to the next; it rests */
     CHECK((bits & EXH_PRECONTACT_AROUND) && s.born_n == 1 && s.phase != EXH_PRECONTACT_FROZEN,
         "thrown onto the finger");
     p.point_m_q30.z = MM(100);
@@ -381,8 +482,8 @@ TEST(a_stale_plane_is_none)
     at(MM(112));
     CHECK(bits == EXH_PRECONTACT_STALE && s.stale_n == 1, "counted once");
     tell(floor_plane);
-    at(MM(112));
-    CHECK(bits & EXH_PRECONTACT_AROUND, "who came near unseen gets no contact");
+    at(MM(108));
+    CHECK(bits & EXH_PRECONTACT_AROUND, "who came in unseen, and rests, gets no contact");
 }
 
 TEST(a_message_may_be_old_when_it_comes)
@@ -397,7 +498,7 @@ TEST(a_message_may_be_old_when_it_comes)
     at(MM(150));
     tell((struct exh_plane){EXH_PLANE_NONE, 0, 1, {0, 0, 0}, {0, 0, 0}});
     tell(floor_plane); /* two messages in a tick: there was none between */
-    at(MM(112));
+    at(MM(108));
     CHECK(bits == EXH_PRECONTACT_AROUND, "new again");
     start();
     CHECK_EQ_I64(exh_precontact_update(&s, &cfg, &floor_plane, 100), 0);
@@ -540,7 +641,7 @@ TEST(state_round_trip)
     s.ignored_n = 7;
     exh_precontact_serialize(&c, &s);
     n = c.at;
-    CHECK_EQ_I64(n, 8 + 12 + 2 * 23 + 32 + 1);
+    CHECK_EQ_I64(n, 8 + 12 + 2 * 23 + 32 + 1 + 15);
     c = exh_bytes_reader(buf, n);
     exh_precontact_serialize(&c, &back);
     CHECK(exh_bytes_ok(&c), "reads");
@@ -668,7 +769,9 @@ TEST_MAIN("unit/precontact", distance_has_the_sign_of_the_text, rounds_once_and_
     a_touching_finger_is_not_released, a_contact_that_the_glove_denies_is_let_go,
     a_doubt_hangs_on_no_message, an_unknown_fingertip, missed_ticks_age_a_plane_and_a_doubt,
     what_comes_while_frozen_is_ignored_and_counted, what_came_while_frozen_is_new_at_the_release,
-    born_inside_gives_no_contact_until_left, another_object_has_to_be_left_first,
+    born_inside_gives_no_contact_until_left, born_near_follows_to_the_touch,
+    who_went_around_it_leaves_by_the_string, late_is_at_the_true_place_and_slow,
+    never_is_who_rests_or_has_just_begun, another_object_has_to_be_left_first,
     the_same_object_may_come_to_the_finger, a_stale_plane_is_none,
     a_message_may_be_old_when_it_comes, a_frozen_plane_does_not_age, what_cannot_be_is_refused,
     material_is_taken_at_the_freeze, scale_and_slope, set_up_refuses, state_round_trip,

@@ -98,6 +98,7 @@ static const struct exh_signal want[] = {
     {0x0C07, 30, EXH_WHEN_ANY, 0, 53687091, 5368709, "d_doubt", "m", ""},
     {0x0C08, 0, EXH_WHEN_SETUP, 1, 60000, 100, "doubt_max", "ms", ""},
     {0x0C09, 0, EXH_WHEN_SETUP, 1, 60000, 50, "tip_age_max", "ms", ""},
+    {0x0C0A, 0, EXH_WHEN_ANY, 1, 10000000, 100, "late_slew", "n_per_s", ""},
     {0x0D01, 26, EXH_WHEN_SETUP, 6710886, 67108864, 16777216, "track_tol", "a", ""},
     {0x0D02, 0, EXH_WHEN_SETUP, 1, 100, 20, "track_time", "ms", ""},
     {0x0D11, 20, EXH_WHEN_SETUP, 0, 104857600, 0, "supply_min", "v", ""},

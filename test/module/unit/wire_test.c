@@ -17,7 +17,9 @@ static struct exh_wire_packet sample(uint8_t type)
     struct exh_wire_packet p = {.type = type};
     int32_t v = 0x01020304;
     switch (type) {
-    case EXH_WIRE_HELLO: p.u.hello = (struct exh_wire_hello){EXH_WIRE_WORLD, 0x100, 0xABCD}; break;
+    case EXH_WIRE_HELLO:
+        p.u.hello = (struct exh_wire_hello){EXH_WIRE_WORLD, 0x100, 0xABCD, {{-5, 6}, {7, 0x1234}}};
+        break;
     case EXH_WIRE_STATE:
         p.u.state.tick = 77;
         p.u.state.fingers = 31;
@@ -97,9 +99,9 @@ static struct exh_wire_rx met(uint32_t session, uint32_t seq)
 
 TEST(bytes_are_those_of_the_document)
 {
-    static const uint8_t param[] = {0x58, 0x57, 2, 4, 8, 0, 0x0D, 0xF0, 0xAD, 0xBA, 2, 0, 0, 0,
+    static const uint8_t param[] = {0x58, 0x57, 3, 4, 8, 0, 0x0D, 0xF0, 0xAD, 0xBA, 2, 0, 0, 0,
         0xE8, 3, 0, 0, 0x01, 0x04, 3, 0, 0xF7, 0xFF, 0xFF, 0xFF};
-    static const uint32_t sizes[] = {31, 236, 231, 30, 36, 34, 93};
+    static const uint32_t sizes[] = {51, 236, 231, 30, 36, 34, 93};
     CHECK_EQ_I64(write_as(EXH_WIRE_PARAM, 0xBAADF00Du, 2), sizeof param + 4);
     CHECK(memcmp(buf, param, sizeof param) == 0, "head and payload");
     CHECK(buf[26] == (exh_crc32(0, param, sizeof param) & 0xFF), "CRC");
@@ -238,14 +240,29 @@ TEST(only_what_is_newer)
     for (size_t i = 0; i < LEN(step); i++) {
         struct exh_wire_packet p = sample(EXH_WIRE_STATE);
         const struct exh_wire_packet was = p;
-        const uint32_t n = write_as(EXH_WIRE_PARAM, 9, step[i].seq);
+        const uint32_t n = write_as(EXH_WIRE_PLANES, 9, step[i].seq);
         const int r = exh_wire_decode(&rx, &p, buf, n);
         CHECK(step[i].ok || memcmp(&p, &was, sizeof p) == 0, "step %d: written", (int)i);
-        CHECK(r == (step[i].ok ? EXH_WIRE_PARAM : -EXH_E_STALE), "step %d", (int)i);
+        CHECK(r == (step[i].ok ? EXH_WIRE_PLANES : -EXH_E_STALE), "step %d", (int)i);
         CHECK(rx.missing == step[i].missing && rx.duplicate == step[i].duplicate &&
                   rx.reordered == step[i].reordered && rx.old == step[i].old,
             "step %d: %" PRIu32 " %" PRIu32 " %" PRIu32 " %" PRIu32, (int)i, rx.missing,
             rx.duplicate, rx.reordered, rx.old);
+    }
+}
+
+TEST(parameters_and_answers_may_be_late_but_once)
+{
+    static const uint8_t type[] = {EXH_WIRE_PARAM, EXH_WIRE_ACK};
+    for (size_t i = 0; i < LEN(type); i++) {
+        struct exh_wire_rx rx = met(9, 10);
+        CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 9, 74)), EXH_WIRE_PLANES);
+        CHECK_EQ_I64(take(&rx, write_as(type[i], 9, 11)), type[i]);
+        CHECK(rx.reordered == 1 && rx.accepted == 2 && rx.seq == 74, "late");
+        CHECK_EQ_I64(take(&rx, write_as(type[i], 9, 11)), -EXH_E_STALE);
+        CHECK_EQ_I64(take(&rx, write_as(type[i], 9, 10)), -EXH_E_STALE);
+        CHECK(rx.duplicate == 1 && rx.old == 1, "twice, and too late");
+        CHECK_EQ_I64(take(&rx, write_as(type[i], 8, 12)), -EXH_E_STATE);
     }
 }
 
@@ -342,21 +359,23 @@ TEST(silence_is_only_what_is_heard_of_nobody)
 
 TEST(what_differs_is_said_by_name)
 {
-    const struct exh_wire_hello ours = {EXH_WIRE_CONTROLLER, 0x100, 0xABCD};
+    const struct exh_wire_hello ours = {
+        .role = EXH_WIRE_CONTROLLER, .lib_version = 0x100, .table_crc = 0xABCD};
     static const struct {
         struct exh_wire_hello theirs;
         uint32_t want;
-    } c[] = {{{EXH_WIRE_WORLD, 0x100, 0xABCD}, 0},
-        {{EXH_WIRE_WORLD, 0x100, 0}, 0}, /* has no table */
-        {{EXH_WIRE_CONTROLLER, 0x100, 0xABCD}, EXH_WIRE_ROLE},
-        {{EXH_WIRE_WORLD, 0x101, 0xABCD}, EXH_WIRE_LIB},
-        {{EXH_WIRE_WORLD, 0x100, 0xABCE}, EXH_WIRE_TABLE},
-        {{EXH_WIRE_CONTROLLER, 0, 1}, EXH_WIRE_ROLE | EXH_WIRE_LIB | EXH_WIRE_TABLE}};
+    } c[] = {{{EXH_WIRE_WORLD, 0x100, 0xABCD, {{0}}}, 0},
+        {{EXH_WIRE_WORLD, 0x100, 0, {{0}}}, 0}, /* has no table */
+        {{EXH_WIRE_CONTROLLER, 0x100, 0xABCD, {{0}}}, EXH_WIRE_ROLE},
+        {{EXH_WIRE_WORLD, 0x101, 0xABCD, {{0}}}, EXH_WIRE_LIB},
+        {{EXH_WIRE_WORLD, 0x100, 0xABCE, {{0}}}, EXH_WIRE_TABLE},
+        {{EXH_WIRE_CONTROLLER, 0, 1, {{0}}}, EXH_WIRE_ROLE | EXH_WIRE_LIB | EXH_WIRE_TABLE}};
     for (size_t i = 0; i < LEN(c); i++) {
         CHECK_EQ_I64(exh_wire_compare(&ours, &c[i].theirs), c[i].want);
     }
     for (uint32_t crc = 0; crc < 2; crc++) { /* 0 alone is no table of ours */
-        const struct exh_wire_hello few = {EXH_WIRE_CONTROLLER, 0x100, crc};
+        const struct exh_wire_hello few = {
+            .role = EXH_WIRE_CONTROLLER, .lib_version = 0x100, .table_crc = crc};
         CHECK_EQ_I64(exh_wire_compare(&few, &c[0].theirs), crc ? EXH_WIRE_TABLE : 0);
     }
 }
@@ -366,14 +385,14 @@ TEST(a_step_over_all_that_is_remembered)
 {
     for (uint32_t step = 63; step <= 65; step++) {
         struct exh_wire_rx rx = met(9, 0);
-        CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, step)), EXH_WIRE_PARAM);
+        CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 9, step)), EXH_WIRE_PLANES);
         CHECK_EQ_I64(rx.missing, step - 1);
         for (uint32_t late = 1; late < 63; late++) {
-            CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, step - late)), -EXH_E_STALE);
+            CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 9, step - late)), -EXH_E_STALE);
             CHECK(rx.reordered == late && rx.duplicate == 0, "step %" PRIu32 ": %" PRIu32 " late",
                 step, late);
         }
-        CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PARAM, 9, step - 63)), -EXH_E_STALE);
+        CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 9, step - 63)), -EXH_E_STALE);
         CHECK(rx.duplicate == (step == 63) && rx.missing == step - rx.reordered - 1,
             "step %" PRIu32, step);
     }
@@ -478,7 +497,8 @@ TEST(state_round_trip)
 TEST_MAIN("unit/wire", bytes_are_those_of_the_document, there_and_back,
     every_bit_flipped_and_every_byte_cut_off, values_that_cannot_be,
     a_trace_fits_a_packet_whole_and_no_frame_is_missed_unseen, only_what_is_newer,
-    sequence_numbers_wrap, far_ahead_is_not_believed, no_packet_makes_it_deaf_for_good,
-    silence_is_only_what_is_heard_of_nobody, what_differs_is_said_by_name,
-    a_step_over_all_that_is_remembered, a_restart_is_seen_by_its_hello, writing_refuses,
-    planes_and_round_trip, parameters_are_staged_and_answered, state_round_trip);
+    parameters_and_answers_may_be_late_but_once, sequence_numbers_wrap, far_ahead_is_not_believed,
+    no_packet_makes_it_deaf_for_good, silence_is_only_what_is_heard_of_nobody,
+    what_differs_is_said_by_name, a_step_over_all_that_is_remembered,
+    a_restart_is_seen_by_its_hello, writing_refuses, planes_and_round_trip,
+    parameters_are_staged_and_answered, state_round_trip);

@@ -27,7 +27,7 @@ static void print_params(void)
 {
     exh_scene_bringup.defaults();
     printf("Parameters of the scene (--boot \"NAME=VALUE ...\")\n");
-    cli_signal_print(stdout, exh_scene_bringup.params->table);
+    cli_signal_print(stdout, exh_scene_bringup.params->table, NULL);
     printf("\nWhat may be wrong (--wrong NAME)\n");
     for (int i = 0; i < BRINGUP_WRONGS; i++) {
         printf("  %-17s %s\n", bringup_wrong_row[i].name, bringup_wrong_row[i].what);

@@ -124,7 +124,7 @@ static void print_params(void)
     exh_scene_calibrate.defaults();
     printf("Parameters of the scene (--set NAME=VALUE; f_max and slew in A for N: there is no "
            "table yet)\n");
-    cli_signal_print(stdout, exh_scene_calibrate.params->table);
+    cli_signal_print(stdout, exh_scene_calibrate.params->table, NULL);
     printf("\nThe simulated device (--device NAME=VALUE); step and the scales are known to the "
            "scene\n");
     for (int i = 0; i < sim_device_rows; i++) {

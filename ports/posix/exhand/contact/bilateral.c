@@ -89,7 +89,6 @@ static int load_params(struct bilateral_options *o)
         return 2;
     }
     if (o->params.load) {
-        o->own_scale = 1; /* it was fitted, when that was saved */
         o->run.live.image = o->params.image;
         o->run.live.name = o->params.load;
     }
@@ -149,6 +148,13 @@ static int refuse(const struct bilateral_options *o)
     return 0;
 }
 
+/* Of walls; a scene has its own. */
+static void own_gains(struct bilateral_options *o)
+{
+    if (o->scene == NULL && o->run.k_Npm < 0) { o->run.k_Npm = 20000; }
+    if (o->scene == NULL && o->run.b_Nspm < 0) { o->run.b_Nspm = 60; }
+}
+
 static int go(struct bilateral_options *o, double rate_Hz, const struct bilateral_study *study)
 {
     int err = study->refuse ? study->refuse(o, rate_Hz) : 0;
@@ -158,8 +164,7 @@ static int go(struct bilateral_options *o, double rate_Hz, const struct bilatera
     if (err == 0) { err = load_params(o); }
     if (err) { return err; }
     o->run.rate_Hz = (uint32_t)(rate_Hz + 0.5);
-    if (o->scene == NULL && o->run.k_Npm < 0) { o->run.k_Npm = 20000; }
-    if (o->scene == NULL && o->run.b_Nspm < 0) { o->run.b_Nspm = 60; }
+    own_gains(o);
     if (o->udp) {
         o->run.board.line.on = 1;
         o->run.board.line.udp_local = "0.0.0.0:0";
@@ -254,8 +259,8 @@ int bilateral_command(int argc, char **argv, const struct bilateral_study *study
     err = cli_parse_more(&command, &study->more, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }
     if (asked.list) {
-        bilateral_print_params();
-        return 0;
+        own_gains(&is);
+        return bilateral_print_params(&is);
     }
     return go(&is, asked.rate_Hz, study);
 }

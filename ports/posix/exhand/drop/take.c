@@ -98,7 +98,7 @@ void drop_print_params(const struct exh_scene *scene)
 {
     scene->defaults();
     printf("Parameters of the scene (--set NAME=VALUE)\n");
-    cli_signal_print(stdout, scene->params->table);
+    cli_signal_print(stdout, scene->params->table, NULL);
     printf(
         "\nThe simulated device (--device NAME=VALUE); step, kf and the scales also calibrate the "
         "scene\n");

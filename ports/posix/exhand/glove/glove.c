@@ -60,7 +60,7 @@ static void print_params(void)
     const struct exh_signal_table t = {all->group, (uint16_t)(all->groups - 1)};
     printf(
         "Parameters of the scene (--set NAME=VALUE; those of the calibration come from a file)\n");
-    cli_signal_print(stdout, &t);
+    cli_signal_print(stdout, &t, NULL);
     printf(
         "\nThe simulated glove and its card (--device NAME=VALUE; `exhand drop --params` lists the "
         "motor's)\n");

@@ -94,23 +94,37 @@ static unsigned lowest(unsigned mask)
     return i;
 }
 
-/* Fingers that approach a wall again and again. */
-static int run_hand(struct live_options *o)
+static struct bilateral_run_cfg hand_cfg(struct live_options *o)
 {
     const struct table2_row *g = table2_gains(o->rate_Hz);
     struct bilateral_run_cfg c;
-    struct bilateral_run r;
-    int err;
     o->hand.seed = o->seed;
     o->hand.approaches = 0; /* for ever */
     c = bilateral_at_speed(&o->hand, o->hand.speed[0].mps);
     c.rate_Hz = (uint32_t)(o->rate_Hz + 0.5);
     c.k_Npm = g->k_Npm;
     c.b_Nspm = g->b_Nspm;
+    return c;
+}
+
+int live_stage(struct live_options *o, const struct exh_scene *sc)
+{
+    struct bilateral_run_cfg c;
+    sc->defaults();
+    if (sc != &exh_scene_bilateral) { return 0; }
+    c = hand_cfg(o);
+    return bilateral_stage(&c);
+}
+
+/* Fingers that approach a wall again and again. */
+static int run_hand(struct live_options *o)
+{
+    struct bilateral_run_cfg c = hand_cfg(o);
+    struct bilateral_run r;
+    int err;
     c.live = o->live;
     c.more = &hooks;
     c.blackbox = o->blackbox;
-    if (o->live.image) { c.fit_scale = 0; } /* it was, when that was saved */
     board(o, &c.board);
     c.board.glove_tty = o->glove ? &o->tty : NULL;
     c.glove_cal = o->glove_image ? &o->glove_cal : NULL;

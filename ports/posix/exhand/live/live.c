@@ -180,12 +180,12 @@ static void defaults(struct live_options *o)
     o->live.on = 1;
 }
 
-static int list(const struct live_options *o)
+static int list(struct live_options *o)
 {
     const struct exh_scene *sc = scene_of(o);
     if (sc == NULL) { return 2; }
-    sc->defaults();
-    cli_signal_print(stdout, sc->params->table);
+    if (live_stage(o, sc) < 0) { return 2; }
+    cli_signal_print(stdout, sc->params->table, sc->params->staged);
     return 0;
 }
 

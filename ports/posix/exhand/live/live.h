@@ -30,7 +30,10 @@ struct live_options {
     struct exh_glove_cal glove_cal;
 };
 
-/* live_box.c. The box of this scene, until it ends: 0, or the -EXH_E... of board or scene. */
+/* live_box.c. The parameters that its box begins with, staged: 0, or -EXH_E_... after a line on
+ * stderr. */
+int live_stage(struct live_options *o, const struct exh_scene *sc);
+/* The box of this scene, until it ends: 0, or the -EXH_E... of board or scene. */
 int live_box(struct live_options *o, const struct exh_scene *sc);
 /* What a client's thread could not do: an exit status; 0: nothing. */
 int live_box_clients(void);

@@ -155,7 +155,7 @@ static void plane_op(uint32_t i)
 {
     for (uint32_t f = 0; f < FINGERS; f++) {
         const struct exh_precontact_in in = {
-            {x[i] >> 2, x[i + 1] >> 2, x[i + 2] >> 2}, {0, 0, 0}, x[i + 3] >> 2, 0, 0};
+            {x[i] >> 2, x[i + 1] >> 2, x[i + 2] >> 2}, {0, 0, 0}, x[i + 3] >> 2, 0, 0, 1, 0};
         sink = exh_precontact_step(&plane[f], &freeze_cfg, &in);
     }
 }

@@ -43,7 +43,7 @@ uint32_t exh_precontact_step(struct exh_precontact *of, const struct exh_precont
 {
     /*@ assert precontact_step: precontact(of) && precontact_cfg(c) && \initialized(&in->tip_m_q30) && \initialized(&in->slope_q24); */
     *of = any_precontact();
-    return Frama_C_unsigned_int_interval(0, (1u << 10) - 1);
+    return Frama_C_unsigned_int_interval(0, (1u << 11) - 1);
 }
 
 void exh_precontact_serialize(struct exh_bytes *c, struct exh_precontact *of)

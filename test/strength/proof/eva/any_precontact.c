@@ -9,7 +9,8 @@
  * PLANT: lib/src/law/precontact.c: cfg->material[m < cfg->materials ? m : 0] -> cfg->material[m]
  * PLANT: lib/src/law/precontact.c: is_unit(&p->normal_q30) && p->offset -> p->offset
  * PLANT: lib/src/law/precontact.c: exh_wrap_diff64(p->offset_m_q60, dot(&p->normal_q30, tip)) -> (p->offset_m_q60 - dot(&p->normal_q30, tip))
- * PLANT: lib/src/law/precontact.c: const int64_t free_m_q30 = (int64_t)cfg->par->d_lim_m_q30 - -> const int64_t free_m_q30 = 16 * cfg->par->d_lim_m_q30 -
+ * PLANT: lib/src/law/precontact.c: (s->near ? 0 : (int64_t)cfg->par->d_lim_m_q30) -> (s->near ? 0 : 16 * cfg->par->d_lim_m_q30)
+ * PLANT: lib/src/law/precontact.c: const int64_t ahead_m_q30 = (int64_t)s->lim_m_q30 - in->pos_m_q30; -> const int64_t ahead_m_q30 = s->lim_m_q30 - in->pos_m_q30;
  * PLANT: lib/src/law/precontact.c: exh_sat32(exh_wrap_diff64( -> (int32_t)(exh_wrap_diff64(
  */
 #include "num/bytes.c"
@@ -56,6 +57,7 @@ static void any_cfg(unsigned materials)
     par.doubt_m_q30 = in_row(&row[6]);
     par.doubt_ms = in_row(&row[7]);
     par.tip_age_max_ms = in_row(&row[8]);
+    par.late_slew_Nps = in_row(&row[9]);
     cfg.par = &par;
     cfg.material = material;
     cfg.materials = (uint8_t)materials;
@@ -81,6 +83,8 @@ static void ticks(unsigned materials)
     ANY(in);
     bits = exh_precontact_step(&s, &cfg, &in);
     (void)exh_precontact_none(&s);
+    exh_precontact_forget(&s);
+    exh_precontact_arrived(&s);
     /*@ assert next: precontact(&s) && precontact_bits(bits); */
 }
 

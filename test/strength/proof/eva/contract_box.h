@@ -12,7 +12,8 @@
 /*@ predicate material(struct exh_material_par *m) = 0 <= m->k_Npm_q10 <= 1024000000 && 0 <= m->b_Nspm_q20 <= 1048576000 &&
       0 <= m->f_max_N_q20 <= 104857600;
     predicate precontact_par(struct exh_precontact_par *p) = -214748365 <= p->d_lim_m_q30 <= -107374 &&
-      0 <= p->hyst_m_q30 <= 53687091 && 2097152 <= p->scale_q24 <= 134217728 && 0 <= p->doubt_m_q30 <= 53687091;
+      0 <= p->hyst_m_q30 <= 53687091 && 2097152 <= p->scale_q24 <= 134217728 && 0 <= p->doubt_m_q30 <= 53687091 &&
+      1 <= p->late_slew_Nps <= 10000000;
     predicate precontact_made(struct exh_precontact_cfg *c) = 1 <= c->materials &&
       -(26843546 * (1 << 30)) <= c->pad_m_q60 <= 26843546 * (1 << 30);
     predicate precontact_cfg(struct exh_precontact_cfg *c) = \valid_read(c->par) && precontact_par(c->par) && precontact_made(c) &&
@@ -21,7 +22,7 @@
     predicate plane(struct exh_precontact_plane *p) = component(p->normal_q30.x) && component(p->normal_q30.y) &&
       component(p->normal_q30.z);
     predicate precontact(struct exh_precontact *s) = s->phase <= 3 && material(&s->taken) && plane(&s->newest) && plane(&s->held);
-    predicate precontact_bits(integer v) = 0 <= v < 1 << 10; */
+    predicate precontact_bits(integer v) = 0 <= v < 1 << 11; */
 
 /*@ predicate glove_cfg(struct exh_glove_cfg *c) = \valid_read(c->cal) && 0 <= c->filter.a < 1 << 30 &&
       1 <= c->low_cause <= 2 && 1 <= c->high_cause <= 2 && 64 <= c->quantizer.half <= 1 << 30;

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: MIT */
+/* How fast the fingers' joints turn, from the states that came: the newest against one up to 40 ms
+ * before it. */
+#ifndef WORLD_PACE_H
+#define WORLD_PACE_H
+
+#include "finger.h"
+
+#include "exhand/wire.h"
+
+#define PACE_STATES 16
+
+struct pace {
+    struct pace_at {
+        uint32_t stamp_us;
+        int32_t joint_turn_q32[FINGERS][3];
+    } at[PACE_STATES]; /* the newest states, in a ring */
+    unsigned n, last;
+    double turn_q32ps[FINGERS][3];     /* of each joint, a second */
+    double pull_turn_q32ps[FINGERS][3]; /* the same while the string runs out at 0.05 m/s */
+};
+
+/* How a string bends the fingers, of the controller's HELLO; 0: it does not tell. */
+void pace_pull(struct pace *p, const struct exh_wire_hello *hello);
+
+/* A state came that was sent at stamp_us of the controller's clock. A clock that went back, or
+ * stood for long, begins anew: nothing turns. */
+void pace_take(struct pace *p, const struct exh_wire_state *state, uint32_t stamp_us);
+
+#endif
