@@ -8,6 +8,21 @@ coverage:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/test/sim/coverage_test
 	@LIMIT=86400 EXH_CASES=10000000 test/run.sh $(B)/test/sim/coverage_test
 
+# Recorded networks beside them, where there are any.
+SEEDS    ?= 5
+comma    := ,
+empty    :=
+NETWORKS ?= $(subst $(empty) $(empty),$(comma),$(wildcard $(addprefix $(or \
+            $(EXH_DATA),../shared/data)/,net-ethernet-direct/*.csv.xz net-internet-ping/*.dat)))
+## Feel every shipped scene by every finger at three speeds over good and bad links; none may be
+## missed (SEEDS=5; table in build/contacts/contacts.csv).
+.PHONY: contacts
+contacts:
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(lab)
+	@mkdir -p $(B)/contacts
+	@$(lab) bilateral --contacts $(SEEDS) $(if $(NETWORKS),--networks $(NETWORKS)) \
+	    --out $(B)/contacts $(ARGS)
+
 # `make stress` builds these once more under sanitizers, in build/san.
 stress_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/closed/stress/*.c))
 stress_model := $(call model_objects,examples/custom/wall_ert_rtw,$(call \

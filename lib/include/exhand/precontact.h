@@ -27,10 +27,11 @@
  * the finger was frozen. Born at d_lim <= d < 0, before the touch, q_lim moves along, too, and is
  * frozen at the touch: until the finger has been at d < d_lim, 0 stands for d_lim everywhere.
  * Born at d >= 0, in the object, it is
- *   - late, if the world has spoken of this finger while it was free, and the string runs out: the
- *     link was too slow for it. The wall is at its true place, q - s*d, at once, and frozen. As it
- *     would push with all its force at once, the caller limits the rise of force to late_slew for
- *     as long as `late` is 1 (exh_precontact_arrived()).
+ *   - late, if the world has spoken of this finger while it was free, it was told
+ *     twice on end, the string runs out, and s is 2 at most and was not limited: the link was too
+ *     slow for it. The wall is at its true place, q
+ * - s*d, at once, and frozen. As it would push with all its force at once, the caller limits the
+ * rise of force to late_slew for as long as `late` is 1 (exh_precontact_arrived()).
  *   - nobody's fault else: the box has just begun to pull, the world has just begun to speak
  *     (exh_precontact_forget()), or something came onto a finger that rests. There is no force
  *     until the finger has left the object by hyst.
@@ -156,6 +157,7 @@ struct exh_precontact {
     uint8_t met;                              /* 1: the world has spoken of the finger being free */
     uint8_t near;                             /* 1: 0 stands for d_lim */
     uint8_t late;                             /* 1: the rise of force is to be limited */
+    uint8_t told;                             /* of the newest object: once, or 2: more often */
     uint8_t resumed;                          /* read from bytes, no step yet; not in the bytes */
 };
 
@@ -174,7 +176,7 @@ struct exh_precontact_in {
 enum exh_precontact_bit {
     EXH_PRECONTACT_STANDS = 1u << 0,  /* phase FROZEN */
     EXH_PRECONTACT_TRACKS = 1u << 1,  /* phase TRACK */
-    EXH_PRECONTACT_AROUND = 1u << 2,  /* phase INSIDE */
+    EXH_PRECONTACT_AROUND = 1u << 2,  /* phase INSIDE, or it waits for being told again */
     EXH_PRECONTACT_STALE = 1u << 3,   /* phase IDLE: the newest plane is too old */
     EXH_PRECONTACT_BENT = 1u << 4,    /* s was limited: string and approach do not fit */
     EXH_PRECONTACT_FREEZE = 1u << 5,  /* frozen in this tick: `taken` is new */

@@ -11,6 +11,7 @@
 #define SCALE_MAX_Q24    (INT32_C(1) << 27)
 #define TOUCH_M_Q30      (-8) /* nearer than this, s*d can be less than an LSB */
 #define RUNS_OUT_MPS_Q27 EXH_Q(1, 100, EXH_Q_VEL) /* a finger that trembles is slower */
+#define LATE_SCALE       2                        /* string metres per fingertip metre, at most */
 #define SLEW_MAX_NPS     10000000
 
 const struct exh_signal exh_material_rows[EXH_MATERIAL_ROWS] = {
@@ -117,6 +118,7 @@ int exh_precontact_update(struct exh_precontact *s, const struct exh_precontact_
         now.material = plane->material;
         left = age_ticks < cfg->age_ticks ? cfg->age_ticks - age_ticks : 0;
     }
+    s->told = (uint8_t)(left > 0 && s->told > 0 && now.object == s->newest.object ? 2 : left > 0);
     if (s->phase == EXH_PRECONTACT_FROZEN) {
         s->ignored_n += !is_same(&now, &s->held);
     } else if (left == 0 || now.object != s->newest.object) {
@@ -189,21 +191,35 @@ static uint32_t freeze(struct exh_precontact *s, const struct exh_precontact_cfg
     return EXH_PRECONTACT_STANDS | EXH_PRECONTACT_FREEZE;
 }
 
-static uint32_t be_late(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
-    const struct exh_precontact_in *in)
-{
-    s->late_n++;
-    s->late_m_q30 = s->d_m_q30;
-    s->late = 1;
-    s->near = 0;
-    return EXH_PRECONTACT_LATE | place(s, cfg->par, in) | freeze(s, cfg, in);
-}
-
 static uint32_t be_inside(struct exh_precontact *s)
 {
     s->born_n += s->phase != EXH_PRECONTACT_INSIDE;
     s->lim_m_q30 = EXH_PRECONTACT_NO_LIM;
     s->phase = EXH_PRECONTACT_INSIDE;
+    return EXH_PRECONTACT_AROUND;
+}
+
+/* A wall far before where the finger is would pull it there: who does not go into the object is not
+ * late, nor where the string goes on by much more than the fingertip. */
+static uint32_t be_late(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
+    const struct exh_precontact_in *in)
+{
+    const uint32_t bits = place(s, cfg->par, in);
+    if ((bits & EXH_PRECONTACT_BENT) ||
+        (int64_t)in->pos_m_q30 - s->lim_m_q30 > LATE_SCALE * (int64_t)s->d_m_q30) {
+        return be_inside(s);
+    }
+    s->late_n++;
+    s->late_m_q30 = s->d_m_q30;
+    s->late = 1;
+    s->near = 0;
+    return EXH_PRECONTACT_LATE | freeze(s, cfg, in);
+}
+
+/* One message may be a world's mistake; what is told twice in a row is there. */
+static uint32_t be_told_again(struct exh_precontact *s)
+{
+    s->lim_m_q30 = EXH_PRECONTACT_NO_LIM;
     return EXH_PRECONTACT_AROUND;
 }
 
@@ -289,7 +305,7 @@ uint32_t exh_precontact_step(struct exh_precontact *s, const struct exh_preconta
     }
     if (s->phase == EXH_PRECONTACT_IDLE && s->met && !resumed &&
         in->vel_mps_q27 > RUNS_OUT_MPS_Q27) {
-        return bits | be_late(s, cfg, in);
+        return bits | (s->told < 2 ? be_told_again(s) : be_late(s, cfg, in));
     }
     return bits | be_inside(s);
 }
@@ -344,6 +360,7 @@ void exh_precontact_serialize(struct exh_bytes *c, struct exh_precontact *s)
     exh_bytes_u8(c, &s->met);
     exh_bytes_u8(c, &s->near);
     exh_bytes_u8(c, &s->late);
+    exh_bytes_u8(c, &s->told);
     s->met &= 1u;
     s->near &= 1u;
     s->late &= 1u;
@@ -351,5 +368,6 @@ void exh_precontact_serialize(struct exh_bytes *c, struct exh_precontact *s)
     if (s->phase > EXH_PRECONTACT_FROZEN || !(s->phase == EXH_PRECONTACT_FROZEN ? held : told)) {
         s->phase = EXH_PRECONTACT_IDLE;
     }
-    if (!told) { s->left_ticks = 0; }
+    if (!told) { s->left_ticks = s->told = 0; }
+    if (s->told > 2) { s->told = 2; }
 }

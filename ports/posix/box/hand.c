@@ -15,11 +15,13 @@
 #include "exhand/board.h"
 #include "exhand/error.h"
 
+#include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define PATIENCE_S 0.5 /* a link that has to be heard of, and the like */
+#define SEES_HZ    100 /* truth is looked at */
 #define AFTER_S    0.2 /* the last thing that is kept after the last approach */
 
 static struct {
@@ -31,6 +33,8 @@ static struct {
     uint32_t last_tick;
     double done_s;  /* when all fingers had done; < 0: not yet */
     int ran, again; /* the box came to run; what stood in its way is gone */
+    int sees;       /* the world is in this process */
+    uint64_t see_every;
 } run;
 
 /* --- hooks --- */
@@ -85,6 +89,23 @@ static void widen(
     g->touched += s->raw.c != 0;
 }
 
+static struct bilateral_finger_is finger_is(const struct bilateral_run_cfg *c, unsigned f)
+{
+    const struct bilateral_finger_is w = {f, c->board.exo.finger[f].arm_m, c->board.hand.pose};
+    return w;
+}
+
+/* What of the world and this finger is so, whatever anybody was told. */
+static void see_truth(unsigned f, struct bilateral_sample *s, int touches)
+{
+    const struct bilateral_finger_is w = finger_is(run.cfg, f);
+    const double t_s = posix_time_s();
+    if (run.r->ticks % run.see_every == 0) {
+        s->inside_m = bilateral_gap_m(&run.world, &w, s->x_m, t_s);
+    }
+    if (touches) { s->touch_m = bilateral_string_m(&run.world, &w, t_s, 0); }
+}
+
 /* 1 while the finger has something to do. */
 static int one_finger(unsigned f)
 {
@@ -95,11 +116,12 @@ static int one_finger(unsigned f)
     const int plays = phase == SIM_PATH_PLAY;
     const int under_way =
         phase == SIM_PATH_APPROACH || phase == SIM_PATH_HOLD || phase == SIM_PATH_WITHDRAW;
-    const struct bilateral_sample s = {sig->paper[f], sig->more[f].bits,
+    struct bilateral_sample s = {sig->paper[f], sig->more[f].bits,
         plays       ? 1
         : under_way ? (int32_t)plant->path.number
                     : 0,
-        phase == SIM_PATH_HOLD, plant->plant.x_m};
+        phase == SIM_PATH_HOLD, plant->plant.x_m, (double)NAN, (double)NAN};
+    if (run.cfg->keep && run.sees) { see_truth(f, &s, s.raw.c && !t->c); }
     widen(&t->range, &s, sig->more[f].joint_turn_q32, run.r->ticks == 1);
     if (s.bits & EXH_PRECONTACT_FREEZE) {
         t->freezes++;
@@ -109,6 +131,7 @@ static int one_finger(unsigned f)
     t->contacts += s.raw.c && !t->c;
     t->unfrozen += s.raw.c && !(s.bits & EXH_PRECONTACT_STANDS);
     t->c = s.raw.c;
+    t->refused = sig->more[f].refused;
     if (t->frozen_yet) { t->digest = digest_of(t->digest, &s.raw); }
     if (run.cfg->keep) { keep(t, &s); }
     return phase != SIM_PATH_DONE;
@@ -146,12 +169,6 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
 }
 
 /* --- before a run --- */
-
-static struct bilateral_finger_is finger_is(const struct bilateral_run_cfg *c, unsigned f)
-{
-    const struct bilateral_finger_is w = {f, c->board.exo.finger[f].arm_m, c->board.hand.pose};
-    return w;
-}
 
 /* A world elsewhere may have heard this seed before: another at every start, and logged. */
 static double session_of(const struct bilateral_run_cfg *c)
@@ -268,7 +285,7 @@ static void put_up(const struct bilateral_run_cfg *c)
         if (!(c->board.exo.fingers >> f & 1)) { continue; }
         run.world.wall.fingers = (uint8_t)(run.world.wall.fingers | 1u << f);
         bilateral_wall(&run.world.wall.plane[f], &w, c->at_m);
-        run.r->finger[f].touch_m = bilateral_string_m(&run.world, &w, 0);
+        run.r->finger[f].touch_m = bilateral_string_m(&run.world, &w, 0, 0);
     }
 }
 
@@ -314,6 +331,8 @@ int bilateral_run(const struct bilateral_run_cfg *c, struct bilateral_run *r)
     run.r = r;
     run.logged = c->board.log != NULL;
     run.done_s = -1;
+    run.sees = c->board.line.udp_local == NULL;
+    run.see_every = c->rate_Hz / SEES_HZ + 1;
     err = bilateral_stage(c);
     if (err == 0) { put_up(c); }
     if (err < 0) { return err; }

@@ -42,17 +42,21 @@ struct bilateral_sample {
     int32_t approach; /* from 1; 0: at rest between two */
     int32_t holds;    /* pressing */
     double x_m;       /* string, at the finger */
+    /* As it is in the world of this process; NAN where nobody looked. */
+    double inside_m; /* how far the pad is in something, each 10 ms */
+    double touch_m;  /* where c sets: the string at which the pad touches now; -1: nowhere */
 };
 
 /* What a finger did, tick by tick, and what is counted without keeping it. */
 struct bilateral_track {
     struct bilateral_sample *at;
     size_t n, cap;
-    double touch_m; /* string at which pad and object touch; < 0: never */
+    double touch_m; /* string at which pad and object touch at first; < 0: never */
     double scale;   /* s of the last freeze */
     long freezes;
     long contacts;   /* times that c set */
     long unfrozen;   /* ticks with c and no q_lim that stands: must stay 0 */
+    long refused;    /* planes */
     uint32_t digest; /* CRC of force, current and position from the first freeze on */
     int frozen_yet, c;
     /* what it went through */
@@ -98,13 +102,13 @@ struct bilateral_finger_is {
 /* A wall across its way where it has drawn x_m out. */
 void bilateral_wall(struct exh_wire_plane *to, const struct bilateral_finger_is *w, double x_m);
 
-/* d of it where it has drawn x_m out: of its wall, or of the nearest surface of the scene as it is
- * at first; -1e3: nothing. */
+/* d of it where it has drawn x_m out: of its wall, or of the nearest surface of the scene at
+ * t_s; -1e3: nothing. */
 double bilateral_gap_m(
-    const struct peer_world *world, const struct bilateral_finger_is *w, double x_m);
+    const struct peer_world *world, const struct bilateral_finger_is *w, double x_m, double t_s);
 
 /* The string at which d first is d_m; -1: nowhere. */
 double bilateral_string_m(
-    const struct peer_world *world, const struct bilateral_finger_is *w, double d_m);
+    const struct peer_world *world, const struct bilateral_finger_is *w, double t_s, double d_m);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include "exhand/units.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -78,10 +79,11 @@ static void judge_contact(
     c->t_s = (double)c->first * r->T.num / r->T.den;
     c->speed_mps = si(s->raw.qd_mps_q27, EXH_Q_VEL);
     c->lim_m = si(s->raw.q_lim_m_q30, EXH_Q_POS);
-    c->off_m = t->touch_m < 0
-                   ? 0
-                   : c->lim_m - t->touch_m + t->at[0].x_m - si(t->at[0].raw.q_m_q30, EXH_Q_POS);
-    c->early = t->touch_m >= 0 && c->off_m < -EARLY_M;
+    c->nothing = s->touch_m < 0;
+    c->off_m = c->nothing
+                   ? (double)NAN
+                   : c->lim_m - s->touch_m + t->at[0].x_m - si(t->at[0].raw.q_m_q30, EXH_Q_POS);
+    c->early = c->off_m < -EARLY_M;
     c->held_N = 0;
     for (size_t i = held_from(c, r->T); i < c->hold_end; i++) {
         c->held_N += si(t->at[i].raw.f_mon_N_q20, EXH_Q_FORCE);
@@ -100,12 +102,13 @@ int bilateral_judge(const struct bilateral_run *r, unsigned f, struct bilateral_
     for (size_t i = 0; i < t->n;) {
         struct bilateral_contact k = {
             .finger = f, .approach = t->at[i].approach, .settle_s = -1, .rest_s = -1};
-        double deepest_m = 0;
+        double deepest_m = -1;
         int touched = 0;
         for (; i < t->n && t->at[i].approach == k.approach; i++) {
             const struct bilateral_sample *s = &t->at[i];
-            if (s->x_m > deepest_m) { deepest_m = s->x_m; }
+            if (s->inside_m > deepest_m) { deepest_m = s->inside_m; }
             if (s->bits & EXH_PRECONTACT_FREEZE) { k.frozen = 1; }
+            if (s->bits & EXH_PRECONTACT_AROUND) { k.around = 1; }
             if (s->holds) { k.hold_end = i + 1; }
             if (si(s->raw.f_des_N_q20, EXH_Q_FORCE) > k.f_max_N) {
                 k.f_max_N = si(s->raw.f_des_N_q20, EXH_Q_FORCE);
@@ -113,10 +116,12 @@ int bilateral_judge(const struct bilateral_run *r, unsigned f, struct bilateral_
             if (s->raw.c && !touched) {
                 touched = 1;
                 k.first = i;
+                k.late = (s->bits & EXH_PRECONTACT_LATE) != 0;
+                k.late_m = si(s->raw.d_m_q30, EXH_Q_POS);
             }
         }
         if (k.approach == 0) { continue; }
-        k.missed = !touched && t->touch_m >= 0 && deepest_m > t->touch_m + MISSED_M;
+        k.missed = !touched && deepest_m > MISSED_M;
         if (touched) {
             if (k.hold_end <= k.first) { k.hold_end = k.first + 1; }
             judge_contact(r, t, &k);

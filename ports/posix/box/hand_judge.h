@@ -14,11 +14,15 @@
 struct bilateral_contact {
     unsigned finger;
     int approach;
-    int frozen, missed, early; /* missed: none though the finger went 1 mm beyond */
+    int frozen, missed, early; /* missed: none though the finger went 1 mm into something */
+    int late;                  /* its plane came when the finger was inside */
+    int around;                /* missed: there was a plane, born around the finger */
+    int nothing;               /* contact, and nothing was there */
     size_t first, hold_end;    /* samples: first of contact, behind the last of hold */
     double t_s, speed_mps;     /* at contact */
     double lim_m;              /* q_lim */
-    double off_m;              /* q_lim less where pad and object touch */
+    double off_m;              /* q_lim less where pad and object touch then; NAN: unknown */
+    double late_m;             /* so far inside it was */
     double settle_s;           /* < 0: never, or no contact */
     double rest_s;             /* the same of position within 0.2 mm, F_mon within 1.5 N */
     double held_N;             /* F_mon at the end of the hold */

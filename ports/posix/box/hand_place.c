@@ -95,7 +95,7 @@ void bilateral_wall(struct exh_wire_plane *to, const struct bilateral_finger_is 
 }
 
 double bilateral_gap_m(
-    const struct peer_world *world, const struct bilateral_finger_is *w, double x_m)
+    const struct peer_world *world, const struct bilateral_finger_is *w, double x_m, double t_s)
 {
     int32_t joint[EXH_HAND_JOINTS], tip_q30[3];
     struct exh_vec3 tip;
@@ -103,21 +103,21 @@ double bilateral_gap_m(
     tip_q30[0] = tip.x;
     tip_q30[1] = tip.y;
     tip_q30[2] = tip.z;
-    return world->scene ? -world_gap_m(world->scene, w->f, joint)
+    return world->scene ? -world_gap_m(world->scene, w->f, joint, t_s)
                         : peer_gap_m(&world->wall.plane[w->f], tip_q30);
 }
 
 double bilateral_string_m(
-    const struct peer_world *world, const struct bilateral_finger_is *w, double d_m)
+    const struct peer_world *world, const struct bilateral_finger_is *w, double t_s, double d_m)
 {
     double lo, hi, x = 0;
-    while (x <= TOP_M && bilateral_gap_m(world, w, x) < d_m) { x += STEP_M; }
+    while (x <= TOP_M && bilateral_gap_m(world, w, x, t_s) < d_m) { x += STEP_M; }
     if (x > TOP_M) { return -1; }
     lo = x - STEP_M;
     hi = x;
     for (int i = 0; i < 30; i++) {
         const double mid = 0.5 * (lo + hi);
-        if (bilateral_gap_m(world, w, mid) < d_m) {
+        if (bilateral_gap_m(world, w, mid, t_s) < d_m) {
             lo = mid;
         } else {
             hi = mid;

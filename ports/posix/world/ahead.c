@@ -9,8 +9,8 @@
 #define STEP_M       5e-4 /* no step is shorter: a pad that leaves a surface comes away from it */
 #define STEPS        128
 #define FAR_M        1.0
-#define LATER_S      1.5 /* no way is followed further */
-#define RESTS_MPS    0.005
+#define LATER_S      1.5  /* no way is followed further */
+#define RESTS_MPS    0.02 /* slower, and the glove's codes do not say where it goes */
 #define GRAZE_FROM_M (3 * FINGER_PAD_M)
 #define NEAR_M       0.015 /* no controller freezes at a plane farther off than this */
 /* Of joints 1 and 2 while a finger closes: 1 rad/s. */
@@ -41,8 +41,8 @@ static struct v3 tip_at(const struct way *w, double later_s)
     struct finger f;
     for (unsigned j = 0; j < 3; j++) {
         const double by = w->turn_q32ps ? later_s * w->turn_q32ps[j] : 0;
-        turn_q32[j] = by == 0 ? a->joint_turn_q32[j]
-                              : (int32_t)turn_in(a->joint_turn_q32[j] + by, j);
+        turn_q32[j] =
+            by == 0 ? a->joint_turn_q32[j] : (int32_t)turn_in(a->joint_turn_q32[j] + by, j);
     }
     finger_at(&f, a->hand, a->finger, turn_q32);
     if (w->with_hand && later_s > 0) {
@@ -60,11 +60,9 @@ static double gap_m(const struct ahead *a, struct v3 p, int *body, struct ahead_
     *body = -1;
     for (int i = 0; i < a->bodies; i++) {
         const struct body *b = &a->body[i];
-        const double far = a->cull ? least : ENDLESS,
-                     away = body_away_m(b, p, far);
+        const double far = a->cull ? least : ENDLESS, away = body_away_m(b, p, far);
         s->culled += b->is.kind != SHAPE_PLANE && away >= far;
-        if (away < least || (away == least && *body >= 0 &&
-                                b->object < a->body[*body].object)) {
+        if (away < least || (away == least && *body >= 0 && b->object < a->body[*body].object)) {
             least = away;
             *body = i;
         }
@@ -129,8 +127,8 @@ static double mps_of(const double turn_q32ps[3])
 void ahead_look(const struct ahead *a, struct ahead_patch *to, struct ahead_stats *s)
 {
     static const double alike[3] = {0, CLOSES_TURN_Q32PS, CLOSES_TURN_Q32PS};
-    const double *closes = a->pull_turn_q32ps && mps_of(a->pull_turn_q32ps) > 0 ? a->pull_turn_q32ps
-                                                                               : alike;
+    const double *closes =
+        a->pull_turn_q32ps && mps_of(a->pull_turn_q32ps) > 0 ? a->pull_turn_q32ps : alike;
     const double own_mps = a->turn_q32ps ? mps_of(a->turn_q32ps) : 0;
     const struct way goes = {a, a->turn_q32ps, a->hand_at != NULL, own_mps + a->hand_mps},
                      close = {a, closes, 0, mps_of(closes)};

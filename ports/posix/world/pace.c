@@ -5,8 +5,9 @@
 
 #include <string.h>
 
-#define WINDOW_US 40000
-#define GAP_US    250000
+#define WINDOW_US 250000
+#define APART_US  10000
+#define TURN_Q32  INT64_C(136000000) /* 0.2 rad */
 #define PULL_MPS  0.05
 
 void pace_pull(struct pace *p, const struct exh_wire_hello *hello)
@@ -19,31 +20,52 @@ void pace_pull(struct pace *p, const struct exh_wire_hello *hello)
     }
 }
 
+/* The joint of any finger that turned most between the two. */
+static int64_t most_turned(const struct pace_at *a, const struct pace_at *b)
+{
+    int64_t most = 0;
+    for (unsigned i = 0; i < FINGERS * 3; i++) {
+        const int64_t by =
+            (int64_t)a->joint_turn_q32[i / 3][i % 3] - b->joint_turn_q32[i / 3][i % 3];
+        if (by > most) { most = by; }
+        if (-by > most) { most = -by; }
+    }
+    return most;
+}
+
+/* The state to compare with: as old as possible, as codes are coarse, but not before a turn. */
+static const struct pace_at *before(const struct pace *p, const struct pace_at *now)
+{
+    const struct pace_at *from = &p->at[p->last];
+    for (unsigned back = 1; back < p->n; back++) {
+        const struct pace_at *older = &p->at[(p->last + PACE_STATES - back) % PACE_STATES];
+        if (now->stamp_us - older->stamp_us > WINDOW_US || most_turned(now, older) > TURN_Q32) {
+            break;
+        }
+        from = older;
+    }
+    return from;
+}
+
 void pace_take(struct pace *p, const struct exh_wire_state *state, uint32_t stamp_us)
 {
+    struct pace_at now = {.stamp_us = stamp_us};
     const uint32_t since_us = p->n ? stamp_us - p->at[p->last].stamp_us : 0;
-    const struct pace_at *from;
-    struct pace_at *now;
-    unsigned back = 1;
-    double dt_s;
     if (p->n && since_us == 0) { return; } /* the same again */
-    if (since_us > GAP_US) { p->n = 0; }
+    if (since_us > WINDOW_US) { p->n = 0; }
+    memcpy(now.joint_turn_q32, state->joint_turn_q32, sizeof now.joint_turn_q32);
+    memset(p->turn_q32ps, 0, sizeof p->turn_q32ps);
+    if (p->n > 0) {
+        const struct pace_at *from = before(p, &now);
+        const double dt_s = 1e-6 * (stamp_us - from->stamp_us);
+        for (unsigned i = 0; i < FINGERS * 3; i++) {
+            p->turn_q32ps[i / 3][i % 3] =
+                ((double)now.joint_turn_q32[i / 3][i % 3] - from->joint_turn_q32[i / 3][i % 3]) /
+                dt_s;
+        }
+    }
+    if (p->n > 0 && since_us < APART_US) { return; }
     p->last = (p->last + 1) % PACE_STATES;
     p->n += p->n < PACE_STATES;
-    now = &p->at[p->last];
-    now->stamp_us = stamp_us;
-    memcpy(now->joint_turn_q32, state->joint_turn_q32, sizeof now->joint_turn_q32);
-    memset(p->turn_q32ps, 0, sizeof p->turn_q32ps);
-    if (p->n == 1) { return; }
-    while (back + 1 < p->n && stamp_us - p->at[(p->last + PACE_STATES - back - 1) % PACE_STATES]
-                                             .stamp_us <= WINDOW_US) {
-        back++;
-    }
-    from = &p->at[(p->last + PACE_STATES - back) % PACE_STATES];
-    dt_s = 1e-6 * (stamp_us - from->stamp_us);
-    for (unsigned i = 0; i < FINGERS * 3; i++) {
-        p->turn_q32ps[i / 3][i % 3] = ((double)now->joint_turn_q32[i / 3][i % 3] -
-                                          from->joint_turn_q32[i / 3][i % 3]) /
-                                      dt_s;
-    }
+    p->at[p->last] = now;
 }

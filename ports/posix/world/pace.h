@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* How fast the fingers' joints turn, from the states that came: the newest against one up to 40 ms
- * before it. */
+/* How fast the fingers' joints turn, from the states that came: the newest against the oldest of
+ * the last 250 ms that is not a turn of 0.2 rad away. Glove angles are coarse: of a slow finger,
+ * less would say little of where it goes. */
 #ifndef WORLD_PACE_H
 #define WORLD_PACE_H
 
@@ -8,15 +9,15 @@
 
 #include "exhand/wire.h"
 
-#define PACE_STATES 16
+#define PACE_STATES 32
 
 struct pace {
     struct pace_at {
         uint32_t stamp_us;
         int32_t joint_turn_q32[FINGERS][3];
-    } at[PACE_STATES]; /* the newest states, in a ring */
+    } at[PACE_STATES]; /* states, 10 ms apart, in a ring */
     unsigned n, last;
-    double turn_q32ps[FINGERS][3];     /* of each joint, a second */
+    double turn_q32ps[FINGERS][3];      /* of each joint, a second */
     double pull_turn_q32ps[FINGERS][3]; /* the same while the string runs out at 0.05 m/s */
 };
 

@@ -190,13 +190,13 @@ void world_frame(struct world *w, const struct exh_wire_state *in, const struct 
     if (stats) { count(stats, w, &as, out, moved); }
 }
 
-double world_gap_m(struct world *w, unsigned finger, const int32_t joint_turn_q32[3])
+double world_gap_m(struct world *w, unsigned finger, const int32_t joint_turn_q32[3], double t_s)
 {
-    const struct pose hand = world_hand_at(w, 0);
+    const struct pose hand = world_hand_at(w, t_s);
     double least = 1e3 + FINGER_PAD_M;
     struct finger f;
     finger_at(&f, &w->hand, finger, joint_turn_q32);
-    (void)reach_update(&w->reach, w->scene, &hand, 0);
+    (void)reach_update(&w->reach, w->scene, &hand, t_s);
     for (int i = 0; i < w->reach.nears; i++) {
         least = fmin(least, body_away_m(&w->reach.near[i], f.tip, least));
     }

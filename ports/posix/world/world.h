@@ -50,8 +50,8 @@ struct pose world_hand_at(const struct world *w, double t_s);
 void world_frame(struct world *w, const struct exh_wire_state *in, const struct pace *pace,
     double t_s, struct exh_wire_planes *out, struct world_stats *stats);
 
-/* How far the pad of a finger is from the nearest surface at the scene's time 0, m; below 0:
- * inside; 1e3: nothing is there. */
-double world_gap_m(struct world *w, unsigned finger, const int32_t joint_turn_q32[3]);
+/* How far the pad of a finger is from the nearest surface at t_s, m; below 0: inside; 1e3: nothing
+ * is there. */
+double world_gap_m(struct world *w, unsigned finger, const int32_t joint_turn_q32[3], double t_s);
 
 #endif

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* No order of packets makes a step of force. One finger of the scene, moved at random, is told at
- * random: early, late, not at all, of two objects, of what cannot be, by peers that start anew, with
- * faults between. Its force may rise by what the finger itself does to a wall that stands, and by no
- * more than late_slew where a plane came too late. */
+ * random: early, late, not at all, of two objects, of what cannot be, by peers that start anew,
+ * with faults between. Its force may rise by what the finger itself does to a wall that stands, and
+ * by no more than late_slew where a plane came too late. */
 #include "check.h"
 
 #include "bilateral/bilateral.h"
@@ -10,17 +10,17 @@
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
-#define F        EXH_INDEX
-#define MM(v)    ((int32_t)((v) * 1073741.824))
-#define RATE_HZ  2000
-#define TICKS    200
-#define WALL_M   0.060 /* the pad's middle where it touches the first object */
-#define K_NPM    20000
-#define B_NSPM   10
-#define SPEED    0.2 /* m/s, at most */
-#define RAMP_TICKS 64 /* of the permit, once it is open again */
-#define LSB_N    (1.0 / 1048576)
-#define NOISE_M  1e-5 /* what the fingertip is beside the string */
+#define F          EXH_INDEX
+#define MM(v)      ((int32_t)((v)*1073741.824))
+#define RATE_HZ    2000
+#define TICKS      200
+#define WALL_M     0.060 /* the pad's middle where it touches the first object */
+#define K_NPM      20000
+#define B_NSPM     10
+#define SPEED      0.2 /* m/s, at most */
+#define RAMP_TICKS 64  /* of the permit, once it is open again */
+#define LSB_N      (1.0 / 1048576)
+#define NOISE_M    1e-5 /* what the fingertip is beside the string */
 
 static struct bilateral s;
 static struct bilateral_cfg cfg;
@@ -29,10 +29,10 @@ static struct bilateral_par par;
 static struct {
     double z_m, v_mps; /* of the fingertip; the string runs out as it goes down */
     double force_N;
-    int told_free;  /* since the box pulls and the peer is the one it is */
-    int late;       /* the contact there is was late, and its force has not come to the law's */
-    int touched;    /* in the tick before */
-    double lates;   /* counted */
+    int told_free; /* since the box pulls and the peer is the one it is */
+    int late;      /* the contact there is was late, and its force has not come to the law's */
+    int touched;   /* in the tick before */
+    double lates;  /* counted */
     double steepest_N;
 } is;
 
@@ -59,8 +59,8 @@ static void set_up(void)
     is.z_m = WALL_M + real_in(-0.01, 0.03);
 }
 
-/* What the world says in this tick, if anything; a plane may be of a moment long ago, or of an object
- * that stands elsewhere. */
+/* What the world says in this tick, if anything; a plane may be of a moment long ago, or of an
+ * object that stands elsewhere. */
 static void tell(void)
 {
     struct exh_plane p = {EXH_PLANE_HIT, 0, 1, {0, 0, 1 << 30}, {0, 0, 0}};
@@ -105,7 +105,8 @@ static void feel(const struct exh_permit *permit)
     int32_t bits;
     s.drive_now[F] = par.drive[F];
     s.glove_age_ticks = 0;
-    s.finger[F].tip_m_q30 = (struct exh_vec3){0, 0, MM(1e3 * (is.z_m + real_in(-NOISE_M, NOISE_M)))};
+    s.finger[F].tip_m_q30 =
+        (struct exh_vec3){0, 0, MM(1e3 * (is.z_m + real_in(-NOISE_M, NOISE_M)))};
     s.finger[F].slope_q24 = (struct exh_vec3){0, 0, -(1 << 24)};
     paper.q_m_q30 = MM(1e3 * (0.1 - is.z_m));
     paper.qd_mps_q27 = (int32_t)(-is.v_mps * 134217728);
@@ -118,13 +119,15 @@ static void feel(const struct exh_permit *permit)
         CHECK(is.told_free && is.v_mps < -0.0099 && permit->mode == EXH_PERMIT_OPEN,
             "late, but it never must: told free %d, %g m/s", is.told_free, is.v_mps);
     }
-    /* What a wall that stands does to a finger that comes: k v T, and the damper's share. F0 where it
-     * begins to act. */
+    /* What a wall that stands does to a finger that comes: k v T, and the damper's share. F0 where
+     * it begins to act. */
     may_N = is.late ? (double)par.precontact[F].late_slew_Nps / RATE_HZ
                     : K_NPM * down_mps / RATE_HZ + B_NSPM * (2 * SPEED) + 0.2;
-    if (permit->share_q30 < 1 << 30) { may_N += 40.0 / RAMP_TICKS; } /* and what the ramp gives back */
-    CHECK(rise_N <= may_N + 4 * LSB_N, "%s: a rise of %g N, %g may be", is.late ? "late" : "in time",
-        rise_N, may_N);
+    if (permit->share_q30 < 1 << 30) {
+        may_N += 40.0 / RAMP_TICKS;
+    } /* and what the ramp gives back */
+    CHECK(rise_N <= may_N + 4 * LSB_N, "%s: a rise of %g N, %g may be",
+        is.late ? "late" : "in time", rise_N, may_N);
     is.steepest_N = is.late && rise_N > is.steepest_N ? rise_N : is.steepest_N;
     if (p->phase == EXH_PRECONTACT_TRACK) { is.told_free = permit->mode == EXH_PERMIT_OPEN; }
     is.late &= p->late;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* What looking ahead costs: a plane, a sphere of 40 mm and a box below a hand whose fingers are bent
- * at random, at rest or closing. Run under callgrind by look.sh, which counts the instructions of
- * ahead_look(). Prints how many looks found what. */
+/* What looking ahead costs: a plane, a sphere of 40 mm and a box below a hand whose fingers are
+ * bent at random, at rest or closing. Run under callgrind by look.sh, which counts the instructions
+ * of ahead_look(). Prints how many looks found what. */
 #include "world/ahead.h"
 #include "world/rpy.h"
 
@@ -48,9 +48,15 @@ int main(int argc, char **argv)
     for (int i = 0; i < OPS * FINGERS; i++) {
         int32_t q[3];
         double ps[3];
-        const struct ahead a = {.body = b, .bodies = 3, .cull = cull, .hand = &h,
-            .finger = (unsigned)(i % FINGERS), .joint_turn_q32 = q, .turn_q32ps = moves ? ps : NULL,
-            .look_m = 0.1, .graze = 0.34};
+        const struct ahead a = {.body = b,
+            .bodies = 3,
+            .cull = cull,
+            .hand = &h,
+            .finger = (unsigned)(i % FINGERS),
+            .joint_turn_q32 = q,
+            .turn_q32ps = moves ? ps : NULL,
+            .look_m = 0.1,
+            .graze = 0.34};
         struct ahead_patch to;
         for (int k = 0; k < 3; k++) {
             q[k] = (int32_t)(in(&rng, finger_lo_rad[k], (k ? 0.4 : 1) * finger_hi_rad[k]) /
@@ -60,7 +66,8 @@ int main(int argc, char **argv)
         ahead_look(&a, &to, &s);
         found[to.body + 1]++;
     }
-    printf("%d looks: %d %% find the plane, %d %% the sphere, %d %% the box; %.1f bodies asked a look",
+    printf(
+        "%d looks: %d %% find the plane, %d %% the sphere, %d %% the box; %.1f bodies asked a look",
         OPS * FINGERS, found[1] / (OPS / 20), found[2] / (OPS / 20), found[3] / (OPS / 20),
         (double)s.tested / (OPS * FINGERS));
     return 0;

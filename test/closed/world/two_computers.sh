@@ -132,8 +132,38 @@ cable()
     } >/dev/null 2>&1
 }
 
+# A world of 52 lines, written from docs/WIRE.md alone: the contact of a plane is the same to the
+# bit as over no link, from the first plane on.
+stranger()
+{
+    printf '%s\n' 'hand at 0 0 0 palm 1 0 0 point 0 0 1' 'material wall k 20000 b 60 fmax 40' \
+        'plane wall at 0.06 0.03 0.17 normal -0.8 0 0.6 material wall' >"$dir/plane.world"
+    python3 "$(dirname "$0")/wall.py" "$port" &
+    pid=$!
+    sleep 0.5
+    for link in "--udp 127.0.0.1:$port" ""; do
+        # shellcheck disable=SC2086
+        timeout 60 "$exhand" bilateral $link --scene "$dir/plane.world" --speed natural \
+            --approaches 1 --out "$dir/out" >"$dir/said" 2>&1
+        status=$?
+        check "a stranger's world: $(tail -n 1 "$dir/said")" [ $status = 0 ]
+        awk -F, '$8 != "" && $1 > 0.1' "$dir/out/bilateral_natural_index.csv" \
+            >"$dir/felt.${link:+udp}"
+    done
+    end_world
+    echo "  | a world of $(wc -l <"$(dirname "$0")/wall.py") lines of Python:" \
+        "$(grep -c ',1,' "$dir/felt.udp") ticks of contact"
+    check "a stranger's world: contact" grep -q ',1,' "$dir/felt.udp"
+    check "a stranger's world: other bits" cmp -s "$dir/felt.udp" "$dir/felt."
+}
+
 at=127.0.0.1:$port
 meet "loopback" "" ""
+if command -v python3 >/dev/null; then
+    stranger
+else
+    echo "  | a stranger's world: not tried: it needs python3"
+fi
 if cable; then
     at=10.77.1.2:4747
     meet "two namespaces" "ip netns exec $w" "ip netns exec $c"

@@ -55,14 +55,14 @@ class Par:
 
 class Finger:
     plane = Struct("<q3iHB").pack
-    first, last = Struct("<5iB").pack, Struct("<9I2i3B").pack
+    first, last = Struct("<5iB").pack, Struct("<9I2i4B").pack
 
     def __init__(self):
         self.d, self.lim, self.taken, self.phase = 0, 0, (0, 0, 0), IDLE
         self.newest = self.held = NO_PLANE
         self.left = self.frozen = self.born = self.refused = self.ignored = self.stale = 0
         self.doubts = self.let_go = 0
-        self.late_n = self.late_d = self.ahead = self.met = self.near = self.late = 0
+        self.late_n = self.late_d = self.ahead = self.met = self.near = self.late = self.told = 0
         self.resumed = False
 
     def setup(self, par, T):
@@ -84,6 +84,8 @@ class Finger:
         if kind == HIT:
             self.newest = dot(n, point) + self.pad + (1 << 29), tuple(n), number, material
             self.left = max(0, self.age_ticks - age)
+        again = self.left and self.told and self.newest[2] == before[2]
+        self.told = 2 if again else int(self.left > 0)
         if self.phase == FROZEN:
             self.ignored += self.newest != self.held
         elif self.left == 0 or self.newest[2] != before[2]:
@@ -160,10 +162,14 @@ class Finger:
             return bits | bent
         if self.phase == TRACK and not (self.resumed and pos >= self.lim):
             return bits | self.freeze(material, pos)
-        if self.phase == IDLE and self.met and not self.resumed and vel > RUNS_OUT:
+        if (self.phase == IDLE and self.met and not self.resumed and vel > RUNS_OUT and
+            (self.told < 2 or not bent and pos - lim <= 2 * self.d)):
+            if self.told < 2:
+                self.lim = NEVER
+                return bits | AROUND
             self.late_n, self.late_d, self.late, self.near = self.late_n + 1, self.d, 1, 0
             self.lim = lim
-            return bits | bent | self.freeze(material, pos)
+            return bits | self.freeze(material, pos)
         self.born += self.phase != INSIDE
         self.lim, self.phase = NEVER, INSIDE
         return bits
@@ -173,7 +179,7 @@ class Finger:
                 b"".join(self.plane(p[0], *p[1], p[2], p[3]) for p in (self.newest, self.held)) +
                 self.last(self.left, self.frozen, self.born, self.refused, self.ignored, self.stale,
                           self.doubts, self.let_go, self.late_n, self.late_d, self.ahead, self.met,
-                          self.near, self.late))
+                          self.near, self.late, self.told))
 
 
 # --- what is asked for at set-up ---

@@ -66,7 +66,7 @@ static void put_up(struct ref_cfg *c)
         const struct bilateral_finger_is w = {i, c->board.exo.finger[i].arm_m, c->board.hand.pose};
         walls.wall.fingers = (uint8_t)(walls.wall.fingers | 1u << i);
         bilateral_wall(&walls.wall.plane[i], &w, WALL_M);
-        c->board.exo.path[i].believed_m = bilateral_string_m(&walls, &w, 0);
+        c->board.exo.path[i].believed_m = bilateral_string_m(&walls, &w, 0, 0);
     }
     peer_start(&peer, &cfg, 1);
     c->board.line.on = 1;

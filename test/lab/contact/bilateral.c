@@ -7,12 +7,15 @@
 #include <string.h>
 
 static struct {
-    int64_t check, jobs;
+    int64_t check, contacts, jobs;
     int sweep, hands, crisp;
-    const char *preset;
+    const char *preset, *networks;
 } is;
 
-static int studies(void) { return is.sweep + (is.check > 0) + is.hands + is.crisp; }
+static int studies(void)
+{
+    return is.sweep + (is.check > 0) + is.hands + is.crisp + (is.contacts > 0);
+}
 
 /* What says otherwise how the two are to be. */
 static int take_preset(const struct bilateral_options *o, double rate_Hz)
@@ -36,7 +39,7 @@ static int refuse(struct bilateral_options *o, double rate_Hz)
     o->study = studies() > 0;
     o->jobs = is.jobs;
     if (err == 0 && studies() > 1) {
-        cli_complain("--sweep, --check, --hands, --crisp: one at a time");
+        cli_complain("--sweep, --check, --hands, --crisp, --contacts: one at a time");
         return 2;
     }
     return err;
@@ -44,7 +47,8 @@ static int refuse(struct bilateral_options *o, double rate_Hz)
 
 static int run(const struct bilateral_options *o)
 {
-    return is.sweep    ? bilateral_sweep(o)
+    return is.contacts ? bilateral_contacts(o, is.contacts, is.networks)
+           : is.sweep  ? bilateral_sweep(o)
            : is.check  ? bilateral_check(o, is.check)
            : is.hands  ? bilateral_hands(o)
            : is.crisp  ? bilateral_crisp(o)
@@ -64,6 +68,10 @@ int lab_bilateral(int argc, char **argv)
         {"hands", CLI_FLAG, &is.hands, 0, 0, NULL,
             "80 fingers and hands: settling and stiffness of each"},
         {"crisp", CLI_FLAG, &is.crisp, 0, 0, NULL, "how fast force rises, over a grid of k and b"},
+        {"contacts", CLI_INT, &is.contacts, 1, 1000, "SEEDS",
+            "every scene, finger, speed and link: none may be missed"},
+        {"networks", CLI_TEXT, &is.networks, 0, 0, "FILE[,FILE...]",
+            "of --contacts: recorded ones besides"},
         {"jobs", CLI_INT, &is.jobs, 1, 1024, "N",
             "processes at a time, of all but the experiment (one a core)"},
     };

@@ -11,6 +11,9 @@ int bilateral_check(const struct bilateral_options *o, int64_t approaches);
 /* Over fingers and hands; over k and b. */
 int bilateral_hands(const struct bilateral_options *o);
 int bilateral_crisp(const struct bilateral_options *o);
+/* Every scene, finger, speed and link, so many seeds; networks: recorded ones, commas between, or
+ * NULL. */
+int bilateral_contacts(const struct bilateral_options *o, int64_t seeds, const char *networks);
 /* A hand in the system before, and in this box. */
 int bilateral_original(const struct bilateral_options *o);
 

@@ -175,6 +175,7 @@ struct account {
     int counted;
     int near, met; /* 0 stands for d_lim; told of while free */
     uint32_t late_n;
+    int told;      /* of this object, on end */
     int64_t ahead; /* q_lim - q at the freeze */
 };
 
@@ -207,6 +208,9 @@ static void account_tell(struct account *a, const struct exh_plane *p, uint32_t 
         a->seen_far = 0;
         a->counted = 0;
     }
+    a->told = p->kind == EXH_PLANE_HIT && age <= 100
+                  ? 1 + (a->told > 0 && a->now.object == p->object)
+                  : 0;
     a->now = *p;
     a->age = age;
 }
@@ -269,7 +273,10 @@ static int32_t account_step(struct account *a, const struct exh_precontact_par *
         a->ahead = (int64_t)a->lim - in->pos_m_q30;
         a->held = a->now;
         a->seen_far = 0;
-    } else if (!a->counted && a->met && in->vel_mps_q27 > 1342177) { /* 0.01 m/s */
+    } else if (!a->counted && a->met && in->vel_mps_q27 > 1342177 && /* 0.01 m/s */
+               a->told < 2) {
+        a->lim = INT32_MAX; /* until it is told again */
+    } else if (!a->counted && a->met && in->vel_mps_q27 > 1342177 && par->scale_q24 <= 2 << 24) {
         a->frozen = 1;
         a->near = 0;
         a->frozen_n++;

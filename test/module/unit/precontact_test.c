@@ -385,6 +385,8 @@ static void late_at(int32_t z_m_q30, int32_t vel_mps_q27)
     tell(floor_plane);
     in.vel_mps_q27 = vel_mps_q27;
     at(z_m_q30);
+    tell(floor_plane);
+    at(z_m_q30);
 }
 
 TEST(late_is_at_the_true_place_and_slow)
@@ -641,7 +643,7 @@ TEST(state_round_trip)
     s.ignored_n = 7;
     exh_precontact_serialize(&c, &s);
     n = c.at;
-    CHECK_EQ_I64(n, 8 + 12 + 2 * 23 + 32 + 1 + 15);
+    CHECK_EQ_I64(n, 8 + 12 + 2 * 23 + 32 + 1 + 16);
     c = exh_bytes_reader(buf, n);
     exh_precontact_serialize(&c, &back);
     CHECK(exh_bytes_ok(&c), "reads");

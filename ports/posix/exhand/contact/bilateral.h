@@ -24,8 +24,9 @@ struct bilateral_result {
     struct bilateral_contact *contact;
     int contacts;
     double stiffness_Npm, settle_s; /* pooled; median of those that settled */
-    int settled, missed, early;
-    double scale, touch_m;
+    int settled, missed, early, late;
+    double scale;
+    long refused; /* planes */
 };
 void bilateral_print_head(FILE *f);
 void bilateral_print(FILE *f, const struct bilateral_result *r);

@@ -23,13 +23,14 @@ static void judge(
     const int n = bilateral_judge(r, f, out->contact, BILATERAL_CONTACTS_MAX);
     out->finger = f;
     out->contacts = n < BILATERAL_CONTACTS_MAX ? n : BILATERAL_CONTACTS_MAX;
-    out->touch_m = r->finger[f].touch_m;
+    out->refused = r->finger[f].refused;
     out->scale = r->finger[f].scale > 0 ? r->finger[f].scale : 1;
     for (int i = 0; i < out->contacts; i++) {
         const struct bilateral_contact *c = &out->contact[i];
         if (c->settle_s >= 0) { settle[out->settled++] = c->settle_s; }
         out->missed += c->missed;
         out->early += c->early;
+        out->late += c->late;
     }
     qsort(settle, (size_t)out->settled, sizeof settle[0], by_size);
     out->settle_s = out->settled ? settle[out->settled / 2] : 0;

@@ -29,13 +29,22 @@ void bilateral_print_head(FILE *f)
                "       N/m\n");
 }
 
-static const char *remark(const struct bilateral_contact *c, int nothing_there)
+/* What was odd about it, or why nothing was felt. */
+static void remark(FILE *f, const struct bilateral_contact *c, long refused)
 {
-    return nothing_there && c->t_s <= 0 ? "  nothing in its way"
-           : c->missed                  ? "  missed"
-           : c->early                   ? "  early"
-           : c->frozen                  ? ""
-                                        : "  no plane in time";
+    if (c->t_s > 0) {
+        if (c->late) { fprintf(f, "  late: %.1f mm inside", 1e3 * c->late_m); }
+        fputs(c->nothing ? "  nothing is there" : c->early ? "  early" : "", f);
+    } else if (!c->missed) {
+        fputs("  nothing in its way", f);
+    } else if (c->around) {
+        fputs("  missed: it was inside when its plane came, and rested", f);
+    } else if (refused > 0) {
+        fprintf(f, "  missed: %ld planes refused", refused);
+    } else {
+        fputs("  missed: no plane in time", f);
+    }
+    fputc('\n', f);
 }
 
 void bilateral_print(FILE *f, const struct bilateral_result *r)
@@ -48,11 +57,11 @@ void bilateral_print(FILE *f, const struct bilateral_result *r)
         number(f, 7, 3, c->speed_mps, there);
         number(f, 8, 1, 1e3 * c->settle_s, c->settle_s >= 0);
         number(f, 8, 1, 1e3 * c->rest_s, c->rest_s >= 0);
-        number(f, 7, 2, 1e3 * c->off_m, there && r->touch_m >= 0);
+        number(f, 7, 2, 1e3 * c->off_m, there && !isnan(c->off_m));
         number(f, 6, 2, c->f_max_N, 1);
         number(f, 8, 2, c->held_N, there);
         number(f, 10, 0, c->stiffness_Npm, c->stiffness_Npm > 0);
-        fprintf(f, "%s\n", remark(c, r->touch_m < 0));
+        remark(f, c, r->refused);
     }
 }
 
@@ -61,38 +70,48 @@ static void beside(
 {
     fprintf(f, "  %-34s", what);
     number(f, 9, digits, ours, ours > 0);
-    fprintf(f, " %-4s paper %9.*f\n", unit, digits, paper);
+    fprintf(f, " %-4s", unit);
+    if (paper > 0) { fprintf(f, " paper %9.*f", digits, paper); }
+    fputc('\n', f);
 }
 
 void bilateral_print_paper(FILE *f, const struct bilateral_result *r, int n, double local_Npm)
 {
+    const int papers = local_Npm > 0; /* its wall, at given k and b */
     for (int i = 0; i < n; i++) {
-        fprintf(f, "\n%s, %s: %d approaches, %d missed, %d early, %d settled\n", r[i].speed->name,
-            bilateral_finger_name[r[i].finger], r[i].contacts, r[i].missed, r[i].early,
-            r[i].settled);
-        beside(f, "settled within 5 % of F_mon held", 1e3 * r[i].settle_s, 1e3 * PAPER_SETTLING_S,
-            "ms", 1);
-        beside(f, "stiffness, all approaches", r[i].stiffness_Npm, PAPER_STIFFNESS_NPM, "N/m", 0);
-        beside(f, "bilateral / local stiffness", local_Npm > 0 ? r[i].stiffness_Npm / local_Npm : 0,
-            PAPER_STIFFNESS_NPM / PAPER_LOCAL_NPM, "", 3);
+        fprintf(f, "\n%s, %s: %d approaches, %d missed, %d early, %d late, %d settled\n",
+            r[i].speed->name, bilateral_finger_name[r[i].finger], r[i].contacts, r[i].missed,
+            r[i].early, r[i].late, r[i].settled);
+        beside(f, "settled within 5 % of F_mon held", 1e3 * r[i].settle_s,
+            papers ? 1e3 * PAPER_SETTLING_S : 0, "ms", 1);
+        beside(f, "stiffness, all approaches", r[i].stiffness_Npm, papers ? PAPER_STIFFNESS_NPM : 0,
+            "N/m", 0);
+        if (papers) {
+            beside(f, "bilateral / local stiffness", r[i].stiffness_Npm / local_Npm,
+                PAPER_STIFFNESS_NPM / PAPER_LOCAL_NPM, "", 3);
+        }
+    }
+    fputc('\n', f);
+    if (papers) {
+        fprintf(f,
+            "Local: ten falls of 0.5 kg at the same rate and gains, %.0f N/m (paper %.0f).\n",
+            local_Npm, PAPER_LOCAL_NPM);
     }
     fprintf(f,
-        "\nLocal: ten falls of 0.5 kg at the same rate and gains, %.0f N/m (paper %.0f).\n"
         "settled: F_mon stays within 5 %% of its mean over the last 0.2 s of the hold; rest: "
         "position\n"
         "within 0.2 mm and F_mon within 1.5 N of it. place: q_lim less the string at which pad "
         "and\n"
         "object touch. No data of a hand in this device exist: finger and hand are guesses, "
         "and the\n"
-        "spread over them is wider than the distance to the paper.\n",
-        local_Npm, PAPER_LOCAL_NPM);
+        "spread over them is wider than the distance to the paper.\n");
 }
 
 void bilateral_csv_head(FILE *f)
 {
     fprintf(f,
         "speed,finger,approach,t_s,speed_m_per_s,settle_s,rest_s,place_m,f_des_max_n,f_mon_held_n,"
-        "stiffness_n_per_m,frozen,missed,early\n");
+        "stiffness_n_per_m,frozen,missed,early,late_m\n");
 }
 
 static void cell(FILE *f, double v, int there)
@@ -111,11 +130,13 @@ void bilateral_csv(FILE *f, const struct bilateral_result *r)
         cell(f, c->speed_mps, there);
         cell(f, c->settle_s, c->settle_s >= 0);
         cell(f, c->rest_s, c->rest_s >= 0);
-        cell(f, c->off_m, there && r->touch_m >= 0);
+        cell(f, c->off_m, there && !isnan(c->off_m));
         cell(f, c->f_max_N, 1);
         cell(f, c->held_N, there);
         cell(f, c->stiffness_Npm, c->stiffness_Npm > 0);
-        fprintf(f, ",%d,%d,%d\n", c->frozen, c->missed, c->early);
+        fprintf(f, ",%d,%d,%d", c->frozen, c->missed, c->early);
+        cell(f, c->late_m, c->late);
+        fputc('\n', f);
     }
 }
 
