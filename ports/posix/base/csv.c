@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/csv.h"
 
+#include "base/columns.h"
 #include "base/logfile.h"
 #include "base/option.h"
-#include "base/param.h"
 
 #include "exhand/run/log.h"
 
@@ -64,44 +64,31 @@ static int next_row(struct walk *w)
 
 /* --- as text --- */
 
-static uint32_t columns(const struct exh_signal_table *t, unsigned what)
-{
-    /* the first group is the paper's */
-    return what & CSV_ALL ? exh_signal_count(t) : t->group[0].rows;
-}
-
-static void header_line(FILE *to, const struct exh_signal_table *t, uint32_t n, int glove)
+static void header_line(FILE *to, const struct columns *c, int glove)
 {
     fprintf(to, "t_s");
-    for (uint32_t i = 0; i < n; i++) {
-        const struct exh_signal *r = exh_signal_at(t, i, NULL);
-        fprintf(to, ",%s%s%s", r->name, r->unit[0] ? "_" : "", r->unit);
-    }
+    columns_names(to, c);
     for (int i = 0; glove && i < EXH_GLOVE_SENSORS; i++) { fprintf(to, ",raw%d", i); }
     fputc('\n', to);
 }
 
-static void line(FILE *to, const struct exh_signal_table *t, uint32_t n, double t_s,
-    const int32_t *v, const int16_t *raw)
+static void line(
+    FILE *to, const struct columns *c, double t_s, const int32_t *v, const int16_t *raw)
 {
     fprintf(to, "%.9f", t_s);
-    for (uint32_t i = 0; i < n; i++) {
-        fprintf(to, ",%.9g", cli_signal_value(exh_signal_at(t, i, NULL), v[i]));
-    }
+    columns_values(to, c, v);
     for (int i = 0; raw && i < EXH_GLOVE_SENSORS; i++) { fprintf(to, ",%d", raw[i]); }
     fputc('\n', to);
 }
 
-static int write_rows(struct walk *w, FILE *to)
+static int write_rows(struct walk *w, const struct columns *c, FILE *to)
 {
     const struct exh_scene *sc = w->log->scene;
     const struct exh_period T = w->log->header.T;
-    const uint32_t n = columns(sc->signals, w->what);
     const int glove = sc->read_glove && (w->what & CSV_ALL); /* the codes, too */
-    header_line(to, sc->signals, n, glove);
+    header_line(to, c, glove);
     while (next_row(w)) {
-        line(to, sc->signals, n, (double)w->tick * T.num / T.den, sc->signal,
-            glove ? w->in.glove.raw : NULL);
+        line(to, c, (double)w->tick * T.num / T.den, sc->signal, glove ? w->in.glove.raw : NULL);
     }
     return ferror(to) || fflush(to) != 0;
 }
@@ -132,7 +119,8 @@ static int survey(struct logfile *l, unsigned what)
     return 2;
 }
 
-static int convert(struct logfile *l, const char *to_path, unsigned what)
+static int convert(
+    struct logfile *l, const char *to_path, unsigned what, const struct columns *columns)
 {
     struct walk w = {.log = l, .what = what};
     FILE *to = to_path ? fopen(to_path, "w") : stdout;
@@ -141,24 +129,29 @@ static int convert(struct logfile *l, const char *to_path, unsigned what)
         cli_complain("%s: %s", to_path, strerror(errno));
         return 2;
     }
-    err = write_rows(&w, to);
+    err = write_rows(&w, columns, to);
     if (to_path && fclose(to) != 0) { err = 1; }
     if (err && to_path) { cli_complain("%s: %s", to_path, strerror(errno)); }
     return err | logfile_complain(l);
 }
 
-int csv_write(const char *log_path, const char *to_path, unsigned what)
+int csv_write(const char *log_path, const char *to_path, unsigned what, int finger)
 {
     struct logfile l;
+    struct columns columns;
     int err;
     if (to_path && same_file(log_path, to_path)) {
         cli_complain("%s: is the log itself: choose another file", to_path);
         return 2;
     }
     err = logfile_open(&l, log_path);
+    if (err == 0) {
+        err = columns_choose(
+            &columns, l.scene, l.params, l.params_len, (what & CSV_ALL) != 0, finger, log_path);
+    }
     if (err == 0) { err = survey(&l, what); }
     if (err < 2) {
-        const int wrote = convert(&l, to_path, what);
+        const int wrote = convert(&l, to_path, what, &columns);
         err = wrote > err ? wrote : err;
     }
     logfile_close(&l);

@@ -110,11 +110,11 @@ replays() # LOG
 # nine LOG TICKS: t and the eight signals of the index finger from its first freeze on
 nine()
 {
-    "$exhand" csv --all "$1" | awk -F, -v ticks="$2" '
-        NR == 1 { for (i = NF; i > 0; i--) if ($i == "frozen") bits[n++] = i; next }
+    "$exhand" csv --all --finger index "$1" | awk -F, -v ticks="$2" '
+        NR == 1 { for (i = 1; i <= NF; i++) if ($i == "frozen") bits = i; next }
         NR > ticks + 1 { exit }
-        $(bits[n - 2]) % 2 { on = 1 } # it stands
-        on { print $1 "," $10 "," $11 "," $12 "," $13 "," $14 "," $15 "," $16 "," $17 }'
+        $bits % 2 { on = 1 } # it stands
+        on { print $1 "," $2 "," $3 "," $4 "," $5 "," $6 "," $7 "," $8 "," $9 }'
 }
 
 start_world()

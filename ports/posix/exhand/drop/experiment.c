@@ -69,7 +69,7 @@ struct table2_result drop_shown(const struct drop_options *o, int i)
     if (fclose(c.board.log) != 0 || r.lost) {
         cli_complain("%s: can't be written: %lu records lost", log, r.lost);
         r.error = 1;
-    } else if (r.done && csv_write(log, csv, CSV_FALLS) != 0) {
+    } else if (r.done && csv_write(log, csv, CSV_FALLS, CSV_IN_USE) != 0) {
         r.error = 1;
     }
     return r;
