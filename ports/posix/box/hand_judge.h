@@ -5,6 +5,9 @@
 
 #include "box/hand.h"
 
+#define PAPER_RATE_HZ       2000u
+#define PAPER_K_NPM         20000.0
+#define PAPER_B_NSPM        60.0
 #define PAPER_SETTLING_S    0.025
 #define PAPER_STIFFNESS_NPM 41250.0
 #define PAPER_LOCAL_NPM     50004.0

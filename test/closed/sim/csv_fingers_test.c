@@ -126,8 +126,7 @@ TEST(a_finger_that_there_is_not_is_refused)
     CHECK(s.status == 0, "%s", s.err);
     (void)log_of_two_fingers(dir);
     for (size_t i = 0; i < LEN(row); i++) {
-        said(
-            &s, dir, cli_csv, WORDS("csv", said_path(dir, row[i].log), "--finger", row[i].finger));
+        said(&s, dir, cli_csv, WORDS("csv", said_path(dir, row[i].log), "--finger", row[i].finger));
         CHECK(s.status == 2 && strstr(s.err, row[i].says) && s.out[0] == '\0', "row %zu: %d: %s", i,
             s.status, s.err);
     }

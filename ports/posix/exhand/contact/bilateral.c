@@ -148,11 +148,21 @@ static int refuse(const struct bilateral_options *o)
     return 0;
 }
 
+/* What --set asks for holds in the run, whatever else was asked for: so it is what is said. */
+static void gain(const struct bilateral_options *o, const char *name, double paper, double *value)
+{
+    if (*value < 0) { *value = paper; }
+    for (int i = 0; i < o->settings; i++) {
+        if (strcmp(o->setting[i].name, name) == 0) { *value = o->setting[i].value; }
+    }
+}
+
 /* Of walls; a scene has its own. */
 static void own_gains(struct bilateral_options *o)
 {
-    if (o->scene == NULL && o->run.k_Npm < 0) { o->run.k_Npm = 20000; }
-    if (o->scene == NULL && o->run.b_Nspm < 0) { o->run.b_Nspm = 60; }
+    if (o->scene) { return; }
+    gain(o, "mat_k", PAPER_K_NPM, &o->run.k_Npm);
+    gain(o, "mat_b", PAPER_B_NSPM, &o->run.b_Nspm);
 }
 
 static int go(struct bilateral_options *o, double rate_Hz, const struct bilateral_study *study)

@@ -41,7 +41,7 @@ static double local_Npm(const struct bilateral_options *o)
 {
     struct run_cfg c = {.rate_Hz = o->run.rate_Hz, .k_Npm = o->run.k_Npm, .b_Nspm = o->run.b_Nspm};
     struct table2_result r;
-    if (c.k_Npm < 0 || c.b_Nspm < 0) { return 0; }
+    if (o->udp || c.k_Npm < 0 || c.b_Nspm < 0) { return 0; } /* of what, is not known here */
     c.board = posix_config_default();
     c.board.device = o->run.board.device;
     c.board.seed = (uint64_t)o->seed;
@@ -191,7 +191,7 @@ int bilateral_experiment(const struct bilateral_options *o)
     }
     if (err == 0 && n > 0) {
         bilateral_print_advice(stdout, o, result, n);
-        bilateral_print_paper(stdout, result, n, local);
+        bilateral_print_paper(stdout, o, result, n, local);
     }
     if (err == 0 && o->out) {
         csv = bilateral_out_file(o->out, "contacts.csv");

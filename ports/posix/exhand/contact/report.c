@@ -65,38 +65,58 @@ void bilateral_print(FILE *f, const struct bilateral_result *r)
     }
 }
 
+/* paper: 0 where it measured no such thing. */
 static void beside(
     FILE *f, const char *what, double ours, double paper, const char *unit, int digits)
 {
     fprintf(f, "  %-34s", what);
     number(f, 9, digits, ours, ours > 0);
-    fprintf(f, " %-4s", unit);
-    if (paper > 0) { fprintf(f, " paper %9.*f", digits, paper); }
-    fputc('\n', f);
+    if (paper > 0) {
+        fprintf(f, " %-4s paper %9.*f\n", unit, digits, paper);
+    } else {
+        fprintf(f, "%s%s\n", unit[0] ? " " : "", unit);
+    }
 }
 
-void bilateral_print_paper(FILE *f, const struct bilateral_result *r, int n, double local_Npm)
+/* The paper's wall is flat, hard, rendered at these gains and this rate. */
+static int is_papers_wall(const struct bilateral_options *o)
 {
-    const int papers = local_Npm > 0; /* its wall, at given k and b */
+    return o->scene == NULL && o->udp == NULL && o->run.rate_Hz == PAPER_RATE_HZ &&
+           o->run.k_Npm == PAPER_K_NPM && o->run.b_Nspm == PAPER_B_NSPM;
+}
+
+/* Its figures are of one speed. */
+static int is_papers_run(const struct bilateral_options *o, const struct bilateral_result *r)
+{
+    return is_papers_wall(o) && o->record == NULL && r->speed->mps == sim_path_speed("natural");
+}
+
+static void print_local(FILE *f, const struct bilateral_options *o, double local_Npm)
+{
+    fputc('\n', f);
+    if (local_Npm <= 0) { return; }
+    fprintf(f, "Local: ten falls of 0.5 kg at the same rate and gains, %.0f N/m", local_Npm);
+    if (is_papers_wall(o)) { fprintf(f, " (paper %.0f)", PAPER_LOCAL_NPM); }
+    fprintf(f, ".\n");
+}
+
+void bilateral_print_paper(FILE *f, const struct bilateral_options *o,
+    const struct bilateral_result *r, int n, double local_Npm)
+{
     for (int i = 0; i < n; i++) {
+        const int same = is_papers_run(o, &r[i]);
         fprintf(f, "\n%s, %s: %d approaches, %d missed, %d early, %d late, %d settled\n",
             r[i].speed->name, bilateral_finger_name[r[i].finger], r[i].contacts, r[i].missed,
             r[i].early, r[i].late, r[i].settled);
         beside(f, "settled within 5 % of F_mon held", 1e3 * r[i].settle_s,
-            papers ? 1e3 * PAPER_SETTLING_S : 0, "ms", 1);
-        beside(f, "stiffness, all approaches", r[i].stiffness_Npm, papers ? PAPER_STIFFNESS_NPM : 0,
+            same * 1e3 * PAPER_SETTLING_S, "ms", 1);
+        beside(f, "stiffness, all approaches", r[i].stiffness_Npm, same * PAPER_STIFFNESS_NPM,
             "N/m", 0);
-        if (papers) {
-            beside(f, "bilateral / local stiffness", r[i].stiffness_Npm / local_Npm,
-                PAPER_STIFFNESS_NPM / PAPER_LOCAL_NPM, "", 3);
-        }
+        if (local_Npm <= 0) { continue; }
+        beside(f, "bilateral / local stiffness", r[i].stiffness_Npm / local_Npm,
+            same * PAPER_STIFFNESS_NPM / PAPER_LOCAL_NPM, "", 3);
     }
-    fputc('\n', f);
-    if (papers) {
-        fprintf(f,
-            "Local: ten falls of 0.5 kg at the same rate and gains, %.0f N/m (paper %.0f).\n",
-            local_Npm, PAPER_LOCAL_NPM);
-    }
+    print_local(f, o, local_Npm);
     fprintf(f,
         "settled: F_mon stays within 5 %% of its mean over the last 0.2 s of the hold; rest: "
         "position\n"

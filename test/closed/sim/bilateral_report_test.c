@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT */
+/* What exhand bilateral says of itself beside the paper: only what was measured, and the paper's
+ * figures only beside the same. */
+#include "said.h"
+
+#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+
+#define SCENES  "ports/posix/world/scenes/"
+#define NATURAL "bilateral", "--speed", "natural", "--approaches", "1"
+
+static long times(const char *text, const char *word)
+{
+    long n = 0;
+    for (const char *at = text; (at = strstr(at, word)) != NULL; at++) { n++; }
+    return n;
+}
+
+/* The paper has one wall, at one rate and one pair of gains, and a contact at one speed. */
+TEST(the_papers_figures_stand_beside_the_same_alone)
+{
+    static const struct {
+        const char *option, *value;
+        long beside, local; /* lines with a figure of the paper; with any stiffness of falls */
+        const char *says;
+    } row[] = {
+        {"--seed", "2", 4, 1, "N/m (paper 50004)."},
+        {"--link", "delay=0.01", 4, 1, "N/m (paper 50004)."},
+        {"--speed", "slow", 1, 1, "N/m (paper 50004)."},
+        {"--speed", "0.5", 1, 1, "N/m (paper 50004)."},
+        {"--rate", "500", 0, 1, "gains, 8652 N/m.\n"},
+        {"--k", "5000", 0, 1, "gains, 10408 N/m.\n"},
+        {"--set", "mat_k=5000", 0, 1, "gains, 10408 N/m.\n"},
+        {"--set", "mat_b=20", 0, 1, "2000 Hz, k 20000 N/m, b 20 Ns/m"},
+        {"--scene", SCENES "rehabilitation.world", 0, 0, "own k and b"},
+        {"--scene", SCENES "collision.world", 0, 0, "own k and b"},
+    };
+    const char *dir = said_dir();
+    static struct said s;
+    for (size_t i = 0; i < LEN(row); i++) {
+        said(&s, dir, cli_bilateral, WORDS(NATURAL, row[i].option, row[i].value));
+        CHECK(s.status == 0, "row %zu: %d: %s", i, s.status, s.err);
+        CHECK_EQ_I64(times(s.out, "paper "), row[i].beside);
+        CHECK_EQ_I64(times(s.out, "Local: ten falls"), row[i].local);
+        CHECK_EQ_I64(times(s.out, "bilateral / local"), row[i].local);
+        CHECK(strstr(s.out, row[i].says) && !strstr(s.out, " 0 N/m"), "row %zu: %s", i, s.out);
+        CHECK(strstr(s.out, "stiffness, all approaches"), "row %zu: %s", i, s.out);
+    }
+    said_clean(dir);
+}
+
+TEST_MAIN("bilateral_report", the_papers_figures_stand_beside_the_same_alone);
