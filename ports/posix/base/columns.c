@@ -2,6 +2,7 @@
 #include "base/columns.h"
 
 #include "base/names.h"
+#include "base/none.h"
 #include "base/option.h"
 #include "base/param.h"
 
@@ -94,7 +95,6 @@ void columns_names(FILE *to, const struct columns *c)
 void columns_values(FILE *to, const struct columns *c, const int32_t *v)
 {
     for (uint32_t i = 0; i < c->n; i++) {
-        const struct exh_signal *row = exh_signal_at(c->table, c->at[i], NULL);
-        fprintf(to, ",%.9g", cli_signal_value(row, v[c->at[i]]));
+        none_or_cell(to, exh_signal_at(c->table, c->at[i], NULL), v[c->at[i]]);
     }
 }

@@ -26,6 +26,7 @@ int columns_choose(struct columns *c, const struct exh_scene *sc, const uint8_t 
 
 /* NAME_UNIT, and _FINGER or _INDEX behind it where there are several; a comma before each. */
 void columns_names(FILE *to, const struct columns *c);
+/* A comma and nothing where there is none: none.h. */
 void columns_values(FILE *to, const struct columns *c, const int32_t *v);
 
 #endif

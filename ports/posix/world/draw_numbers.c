@@ -2,6 +2,8 @@
 /* Numbers on the screen: how the link is, and d, q_lim, F of every finger. */
 #include "draw.h"
 
+#include "exhand/precontact.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -50,6 +52,12 @@ static const char *doing(const struct draw_moment *m, int f, int *colour)
     return m->out.plane[f].kind == EXH_PLANE_HIT ? "near" : "free";
 }
 
+/* In mm; nothing where there is none. */
+static void way(struct draw_list *l, int x, int y, int32_t m_q30, int32_t none)
+{
+    if (m_q30 != none) { say(l, x, y, WHITE, 1, "%.2f", m_q30 * (1000 * 0x1p-30)); }
+}
+
 static void finger_row(const struct draw_moment *m, struct draw_list *l, int f, int y)
 {
     const double force = m->in.force_N_q20[f] * 0x1p-20;
@@ -60,8 +68,8 @@ static void finger_row(const struct draw_moment *m, struct draw_list *l, int f, 
     say(l, 84, y, colour, 0, "%s", what);
     if (!on) { return; }
     if (m->out.plane[f].kind == EXH_PLANE_HIT) {
-        say(l, 206, y, WHITE, 1, "%.2f", m->in.d_m_q30[f] * (1000 * 0x1p-30));
-        say(l, 292, y, WHITE, 1, "%.2f", m->in.q_lim_m_q30[f] * (1000 * 0x1p-30));
+        way(l, 206, y, m->in.d_m_q30[f], INT32_MIN);
+        way(l, 292, y, m->in.q_lim_m_q30[f], EXH_PRECONTACT_NO_LIM);
     }
     say(l, 346, y, WHITE, 1, "%.2f", force);
     rect(l, 356, y + 3, wide > 70 ? 70 : wide, 11, 0.93F, 0.10F, 0.10F, 1);

@@ -2,6 +2,8 @@
 /* A trace of the controller's outputs, asked for until it is answered, as CSV: a line a frame. */
 #include "link_part.h"
 
+#include "base/none.h"
+
 #include "exhand/error.h"
 
 #include <errno.h>
@@ -116,8 +118,7 @@ static void frame(struct link_trace *t, uint32_t number, const struct exh_wire_f
 {
     fprintf(t->file, "%lu,%lu", (unsigned long)number, (unsigned long)f->tick);
     for (unsigned i = 0; i < t->signals; i++) {
-        const struct exh_signal *row = exh_signal_at(t->table, t->ask.index[i], NULL);
-        fprintf(t->file, ",%.9g", (double)f->raw[i] / (double)(INT64_C(1) << row->frac));
+        none_or_cell(t->file, exh_signal_at(t->table, t->ask.index[i], NULL), f->raw[i]);
     }
     fputc('\n', t->file);
     t->frames++;

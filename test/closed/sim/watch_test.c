@@ -146,6 +146,38 @@ TEST(lost_pieces_are_told)
     said_clean(dir);
 }
 
+/* Of a hand before no world, or before one that is known from the third tick on. */
+static const char *a_log_of_a_hand(const char *world_from)
+{
+    static char log[64];
+    snprintf(log, sizeof log, "%s/bilateral_natural.exh", dir);
+    said(&s, dir, cli_bilateral,
+        WORDS("bilateral", "--speed", "natural", "--approaches", "1", "--world-from", world_from,
+            "--out", dir));
+    CHECK(s.status == 0, "%s", s.err);
+    return log;
+}
+
+/* No plane is no distance of -2 m, and no contact none at 2 m. */
+TEST(what_there_is_none_of_is_left_out)
+{
+    const char *log;
+    int lines, same;
+    dir = said_dir();
+    log = a_log_of_a_hand("0");
+    said(&s, dir, cli_csv, WORDS("csv", log, "--out", said_path(dir, "c.csv")));
+    CHECK_EQ_I64(s.status, 0);
+    start("--hz", "100");
+    send_file(log, 0);
+    end();
+    CHECK(s.status == 0, "%d %s", s.status, s.err);
+    same = found_in(said_path(dir, "w.csv"), said_path(dir, "c.csv"), &lines);
+    CHECK(same == lines && lines > 100, "%d of %d", same, lines);
+    CHECK(strstr(s.out, "  d[1] -  q_lim[1] -\n") && !strstr(s.out, "-2 m"), "%.999s", s.out);
+    CHECK(strstr(s.out, "  d[1] -0."), "nor is it told when there is one: %.999s", s.out);
+    said_clean(dir);
+}
+
 /* Width and height of a PNG; 0: it is none. */
 static unsigned png_size(const char *path, unsigned *height)
 {
@@ -245,6 +277,32 @@ TEST(a_terminal_is_drawn_over)
     said_clean(dir);
 }
 
+TEST(what_there_is_none_of_leaves_its_place_empty)
+{
+    static char text[262144];
+    const char *row;
+    size_t empty;
+    if (terminal_open(&tty) < 0) { return; }
+    dir = said_dir();
+    watch = watch_on_terminal;
+    start("--signals", "d,c");
+    watch = cli_watch;
+    text[0] = '\0';
+    send_file(a_log_of_a_hand("100"), 0);
+    for (int i = 0; i < 500 && strstr(text, "c[1] ") == NULL; i++) {
+        pause_ms(10);
+        terminal_read(&tty, text, sizeof text);
+    }
+    kill(watcher, SIGINT);
+    end();
+    row = strstr(text, "  d[1] ");
+    CHECK(row != NULL, "%s", text);
+    empty = strspn(row + 6, " ");
+    CHECK(empty >= 34 && row[6 + empty] == '\033', "%.80s", row);
+    terminal_close(&tty);
+    said_clean(dir);
+}
+
 TEST(silence_is_told_with_its_age)
 {
     dir = said_dir();
@@ -296,5 +354,6 @@ TEST(bad_usage)
 }
 
 TEST_MAIN("watch", samples_are_the_logs_values, lost_pieces_are_told, a_picture_is_drawn,
+    what_there_is_none_of_is_left_out, what_there_is_none_of_leaves_its_place_empty,
     a_terminal_is_drawn_over, silence_is_told_with_its_age, another_table_is_refused_by_name,
     bad_usage);

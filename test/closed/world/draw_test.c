@@ -137,6 +137,10 @@ TEST(numbers_are_on_the_screen)
     CHECK(said("-12.34") && said("56.78") && said("7.25"), "d, q_lim, F");
     CHECK(
         said("400 frames/s") && said("age 3.3 ms") && said("lost 17") && !said("no link"), "link");
+    m.in.d_m_q30[1] = INT32_MIN;
+    m.in.q_lim_m_q30[2] = INT32_MAX;
+    world_draw(w, &m, &l);
+    CHECK(!said("2000.00") && said("56.78"), "what there is none of is a number");
     m.linked = 0;
     m.paused = m.help = 1;
     world_draw(w, &m, &l);

@@ -384,6 +384,7 @@ static void send_trace(
         p.u.trace.frame[i].tick = 100 + 3 * (first + i);
         p.u.trace.frame[i].raw[0] = -3 * (1 << 8);
         p.u.trace.frame[i].raw[1] = 5;
+        p.u.trace.frame[i].raw[2] = INT32_MIN;
     }
     n = exh_wire_encode(&c->tx, &p, 1234, buf, sizeof buf);
     CHECK(n > 0 && sendto(c->fd, buf, (size_t)n, 0, (struct sockaddr *)&c->to, sizeof c->to) == n,
@@ -394,8 +395,11 @@ static const struct exh_signal traced_rows[] = {
     {1, 10, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "q", "m", ""},
     {2, 0, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "c", "", ""}};
 static const struct exh_signal box_row = {3, 0, EXH_WHEN_OUTPUT, 0, 5, 0, "state", "", ""};
-static const struct exh_signal_group traced_groups[] = {{traced_rows, 2, 3}, {&box_row, 1, 1}};
-static const struct exh_signal_table traced = {traced_groups, 2};
+static const struct exh_signal d_row = {/* the scene's: INT32_MIN is no plane */
+    0x8707, 30, EXH_WHEN_OUTPUT, INT32_MIN, INT32_MAX, 0, "d", "m", ""};
+static const struct exh_signal_group traced_groups[] = {
+    {traced_rows, 2, 3}, {&box_row, 1, 1}, {&d_row, 1, 1}};
+static const struct exh_signal_table traced = {traced_groups, 3};
 
 static int open_trace(const char *path, const char *signals, char why[300])
 {
@@ -419,7 +423,8 @@ static void read_all(const char *path, char *to, size_t cap_B)
 TEST(a_trace_is_asked_for_and_written)
 {
     static const char want[] =
-        "number,tick,q[1]_m,state\n7,121,-0.75,5\n8,124,-0.75,5\n10,130,-0.75,5\n0,100,-0.75,5\n";
+        "number,tick,q[1]_m,state,d_m\n7,121,-0.75,5,\n8,124,-0.75,5,\n10,130,-0.75,5,\n"
+        "0,100,-0.75,5,\n";
     char path[] = "/tmp/exhand-trace-XXXXXX", why[300] = "", text[400];
     struct exh_wire_state s;
     struct controller c;
@@ -430,7 +435,7 @@ TEST(a_trace_is_asked_for_and_written)
     heard[0] = '\0';
     open_world(1);
     world.say = listen_to;
-    CHECK(open_trace(path, "q[1],state", why) == 0, "%s", why);
+    CHECK(open_trace(path, "q[1],state,d", why) == 0, "%s", why);
     open_controller(&c, 2);
     say(&c, EXH_WIRE_HELLO, 0);
     for (int64_t t_us = 0; t_us < 250000; t_us += 10000) { (void)frame(&s, t_us); }

@@ -13,6 +13,8 @@ import struct
 import sys
 
 LIMITS, TICK = 0x14, 0x08
+# "There is none", blank in the CSV: -2**31 and 2**31 - 1, and as floats -2 m and 2 m.
+NONE = {1: (0x80000000, 0x7FFFFFFF), 3: (0xC0000000, 0x40000000)}
 reads = json.load(open(sys.argv[1]))
 rate = float(sys.argv[4])
 rows = [r for r in csv.DictReader(open(sys.argv[2])) if r["table"] == "input" and
@@ -28,7 +30,7 @@ with open(sys.argv[3]) as f:
         # behind the first tick, of 0 s, the head counts 1
         t = round(float(line[: line.index(",")]) * rate) + 1
         if t in wanted:
-            logged[t] = [float(v) for v in line.split(",")[1 : len(rows) + 1]]
+            logged[t] = [float(v) if v else None for v in line.split(",")[1 : len(rows) + 1]]
 
 
 def near(v, of, bits):
@@ -47,7 +49,9 @@ def is_of(t, table, at, values):
     for i in range(0, len(values) - 1, 2):
         a, w = at + i, values[i] << 16 | values[i + 1]
         k = (a & 0xFFF) // 2
-        if a >> 12 == 1:
+        if a >> 12 in NONE and row[k] is None:
+            good = w in NONE[a >> 12]
+        elif a >> 12 == 1:
             raw = w - (w >> 31 << 32)
             good = near(raw, row[k] * 2.0 ** frac[k], 32)
         elif a >> 12 == 3:

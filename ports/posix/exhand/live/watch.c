@@ -4,8 +4,8 @@
 
 #include "base/cli.h"
 #include "base/names.h"
+#include "base/none.h"
 #include "base/option.h"
-#include "base/param.h"
 #include "base/until.h"
 #include "posix.h"
 
@@ -82,8 +82,8 @@ static int csv_sample(const struct watch_box *b, int first)
         (unsigned long)b->tick, (unsigned)b->state, (unsigned long)b->faults,
         (unsigned long)b->present, (unsigned long)b->limits);
     for (uint32_t i = 0; i < w.pick.n; i++) {
-        const struct exh_signal *row = exh_signal_at(b->scene->signals, w.pick.index[i], NULL);
-        fprintf(w.file, ",%.9g", cli_signal_value(row, b->value[w.pick.index[i]]));
+        none_or_cell(w.file, exh_signal_at(b->scene->signals, w.pick.index[i], NULL),
+            b->value[w.pick.index[i]]);
     }
     fputc('\n', w.file);
     return ferror(w.file) || (!w.tty && fflush(w.file) != 0) ? csv_failed() : 0;

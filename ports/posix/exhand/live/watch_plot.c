@@ -3,7 +3,7 @@
 #include "live/watch.h"
 
 #include "base/option.h"
-#include "base/param.h"
+#include "base/none.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -69,8 +69,7 @@ int watch_plot_sample(const struct watch_box *b, const struct watch_pick *p)
     *to++ = now_s;
     *to++ = b->state;
     for (uint32_t i = 0; i < p->n; i++) {
-        *to++ = cli_signal_value(
-            exh_signal_at(b->scene->signals, p->index[i], NULL), b->value[p->index[i]]);
+        *to++ = none_or(exh_signal_at(b->scene->signals, p->index[i], NULL), b->value[p->index[i]]);
     }
     return 0;
 }

@@ -3,9 +3,10 @@
 #include "live/watch.h"
 
 #include "base/names.h"
-#include "base/param.h"
+#include "base/none.h"
 #include "base/until.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,7 +26,7 @@ void watch_view_sample(const struct watch_box *b, const struct watch_pick *p)
 {
     for (uint32_t i = 0; i < p->n; i++) {
         const struct exh_signal *row = exh_signal_at(b->scene->signals, p->index[i], NULL);
-        view.past[i][view.n % PAST] = cli_signal_value(row, b->value[p->index[i]]);
+        view.past[i][view.n % PAST] = none_or(row, b->value[p->index[i]]);
     }
     view.n++;
 }
@@ -41,12 +42,12 @@ static void rates(const struct watch_box *b)
     view.heard = b->heard;
 }
 
-/* From the least to the greatest of what it shows. */
+/* From the least to the greatest of what it shows; a gap where there was none. */
 static void spark(uint32_t i)
 {
     static const char *const step[] = {"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
     const unsigned n = view.n < PAST ? view.n : PAST;
-    double lo = view.past[i][0], hi = lo;
+    double lo = INFINITY, hi = -INFINITY;
     for (unsigned k = 0; k < n; k++) {
         const double v = view.past[i][k];
         if (v < lo) { lo = v; }
@@ -54,7 +55,8 @@ static void spark(uint32_t i)
     }
     for (unsigned k = view.n - n; k < view.n; k++) {
         const double v = view.past[i][k % PAST];
-        fputs(step[hi > lo ? (unsigned)((v - lo) / (hi - lo) * 7.999) : 0], stdout);
+        const unsigned high = hi > lo && v >= lo ? (unsigned)((v - lo) / (hi - lo) * 7.999) : 0;
+        fputs(isnan(v) ? " " : step[high], stdout);
     }
 }
 
@@ -115,8 +117,11 @@ void watch_view_draw(const struct watch_box *b, const struct watch_pick *p, cons
     for (uint32_t i = 0; b->scene && view.n && i < p->n; i++) {
         char name[WATCH_NAME_B];
         const struct exh_signal *row = watch_name(name, b->scene->signals, p->index[i]);
-        printf(
-            "  %-14s %14.6g %-10s ", name, cli_signal_value(row, b->value[p->index[i]]), row->unit);
+        if (none_is(row, b->value[p->index[i]])) {
+            printf("  %-14s %14s %-10s ", name, "", "");
+        } else {
+            printf("  %-14s %14.6g %-10s ", name, none_or(row, b->value[p->index[i]]), row->unit);
+        }
         if (sparks) { spark(i); }
         printf(LINE_END);
     }
@@ -135,8 +140,12 @@ void watch_view_line(const struct watch_box *b, const struct watch_pick *p)
     for (uint32_t i = 0; i < p->n; i++) {
         char name[WATCH_NAME_B];
         const struct exh_signal *row = watch_name(name, b->scene->signals, p->index[i]);
-        printf("  %s %.6g%s%s", name, cli_signal_value(row, b->value[p->index[i]]),
-            row->unit[0] ? " " : "", row->unit);
+        if (none_is(row, b->value[p->index[i]])) {
+            printf("  %s -", name);
+        } else {
+            printf("  %s %.6g%s%s", name, none_or(row, b->value[p->index[i]]),
+                row->unit[0] ? " " : "", row->unit);
+        }
     }
     printf("\n");
     fflush(stdout);
