@@ -222,6 +222,9 @@ int bilateral_stage(const struct bilateral_run_cfg *c)
     for (size_t i = 0; err == 0 && i < sizeof known / sizeof known[0]; i++) {
         err = cli_param_set(p, known[i].name, known[i].value);
     }
+    for (int i = 0; err == 0 && i < c->owns; i++) {
+        err = cli_param_set(p, c->own[i].name, c->own[i].value);
+    }
     if (err == 0 && c->k_Npm >= 0) { err = cli_param_set(p, "mat_k", c->k_Npm); }
     if (err == 0 && c->b_Nspm >= 0) { err = cli_param_set(p, "mat_b", c->b_Nspm); }
     if (err == 0) { err = run_image(&c->live, p); }

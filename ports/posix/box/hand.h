@@ -13,9 +13,11 @@
 
 struct bilateral_run_cfg {
     uint32_t rate_Hz;
-    struct posix_config board;         /* device, seed, log, exo (fingers, paths), line (ways) */
-    double k_Npm, b_Nspm;              /* of every material; < 0: the scene's own, over the link */
-    const struct run_setting *setting; /* further parameters, of all fingers */
+    struct posix_config board;     /* device, seed, log, exo (fingers, paths), line (ways) */
+    double k_Npm, b_Nspm;          /* of every material; < 0: the scene's own, over the link */
+    const struct run_setting *own; /* what the simulated hand needs other than the scene has it */
+    int owns;
+    const struct run_setting *setting; /* further parameters, of all fingers; behind an image */
     int settings;
     const struct exh_wire_param *want; /* what the world sets over the link */
     int wants;

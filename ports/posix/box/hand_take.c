@@ -17,14 +17,18 @@ const char *const bilateral_finger_name[BILATERAL_FINGERS] = {
 
 void bilateral_defaults(struct bilateral_options *o)
 {
-    static struct run_setting own = {"mat_f_max", 40};
+    static const struct run_setting own[] = {
+        {"mat_f_max", 40}, /* the paper has no limit but the drive's */
+        {"stuck_time", 0}, /* the simulated hand does not tremble, so it stands as a dead encoder */
+    };
     memset(o, 0, sizeof *o);
     o->seed = 1;
     o->approaches = 5;
     o->jobs = jobs_cores();
     o->link = "none";
     o->record_Hz = 100;
-    o->setting[o->settings++] = own; /* the paper has no limit but the drive's */
+    o->run.own = own;
+    o->run.owns = (int)(sizeof own / sizeof own[0]);
     o->run.board = posix_config_default();
     o->run.board.exo = sim_exo_default();
     o->run.board.exo.fingers = 1u << EXH_INDEX;

@@ -48,4 +48,40 @@ TEST(the_papers_figures_stand_beside_the_same_alone)
     said_clean(dir);
 }
 
-TEST_MAIN("bilateral_report", the_papers_figures_stand_beside_the_same_alone);
+/* All by default, of all fingers. A finger that presses for long and does not tremble is no dead
+ * encoder; whoever wants that found has it found. */
+TEST(all_fingers_come_to_their_end)
+{
+    const char *dir = said_dir();
+    static struct said s;
+    said(&s, dir, cli_bilateral, WORDS("bilateral", "--fingers", "all"));
+    CHECK(s.status == 0 && s.err[0] == '\0', "%d: %s", s.status, s.err);
+    CHECK_EQ_I64(times(s.out, ": 5 approaches, 0 missed, "), 15);
+    said(&s, dir, cli_bilateral,
+        WORDS(NATURAL, "--fingers", "all", "--device", "hold=6", "--set", "stuck_time=2000"));
+    CHECK(s.status == 1 && strstr(s.err, "the box stopped with faults 0x40: stuck"), "%d: %s",
+        s.status, s.err);
+    said(&s, dir, cli_bilateral, WORDS(NATURAL, "--fingers", "all", "--device", "hold=6"));
+    CHECK(s.status == 0 && s.err[0] == '\0', "%d: %s", s.status, s.err);
+    said(&s, dir, cli_run,
+        WORDS("run", "--scene", "bilateral", "--fingers", "all", "--speed", "slow", "--seconds",
+            "60"));
+    CHECK(s.status == 0 && strstr(s.out, "faults none"), "%d: %s%s", s.status, s.out, s.err);
+    said_clean(dir);
+}
+
+/* What was saved is what is loaded: the experiment's own 40 N do not come behind it. */
+TEST(an_image_of_parameters_is_not_overruled)
+{
+    const char *dir = said_dir(), *image = said_path(dir, "p");
+    static struct said s;
+    said(&s, dir, cli_bilateral, WORDS(NATURAL, "--set", "mat_f_max=7", "--save-params", image));
+    CHECK(s.status == 0 && strstr(s.out, "   7.00 "), "%d: %s%s", s.status, s.out, s.err);
+    said(&s, dir, cli_bilateral, WORDS(NATURAL, "--load-params", image));
+    CHECK(s.status == 0 && strstr(s.out, "   7.00 "), "%d: %s%s", s.status, s.out, s.err);
+    said_clean(dir);
+}
+
+TEST_MAIN("bilateral_report", the_papers_figures_stand_beside_the_same_alone,
+    all_fingers_come_to_their_end,
+    an_image_of_parameters_is_not_overruled);
