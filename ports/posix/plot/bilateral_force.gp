@@ -44,7 +44,9 @@ plot NaN with points ls 1 ps 1.4 title sprintf('pairs, %g to %g N', band_lo, ban
      NaN with points ls 3 ps 1.4 title 'mean of ten positions', \
      NaN with lines ls 4 title 'linear fit, position over force'
 set key off
-set label 9 sprintf('k = %s N/m, b = %s Ns/m, link: %s', k, b, link) at screen 0.5, \
+gains = k eq '' || b eq '' ? "the scene's own k and b" : \
+    sprintf('k = %s N/m, b = %s Ns/m', k, b)
+set label 9 sprintf('%s, link: %s', gains, link) at screen 0.5, \
     screen 0.895 center \
     noenhanced textcolor rgb ink font ',17'
 set border 3 lc rgb ink lw 0.8

@@ -10,7 +10,7 @@
 #   names        what a column is called; fingers: whose contact it is
 #   contacts     when it begins, s; -1: there was none
 #   speeds       m/s at contact; settles: ms, -1 never
-#   k, b, link   as they shall be printed
+#   k, b, link   as they shall be printed; no k or no b: materials have their own
 # Lists have spaces between their words. Optional:
 #   out_contact  PNG to write                            (contact.png)
 #   before_ms, after_ms   shown, before and after contact (10, 110)
@@ -58,8 +58,10 @@ plot NaN with points ls 1 ps 1.4 title 'force commanded F_{des}', \
      NaN with lines ls 2 title 'force by the current monitor F_{mon}', \
      NaN with lines ls 3 title 'velocity dq/dt', NaN with lines ls 4 title 'contact begins'
 set key off
+gains = k eq '' || b eq '' ? "the scene's own k and b" : \
+    sprintf('k = %s N/m, b = %s Ns/m', k, b)
 limit = f_top > 21.5 && f_top < 22.6 ? '; force ends at 22 N, the drive at its 6.6 A' : ''
-set label 9 sprintf('k = %s N/m, b = %s Ns/m, link: %s%s', k, b, link, limit) at screen 0.5, \
+set label 9 sprintf('%s, link: %s%s', gains, link, limit) at screen 0.5, \
     screen 0.93 center \
     noenhanced textcolor rgb ink font ',17'
 set border 3 lc rgb ink lw 0.8

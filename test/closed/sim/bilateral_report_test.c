@@ -48,6 +48,28 @@ TEST(the_papers_figures_stand_beside_the_same_alone)
     said_clean(dir);
 }
 
+/* What pictures say of the gains: a scene's materials have their own. */
+TEST(pictures_say_the_gains_there_are)
+{
+    static const struct {
+        const char *option, *value, *says;
+    } row[] = {
+        {"--seed", "1", "\nk='20000'; b='60'; "},
+        {"--set", "mat_k=5000", "\nk='5000'; b='60'; "},
+        {"--scene", SCENES "rehabilitation.world", "\nk=''; b=''; "},
+    };
+    const char *dir = said_dir();
+    static struct said s;
+    static char script[SAID_B];
+    for (size_t i = 0; i < LEN(row); i++) {
+        said(&s, dir, cli_bilateral, WORDS(NATURAL, row[i].option, row[i].value, "--out", dir));
+        CHECK(s.status == 0, "row %zu: %d: %s", i, s.status, s.err);
+        said_read(script, said_path(dir, "bilateral.gp"));
+        CHECK(strstr(script, row[i].says), "row %zu: %s", i, script);
+    }
+    said_clean(dir);
+}
+
 /* All by default, of all fingers. A finger that presses for long and does not tremble is no dead
  * encoder; whoever wants that found has it found. */
 TEST(all_fingers_come_to_their_end)
@@ -83,5 +105,5 @@ TEST(an_image_of_parameters_is_not_overruled)
 }
 
 TEST_MAIN("bilateral_report", the_papers_figures_stand_beside_the_same_alone,
-    all_fingers_come_to_their_end,
+    pictures_say_the_gains_there_are, all_fingers_come_to_their_end,
     an_image_of_parameters_is_not_overruled);

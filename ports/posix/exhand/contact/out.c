@@ -10,6 +10,7 @@
 #include <string.h>
 
 #define PATH_B 1024
+#define GAIN_B 24
 
 int bilateral_out_open(const char *dir)
 {
@@ -91,19 +92,27 @@ static const struct bilateral_contact *shown(const struct bilateral_result *r)
     return NULL;
 }
 
+/* Empty: below 0 every material has its own. */
+static const char *gain(char to[GAIN_B], double value)
+{
+    to[0] = '\0';
+    if (value >= 0) { (void)snprintf(to, GAIN_B, "%.6g", value); }
+    return to;
+}
+
 static void list(FILE *f, const char *name) { fprintf(f, "'\n%s='", name); }
 
 int bilateral_out_pictures(const char *dir, const struct bilateral_result *r, int n, double k_Npm,
     double b_Nspm, const char *link)
 {
     FILE *f = bilateral_out_file(dir, "bilateral.gp");
-    char name[PATH_B];
+    char name[PATH_B], text[2][GAIN_B];
     if (f == NULL) { return 1; }
     fprintf(f,
         "# Made by exhand bilateral. Inside this directory, PLOTS the way to "
-        "ports/posix/exhand/plot:\n"
-        "#   gnuplot -c bilateral.gp PLOTS\nplots=ARG1\nk='%.6g'; b='%.6g'; link=\"%s\"; names='",
-        k_Npm, b_Nspm, link);
+        "ports/posix/plot:\n"
+        "#   gnuplot -c bilateral.gp PLOTS\nplots=ARG1\nk='%s'; b='%s'; link=\"%s\"; names='",
+        gain(text[0], k_Npm), gain(text[1], b_Nspm), link);
     for (int i = 0; i < n; i++) { fprintf(f, " %s", r[i].speed->name); }
     list(f, "fingers");
     for (int i = 0; i < n; i++) { fprintf(f, " %s", bilateral_finger_name[r[i].finger]); }

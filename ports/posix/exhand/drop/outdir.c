@@ -128,11 +128,10 @@ int outdir_pictures(
 {
     FILE *f = outdir_create(dir, "pictures.gp");
     if (f == NULL) { return 1; }
-    fprintf(f,
-        "# Made by exhand drop. Inside this directory, PLOTS the way to ports/posix/exhand/plot:\n"
-        "#   gnuplot -c pictures.gp PLOTS\n"
-        "plots=ARG1\n"
-        "out='force_position.png'; fit='linear fit, position over force'\n");
+    fprintf(f, "# Made by exhand drop. Inside this directory, PLOTS the way to ports/posix/plot:\n"
+               "#   gnuplot -c pictures.gp PLOTS\n"
+               "plots=ARG1\n"
+               "out='force_position.png'; fit='linear fit, position over force'\n");
     panel(f, "a", &r[0], d->height_m);
     panel(f, "b", &r[rows - 1], d->height_m);
     fprintf(f,
