@@ -258,7 +258,7 @@ MUTANTS = (
      "!is_same(&now, &s->newest)"),
     ("precontact", L + "law/precontact.c", "if (in->touching || (s->d", "if ((s->d"),
     ("precontact", L + "law/precontact.c", "(int64_t)cfg->par->d_lim_m_q30) - cfg->par->hyst_m_q30",
-     "(int64_t)cfg->par->d_lim_m_q30"),
+     "(int64_t)cfg->par->d_lim_m_q30)"),
     ("precontact", L + "law/precontact.c", "s->phase == EXH_PRECONTACT_TRACK && !s->near",
      "s->phase == EXH_PRECONTACT_TRACK"),
     ("precontact", L + "law/precontact.c", "s->phase == EXH_PRECONTACT_IDLE && s->met",
@@ -401,6 +401,10 @@ MUTANTS = (
 # rate.
 THIN = {
     "if (p->phase == EXH_PRECONTACT_FROZEN &&": 0.90,  # sim/bilateral_tick
+    # a plane that comes near the finger is rare among random ones: unit/precontact, sim/late
+    "s->phase == EXH_PRECONTACT_TRACK && !s->near": 0.80,
+    "s->phase == EXH_PRECONTACT_IDLE && s->met": 0.80,
+    "s->near ? 0 : (int64_t)": 0.09,
     "s->present == EXH_FAULT_DEADMAN && !": 0.93,      # unit/safety
     # a set-up value that is staged when it is locked
     "raw != p->staged[i]": 0.15,
