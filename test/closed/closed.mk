@@ -23,6 +23,13 @@ contacts:
 	@$(lab) bilateral --contacts $(SEEDS) $(if $(NETWORKS),--networks $(NETWORKS)) \
 	    --out $(B)/contacts $(ARGS)
 
+## Compare what makes a contact settle and be silent, over 80 hands, with what it costs (table in
+## build/remedies/remedies.md).
+.PHONY: remedies
+remedies:
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(lab)
+	@test/figures/bench/remedies.sh $(lab) $(B)/remedies $(ARGS)
+
 # `make stress` builds these once more under sanitizers, in build/san.
 stress_obj := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/closed/stress/*.c))
 stress_model := $(call model_objects,examples/custom/wall_ert_rtw,$(call \

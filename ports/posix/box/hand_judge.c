@@ -92,7 +92,7 @@ static void judge_contact(
     c->settle_s = stays_s(t, c, r->T, SETTLED_BAND * c->held_N, 1);
     c->rise_Nps = rise_Nps(t, c, r->T);
     c->rest_s = stays_s(t, c, r->T, 1.5, 0.2e-3);
-    c->stiffness_Npm = bilateral_stiffness_Npm(r, c->finger, c->approach, NULL);
+    c->stiffness_Npm = bilateral_stiffness(r, c->finger, c->approach, NULL).k_Npm;
 }
 
 int bilateral_judge(const struct bilateral_run *r, unsigned f, struct bilateral_contact *c, int cap)
@@ -134,22 +134,24 @@ int bilateral_judge(const struct bilateral_run *r, unsigned f, struct bilateral_
 
 /* --- stiffness --- */
 
-static double line_of(const struct fall_log *log, const char *plot)
+static struct bilateral_line line_of(const struct fall_log *log, const char *plot)
 {
     struct fall_stiffness s;
-    double k = 0;
-    if (fall_stiffness(log, &fall_opt_default, &s) != FALL_OK) { return 0; }
-    if (s.fit.status == FALL_OK) { k = s.fit.b_Npm; }
+    struct bilateral_line line = {0, 0, 0, 0};
+    if (fall_stiffness(log, &fall_opt_default, &s) != FALL_OK) { return line; }
+    if (s.fit.status == FALL_OK) {
+        line = (struct bilateral_line){s.fit.b_Npm, s.b.lo_Npm, s.b.hi_Npm, s.fit.r2};
+    }
     if (plot) {
-        char raw[PATH_B], averaged[PATH_B], line[PATH_B];
-        const struct fall_plot_paths paths = {raw, averaged, line};
+        char raw[PATH_B], averaged[PATH_B], ends[PATH_B];
+        const struct fall_plot_paths paths = {raw, averaged, ends};
         snprintf(raw, sizeof raw, "%s_raw.csv", plot);
         snprintf(averaged, sizeof averaged, "%s_avg.csv", plot);
-        snprintf(line, sizeof line, "%s_line.csv", plot);
+        snprintf(ends, sizeof ends, "%s_line.csv", plot);
         (void)fall_write_plot(&s, FALL_B, &paths);
     }
     fall_stiffness_free(&s);
-    return k;
+    return line;
 }
 
 /* Where each approach froze its q_lim is its own: positions are counted from there, or places that
@@ -162,14 +164,14 @@ static struct fall_sample past_lim(
     return f;
 }
 
-double bilateral_stiffness_Npm(
+struct bilateral_line bilateral_stiffness(
     const struct bilateral_run *r, unsigned f, int approach, const char *plot)
 {
     const struct bilateral_track *t = &r->finger[f];
     struct fall_sample *sample = calloc(t->n + 1, sizeof *sample);
     size_t *start = calloc(t->n + 1, sizeof *start);
     struct fall_log log = {sample, 0, start, 0};
-    double k = 0;
+    struct bilateral_line line = {0, 0, 0, 0};
     int now = 0;
     for (size_t i = 0; sample && start && i < t->n; i++) {
         const int which = t->at[i].approach;
@@ -178,8 +180,8 @@ double bilateral_stiffness_Npm(
         now = which;
         sample[log.samples++] = past_lim(&t->at[i], i, r->T);
     }
-    if (log.falls) { k = line_of(&log, plot); }
+    if (log.falls) { line = line_of(&log, plot); }
     free(sample);
     free(start);
-    return k;
+    return line;
 }

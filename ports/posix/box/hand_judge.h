@@ -41,9 +41,15 @@ struct fall_sample bilateral_si(const struct bilateral_sample *s, size_t tick, s
 int bilateral_judge(
     const struct bilateral_run *r, unsigned f, struct bilateral_contact *c, int cap);
 
-/* The paper's line through the pairs of all approaches (approach 0) or of one; plot: files for
- * force_position.gp, prefix or NULL. 0: no line. */
-double bilateral_stiffness_Npm(
+/* The paper's line through position and force: position over force, inverted. */
+struct bilateral_line {
+    double k_Npm;              /* 0: no line */
+    double lo_Npm, hi_Npm, r2; /* 95 %, approach for approach left out; hi 0: no upper end */
+};
+
+/* Through the pairs of all approaches (approach 0) or of one; plot: files for force_position.gp,
+ * prefix or NULL. */
+struct bilateral_line bilateral_stiffness(
     const struct bilateral_run *r, unsigned f, int approach, const char *plot);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A slice of `make contacts`: every scene by every finger at natural speed over a bad link; and that
- * the command tells when something is missed. */
+/* A slice of `make contacts`: every scene by every finger at natural speed over a bad link; and
+ * that the command tells when something is missed. */
 #include "check.h"
 
 #include "said.h"
@@ -20,8 +20,9 @@ TEST(nothing_is_missed_over_a_bad_link_and_all_is_where_it_is)
             "delay=0.05,jitter=0.03,loss=0.3"));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
     row = strstr(s.out, "| natural |");
-    CHECK(row && sscanf(row, "| natural | %d | %d | %d | %d | %d | %d | %d/%d | %d/%d | %lf | %lf | "
-                             "%lf",
+    CHECK(row && sscanf(row,
+                     "| natural | %d | %d | %d | %d | %d | %d | %d/%d | %d/%d | %lf | %lf | "
+                     "%lf",
                      &tries, &felt, &missed, &around, &late, &nothing, &stood, &of, &same, &froze,
                      &median_mm, &most_mm, &worst_mm) == 13,
         "no row: %s", s.out);

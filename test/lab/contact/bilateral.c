@@ -7,14 +7,14 @@
 #include <string.h>
 
 static struct {
-    int64_t check, contacts, jobs;
+    int64_t check, contacts, remedies, jobs;
     int sweep, hands, crisp;
     const char *preset, *networks;
 } is;
 
 static int studies(void)
 {
-    return is.sweep + (is.check > 0) + is.hands + is.crisp + (is.contacts > 0);
+    return is.sweep + (is.check > 0) + is.hands + is.crisp + (is.remedies >= 0) + (is.contacts > 0);
 }
 
 /* What says otherwise how the two are to be. */
@@ -39,7 +39,8 @@ static int refuse(struct bilateral_options *o, double rate_Hz)
     o->study = studies() > 0;
     o->jobs = is.jobs;
     if (err == 0 && studies() > 1) {
-        cli_complain("--sweep, --check, --hands, --crisp, --contacts: one at a time");
+        cli_complain("--sweep, --check, --hands, --crisp, --remedies, --contacts: one at a "
+                     "time");
         return 2;
     }
     return err;
@@ -47,13 +48,14 @@ static int refuse(struct bilateral_options *o, double rate_Hz)
 
 static int run(const struct bilateral_options *o)
 {
-    return is.contacts ? bilateral_contacts(o, is.contacts, is.networks)
-           : is.sweep  ? bilateral_sweep(o)
-           : is.check  ? bilateral_check(o, is.check)
-           : is.hands  ? bilateral_hands(o)
-           : is.crisp  ? bilateral_crisp(o)
-           : is.preset ? bilateral_original(o)
-                       : bilateral_experiment(o);
+    return is.contacts        ? bilateral_contacts(o, is.contacts, is.networks)
+           : is.sweep         ? bilateral_sweep(o)
+           : is.check         ? bilateral_check(o, is.check)
+           : is.hands         ? bilateral_hands(o)
+           : is.crisp         ? bilateral_crisp(o)
+           : is.remedies >= 0 ? bilateral_remedies(o, is.remedies)
+           : is.preset        ? bilateral_original(o)
+                              : bilateral_experiment(o);
 }
 
 int lab_bilateral(int argc, char **argv)
@@ -68,6 +70,8 @@ int lab_bilateral(int argc, char **argv)
         {"hands", CLI_FLAG, &is.hands, 0, 0, NULL,
             "80 fingers and hands: settling and stiffness of each"},
         {"crisp", CLI_FLAG, &is.crisp, 0, 0, NULL, "how fast force rises, over a grid of k and b"},
+        {"remedies", CLI_INT, &is.remedies, 0, 100, "N",
+            "what makes a contact settle and be silent: 0 all, over the 80 hands; the Nth by one"},
         {"contacts", CLI_INT, &is.contacts, 1, 1000, "SEEDS",
             "every scene, finger, speed and link: none may be missed"},
         {"networks", CLI_TEXT, &is.networks, 0, 0, "FILE[,FILE...]",
@@ -79,5 +83,6 @@ int lab_bilateral(int argc, char **argv)
         {option, (int)(sizeof option / sizeof option[0]), NULL}, refuse, run};
     memset(&is, 0, sizeof is);
     is.jobs = jobs_cores();
+    is.remedies = -1;
     return bilateral_command(argc, argv, &study);
 }

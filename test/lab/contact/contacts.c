@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* exhand-lab bilateral --contacts: every shipped scene, every finger, three speeds, links good and
- * bad, several seeds. Nothing may be missed, what is frozen hangs on no link, and where each contact
- * is, beside where the object is, is told as a distribution. */
+ * bad, several seeds. Nothing may be missed, what is frozen hangs on no link, and where each
+ * contact is, beside where the object is, is told as a distribution. */
 #include "lab/contact/studies.h"
 
 #include "base/option.h"
@@ -19,8 +19,8 @@
 
 static const struct {
     const char *name, *pose; /* a thumb that lies along the hand would close beside the object */
-} scene[] = {{"collision", "flat"}, {"explore", "flat"}, {"gem", "thumb_out"}, {"grasp", "thumb_out"},
-    {"rehabilitation", "thumb_out"}};
+} scene[] = {{"collision", "flat"}, {"explore", "flat"}, {"gem", "thumb_out"},
+    {"grasp", "thumb_out"}, {"rehabilitation", "thumb_out"}};
 
 static const struct {
     const char *name, *spec;
@@ -47,7 +47,8 @@ struct cell {
 
 static struct bilateral_run_cfg cfg_of(int i, struct bilateral_options *o)
 {
-    const int l = i % is.links, v = i / is.links % is.given->speeds, s = i / is.links / is.given->speeds % SCENES;
+    const int l = i % is.links, v = i / is.links % is.given->speeds,
+              s = i / is.links / is.given->speeds % SCENES;
     struct bilateral_run_cfg c;
     char path[200], why[700];
     *o = is.o[l];
@@ -118,7 +119,8 @@ static size_t first_freeze(const struct bilateral_run *r)
 
 /* Whoever is frozen then goes on with the same bits until it is released, all but d: the glove's
  * sensors are bent a little by the fingers beside, which felt nothing the second time. */
-static int stands_alike(const struct bilateral_track *a, const struct bilateral_track *b, size_t from)
+static int stands_alike(
+    const struct bilateral_track *a, const struct bilateral_track *b, size_t from)
 {
     for (size_t i = from; i < a->n && a->at[i].bits & EXH_PRECONTACT_STANDS; i++) {
         const struct bilateral_paper *p = &a->at[i].raw, *q = &b->at[i].raw;
@@ -196,9 +198,9 @@ static void row(FILE *csv, const struct cell *cell, int n, int l, int v, int s)
     }
     qsort(off_m, (size_t)places, sizeof off_m[0], by_size);
     if (s >= 0) {
-        fprintf(csv, "%s,%s,\"%s\",%d,%d,%d,%d,%d,%d,%d,%d,%d", scene[s].name, is.given->speed[v].name, is.name[l],
-            sum.tries, sum.felt, sum.missed, sum.around, sum.late, sum.nothing, sum.fingers,
-            sum.same, sum.broke);
+        fprintf(csv, "%s,%s,\"%s\",%d,%d,%d,%d,%d,%d,%d,%d,%d", scene[s].name,
+            is.given->speed[v].name, is.name[l], sum.tries, sum.felt, sum.missed, sum.around,
+            sum.late, sum.nothing, sum.fingers, sum.same, sum.broke);
         for (int q = 50; q <= 100; q += q == 50 ? 45 : 5) {
             fputc(',', csv);
             if (places) { fprintf(csv, "%.6f", off_m[(places - 1) * q / 100]); }
@@ -207,8 +209,8 @@ static void row(FILE *csv, const struct cell *cell, int n, int l, int v, int s)
         return;
     }
     printf("| %-23s | %-7s | %5d | %5d | %6d | %6d | %4d | %7d | %4d/%-4d | %4d/%-4d |", is.name[l],
-        is.given->speed[v].name, sum.tries, sum.felt, sum.missed, sum.around, sum.late, sum.nothing, sum.stood - sum.broke,
-        sum.stood, sum.same, sum.fingers);
+        is.given->speed[v].name, sum.tries, sum.felt, sum.missed, sum.around, sum.late, sum.nothing,
+        sum.stood - sum.broke, sum.stood, sum.same, sum.fingers);
     for (int q = 50; q <= 100; q += q == 50 ? 45 : 5) {
         printf(" %6.2f |", places ? 1e3 * off_m[(places - 1) * q / 100] : 0.0);
     }
@@ -219,12 +221,14 @@ static int table(const struct cell *cell, int n)
 {
     FILE *csv = is.given->out ? bilateral_out_file(is.given->out, "contacts.csv") : NULL;
     if (is.given->out && csv == NULL) { return 1; }
-    printf("| link                    | speed   | tries |  felt | missed | around | late | nothing | stood   "
+    printf("| link                    | speed   | tries |  felt | missed | around | late | nothing "
+           "| stood   "
            "  | same bits | median |   95 %% |  worst |\n"
            "|--|--|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
     if (csv) {
-        fprintf(csv, "scene,speed,link,tries,felt,missed,around,late,nothing_there,froze,same_bits,broke,"
-                     "place_median_m,place_95_m,place_worst_m\n");
+        fprintf(csv,
+            "scene,speed,link,tries,felt,missed,around,late,nothing_there,froze,same_bits,broke,"
+            "place_median_m,place_95_m,place_worst_m\n");
     }
     for (int l = 0; l < is.links; l++) {
         for (int v = 0; v < is.given->speeds; v++) {
@@ -232,12 +236,15 @@ static int table(const struct cell *cell, int n)
             for (int s = 0; csv && s < SCENES; s++) { row(csv, cell, n, l, v, s); }
         }
     }
-    printf("\n%d scenes, five fingers, %d approaches, %d seeds. Place: q_lim less the string at "
-           "which the pad touches\nwhat is there then, mm, whatever its sign. Around: the hand's own motion brought an object onto a\nfinger that rests: by the rule not felt until it was left. Late: the finger was "
-           "inside when its plane came. Nothing: a\ncontact where nothing is. Stood: frozen fingers "
-           "whose bits stayed when the world died then. Same bits:\nfingers with every bit as over "
-           "the perfect link from their first freeze on: at flat faces; of a curved\nsurface the "
-           "plane is of where the pad was foreseen.\n",
+    printf(
+        "\n%d scenes, five fingers, %d approaches, %d seeds. Place: q_lim less the string at "
+        "which the pad touches\nwhat is there then, mm, whatever its sign. Around: the hand's own "
+        "motion brought an object onto a\nfinger that rests: by the rule not felt until it was "
+        "left. Late: the finger was "
+        "inside when its plane came. Nothing: a\ncontact where nothing is. Stood: frozen fingers "
+        "whose bits stayed when the world died then. Same bits:\nfingers with every bit as over "
+        "the perfect link from their first freeze on: at flat faces; of a curved\nsurface the "
+        "plane is of where the pad was foreseen.\n",
         SCENES, APPROACHES, is.seeds);
     return csv && fclose(csv) != 0;
 }
@@ -255,8 +262,9 @@ static int judge(const struct cell *cell, int n)
         faults += cell[i].faults;
     }
     if (missed + broke + unfrozen + undone + faults == 0) { return 0; }
-    cli_complain("%d contacts missed, %d that a dead world changed, %d before their freeze; %d runs "
-                 "not done, %d ended in a fault",
+    cli_complain(
+        "%d contacts missed, %d that a dead world changed, %d before their freeze; %d runs "
+        "not done, %d ended in a fault",
         missed, broke, unfrozen, undone, faults);
     return 1;
 }
@@ -293,8 +301,8 @@ static int take_links(const struct bilateral_options *o, const char *networks)
 int bilateral_contacts(const struct bilateral_options *o, int64_t seeds, const char *networks)
 {
     static struct bilateral_options given;
-    struct jobs jobs = {0, (int)o->jobs, sizeof(struct cell), NULL, work, NULL, "runs",
-        posix_interrupt};
+    struct jobs jobs = {
+        0, (int)o->jobs, sizeof(struct cell), NULL, work, NULL, "runs", posix_interrupt};
     int err;
     given = *o;
     if (given.scene == NULL) { given.scene = "ports/posix/world/scenes"; }

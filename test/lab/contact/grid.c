@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* exhand-lab bilateral --hands and --crisp: the experiment over fingers and hands, and over k and
  * b. */
+#include "lab/contact/hands.h"
 #include "lab/contact/studies.h"
 
 #include "base/option.h"
@@ -60,7 +61,7 @@ static void measure(const struct bilateral_run_cfg *c, struct cell *to)
     to->quickest_s = to->rested ? rest[0] : 0; /* sorted now */
     to->rise_per_mps = median(rise, to->contacts);
     to->speed_mps = median(speed, to->contacts);
-    to->stiffness_Npm = bilateral_stiffness_Npm(&r, f, 0, NULL);
+    to->stiffness_Npm = bilateral_stiffness(&r, f, 0, NULL).k_Npm;
     bilateral_run_free(&r);
 }
 
@@ -93,28 +94,14 @@ static int run_cells(struct cell *cell, int n, void (*work)(const void *, int, v
 
 /* --- hands --- */
 
-/* From the light finger of a child to a heavy one with the exoskeleton; from a hand that lets
- * itself be pushed to one that is clenched. All press alike. */
-static const double mass_kg[] = {0.02, 0.05, 0.1, 0.2}, hand_Npm[] = {150, 300, 600, 1200},
-                    hand_Nspm[] = {2, 5, 10, 20, 40};
-#define HANDS   80
-#define PRESS_N 4.5
-#define NEAR    0.25 /* of the paper's stiffness */
+#define NEAR 0.25 /* of the paper's stiffness */
 
 static void work_hands(const void *ctx, int i, void *result)
 {
     struct bilateral_run_cfg c = base(ctx, sim_path_speed("natural"));
     struct cell *to = result;
     memset(to, 0, sizeof *to);
-    to->at[0] = mass_kg[i / 20];
-    to->at[1] = hand_Npm[i / 5 % 4];
-    to->at[2] = hand_Nspm[i % 5];
-    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
-        c.board.exo.finger[f].mass_kg = to->at[0];
-        c.board.exo.finger[f].k_Npm = to->at[1];
-        c.board.exo.finger[f].b_Nspm = to->at[2];
-        c.board.exo.path[f].push_m = PRESS_N / to->at[1];
-    }
+    lab_hand(&c, i, to->at);
     measure(&c, to);
 }
 

@@ -122,7 +122,7 @@ static int column(
     while (!(c->board.exo.fingers >> f & 1)) { f++; }
     if (err == 0) {
         const int found = bilateral_judge(&r, f, contact, BILATERAL_CONTACTS_MAX);
-        const double k_Npm = bilateral_stiffness_Npm(&r, f, 0, NULL);
+        const double k_Npm = bilateral_stiffness(&r, f, 0, NULL).k_Npm;
         *at(to, RATE) = c->rate_Hz;
         *at(to, K) = c->k_Npm;
         *at(to, B) = c->b_Nspm;

@@ -34,7 +34,7 @@ static void judge(
     }
     qsort(settle, (size_t)out->settled, sizeof settle[0], by_size);
     out->settle_s = out->settled ? settle[out->settled / 2] : 0;
-    out->stiffness_Npm = bilateral_stiffness_Npm(r, f, 0, plot);
+    out->stiffness_Npm = bilateral_stiffness(r, f, 0, plot).k_Npm;
 }
 
 static double local_Npm(const struct bilateral_options *o)

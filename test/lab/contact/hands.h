@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT */
+/* Fingers and hands over which contacts are judged: from the light finger of a child to a heavy one
+ * with the exoskeleton; from a hand that lets itself be pushed to one that is clenched. All press
+ * alike. */
+#ifndef LAB_CONTACT_HANDS_H
+#define LAB_CONTACT_HANDS_H
+
+#include "box/hand.h"
+
+#define HANDS 80
+
+/* Hand i of HANDS, for all fingers. at: its mass, kg, stiffness, N/m, and damping, Ns/m; or NULL.
+ */
+void lab_hand(struct bilateral_run_cfg *c, int i, double at[3]);
+
+#endif
