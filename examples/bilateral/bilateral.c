@@ -259,7 +259,7 @@ static void defaults(void)
         active.precontact[f].from_slope = 1;
         active.watch[f].stuck_ms =
             10000; /* held against a stiff wall, a finger can stand for seconds */
-        active.precontact[f].d_lim_m_q30 = -EXH_Q(75, 10000, EXH_Q_POS);
+        active.precontact[f].d_lim_m_q30 = -EXH_Q(8, 1000, EXH_Q_POS);
     }
     staged = active;
 }

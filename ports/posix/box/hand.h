@@ -104,6 +104,10 @@ struct bilateral_finger_is {
 /* A wall across its way where it has drawn x_m out. */
 void bilateral_wall(struct exh_wire_plane *to, const struct bilateral_finger_is *w, double x_m);
 
+/* String metres per fingertip metre over the last d_m > 0 of its way to where it has drawn x_m out.
+ */
+double bilateral_scale(const struct bilateral_finger_is *w, double x_m, double d_m);
+
 /* d of it where it has drawn x_m out: of its wall, or of the nearest surface of the scene at
  * t_s; -1e3: nothing. */
 double bilateral_gap_m(

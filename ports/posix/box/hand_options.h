@@ -19,7 +19,7 @@ struct bilateral_options {
     struct bilateral_run_cfg run; /* all but the speed */
     struct bilateral_speed speed[BILATERAL_SPEEDS_MAX];
     int speeds;
-    int64_t approaches, seed, jobs;
+    int64_t approaches, seed, seeds, jobs;
     int study, cards; /* study: the lab runs many */
     const char *scene, *out, *udp, *link, *record;
     double record_Hz;

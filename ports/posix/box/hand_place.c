@@ -71,17 +71,35 @@ static void drawn_out(const struct bilateral_finger_is *w, double x_m,
     exh_hand_tip(&hand, joint_turn_q32, tip_m_q30);
 }
 
-void bilateral_wall(struct exh_wire_plane *to, const struct bilateral_finger_is *w, double x_m)
+/* The fingertip's way from here to there, as n and how far; m, q30. */
+static double tip_way(const struct bilateral_finger_is *w, double from_m, double to_m, double n[3])
 {
     int32_t joint[EXH_HAND_JOINTS];
     struct exh_vec3 a, b;
-    double n[3], length, offset;
-    drawn_out(w, x_m - STEP_M, joint, &a);
-    drawn_out(w, x_m + STEP_M, joint, &b);
+    drawn_out(w, from_m, joint, &a);
+    drawn_out(w, to_m, joint, &b);
     n[0] = (double)a.x - b.x;
     n[1] = (double)a.y - b.y;
     n[2] = (double)a.z - b.z;
-    length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    return sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+}
+
+double bilateral_scale(const struct bilateral_finger_is *w, double x_m, double d_m)
+{
+    double from_m = x_m, tip_m, n[3];
+    do {
+        from_m -= STEP_M;
+        tip_m = ldexp(tip_way(w, from_m, x_m, n), -EXH_Q_POS);
+    } while (from_m > 0 && tip_m < d_m);
+    return (x_m - from_m) / tip_m;
+}
+
+void bilateral_wall(struct exh_wire_plane *to, const struct bilateral_finger_is *w, double x_m)
+{
+    int32_t joint[EXH_HAND_JOINTS];
+    struct exh_vec3 a;
+    double n[3], offset;
+    const double length = tip_way(w, x_m - STEP_M, x_m + STEP_M, n);
     drawn_out(w, x_m, joint, &a);
     offset = (n[0] * a.x + n[1] * a.y + n[2] * a.z) / length - exh_hand_rows[3].dflt;
     memset(to, 0, sizeof *to);

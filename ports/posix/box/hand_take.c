@@ -23,6 +23,7 @@ void bilateral_defaults(struct bilateral_options *o)
     };
     memset(o, 0, sizeof *o);
     o->seed = 1;
+    o->seeds = 8;
     o->approaches = 5;
     o->jobs = jobs_cores();
     o->link = "none";

@@ -7,9 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* 97.5 % of Student's t. Beyond the table Fisher's expansion about the normal quantile:
- * within 1e-4 from 10 degrees on. */
-static double t_quantile(size_t degrees)
+/* Beyond the table Fisher's expansion about the normal quantile: within 1e-4 from 10 degrees on. */
+double fall_t(size_t degrees)
 {
     static const double exact[] = {
         12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.3646, 2.3060, 2.2622};
@@ -46,7 +45,7 @@ static double reach(const struct spread *s)
 {
     const double n = (double)s->n;
     const double about_mean = s->square - s->sum * s->sum / n;
-    return t_quantile(s->n - 1) * square_root(about_mean * (n - 1) / n);
+    return fall_t(s->n - 1) * square_root(about_mean * (n - 1) / n);
 }
 
 /* The line without the pairs of one fall; 0 if there were none to leave out. */

@@ -23,4 +23,7 @@ struct fall_interval {
 enum fall_status fall_jackknife(const struct fall_pairs *sorted, size_t falls,
     enum fall_force force, struct fall_interval *a, struct fall_interval *b);
 
+/* 97.5 % of Student's t, of 1 degree of freedom or more. */
+double fall_t(size_t degrees);
+
 #endif

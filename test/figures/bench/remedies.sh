@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # remedies.sh LAB DIR [OPTION...]: the table of `exhand-lab bilateral --remedies 0`, with the
-# instructions that each remedy's tick costs beside it (callgrind, whole ticks of one approach by one
-# hand at each speed). LAB: exhand-lab. DIR: files go there.
+# instructions that each remedy's tick costs beside it (callgrind, whole ticks of one approach by
+# one hand at each speed). LAB: exhand-lab. DIR: files go there.
 set -eu
 lab=$1 dir=$2
 shift 2

@@ -2,6 +2,8 @@
 /* exhand-lab bilateral --check: random approaches in closed loop. */
 #include "lab/contact/studies.h"
 
+#include "box/hand_need.h"
+
 #include "base/option.h"
 
 #include "sim/random.h"
@@ -80,18 +82,15 @@ static double age_s(const struct bilateral_run_cfg *c, int state_every)
 }
 
 /* Whether the advice foretells that the plane may not be there in time. */
-static void advise(const struct bilateral_options *given, const struct bilateral_run_cfg *c,
-    double scale, struct outcome *out)
+static void advise(const struct bilateral_run_cfg *c, double scale, struct outcome *out)
 {
     const struct bilateral_par *par = (const void *)exh_scene_bilateral.params->active;
     const struct exh_period T = {1, c->rate_Hz};
     const double old_s = age_s(c, par->own.state_every);
-    struct bilateral_options o = *given;
     struct exh_precontact_need need;
     struct exh_precontact_advice a;
-    o.run = *c;
-    need = bilateral_need(
-        &o, scale > 0 ? scale : 1, out->speed_mps * (1 + c->board.exo.path[out->finger].vary));
+    need = hand_need(
+        c, scale > 0 ? scale : 1, out->speed_mps * (1 + c->board.exo.path[out->finger].vary));
     need.age_us = old_s < 2 ? (int32_t)(1e6 * old_s) : 2000000;
     out->ray_m = c->ray_m;
     out->loss = c->board.line.way[0].loss;
@@ -119,7 +118,7 @@ static void work(const void *ctx, int i, void *result)
         out->unfrozen = t->unfrozen > 0;
         out->missed = contact.missed;
         out->off_m = contact.off_m;
-        advise(o, &c, t->scale, out);
+        advise(&c, t->scale, out);
         /* A finger that gets nearer than half of d_lim's way before its freeze is too late. */
         out->early = out->felt && contact.early;
         out->unplanned = out->felt && !contact.frozen;

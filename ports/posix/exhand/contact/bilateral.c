@@ -237,6 +237,8 @@ static const struct cli_option option[] = {
     {"cards", CLI_FLAG, &is.cards, 0, 0, NULL,
         "through the drivers and emulated cards: the same bits"},
     {"seed", CLI_INT, &is.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
+    {"seeds", CLI_INT, &is.seeds, 1, 100, "N",
+        "so many, from that one on, are behind the figures; the first is shown and written (8)"},
     {"out", CLI_TEXT, &is.out, 0, 0, "DIR", "write logs, CSVs and what pictures need there"},
     {"blackbox", CLI_TEXT, &is.run.blackbox, 0, 0, "FILE",
         "the last seconds before a fault, a log (with --out beside the others)"},

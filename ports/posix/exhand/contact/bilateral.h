@@ -16,15 +16,32 @@ int bilateral_take_link(void *ctx, const char *text);
 /* experiment.c: exit status. */
 int bilateral_experiment(const struct bilateral_options *o);
 
+/* What a finger's approaches of one seed, or of several, came to. */
+struct bilateral_count {
+    int contacts, settled, missed, early, late;
+    double settle_s;                 /* median of those that settled; over seeds: mean of these */
+    struct bilateral_line line;      /* pooled; over seeds: mean, its interval, median of r2 */
+    double settle_lo_s, settle_hi_s; /* 95 % of the mean over seeds; hi 0: there is none */
+};
+
+/* experiment.c. Counts contacts c, n of them, and their line. */
+void bilateral_count(struct bilateral_count *to, const struct bilateral_contact *c, int n,
+    struct bilateral_line line);
+
+/* seeds.c. One speed with the seeds behind the first: adds them to count, by finger, which is the
+ * first's. 0, or an exit status after a line on stderr. */
+int bilateral_seeds(
+    const struct bilateral_options *o, double mps, struct bilateral_count count[BILATERAL_FINGERS]);
+
 /* report.c. What a speed gave, of one finger. */
 #define BILATERAL_CONTACTS_MAX 1000
 struct bilateral_result {
     const struct bilateral_speed *speed;
     unsigned finger;
-    struct bilateral_contact *contact;
+    struct bilateral_contact *contact; /* of the first seed */
     int contacts;
-    double stiffness_Npm, settle_s; /* pooled; median of those that settled */
-    int settled, missed, early, late;
+    struct bilateral_count count; /* of all seeds */
+    double drawn_Npm;             /* the first seed's line, as the picture has it; 0: none */
     double scale;
     long refused; /* planes */
 };
@@ -40,10 +57,6 @@ void bilateral_csv(FILE *f, const struct bilateral_result *r);
 /* Whether d_lim is far enough off for these speeds; and what it should be. */
 void bilateral_print_advice(
     FILE *f, const struct bilateral_options *o, const struct bilateral_result *r, int n);
-
-/* After a run: what the advice for d_lim and the ray goes by, over a perfect link. */
-struct exh_precontact_need bilateral_need(
-    const struct bilateral_options *o, double scale, double mps);
 
 /* out.c: DIR. 0, or 1 or 2 after a line on stderr. */
 int bilateral_out_open(const char *dir);

@@ -4,6 +4,7 @@
 
 #include "base/names.h"
 #include "base/option.h"
+#include "box/hand_need.h"
 #include "box/table2.h"
 
 #include <errno.h>
@@ -16,25 +17,34 @@ static int by_size(const void *a, const void *b)
     return d < 0 ? -1 : d > 0;
 }
 
-static void judge(
-    const struct bilateral_run *r, unsigned f, const char *plot, struct bilateral_result *out)
+void bilateral_count(struct bilateral_count *to, const struct bilateral_contact *c, int n,
+    struct bilateral_line line)
 {
     static double settle[BILATERAL_CONTACTS_MAX];
+    memset(to, 0, sizeof *to);
+    to->contacts = n;
+    to->line = line;
+    for (int i = 0; i < n; i++) {
+        if (c[i].settle_s >= 0) { settle[to->settled++] = c[i].settle_s; }
+        to->missed += c[i].missed;
+        to->early += c[i].early;
+        to->late += c[i].late;
+    }
+    qsort(settle, (size_t)to->settled, sizeof settle[0], by_size);
+    to->settle_s = to->settled ? settle[to->settled / 2] : 0;
+}
+
+static void judge(const struct bilateral_run_cfg *c, const struct bilateral_run *r, unsigned f,
+    const char *plot, struct bilateral_result *out)
+{
+    const double touch_m = r->finger[f].touch_m;
     const int n = bilateral_judge(r, f, out->contact, BILATERAL_CONTACTS_MAX);
     out->finger = f;
     out->contacts = n < BILATERAL_CONTACTS_MAX ? n : BILATERAL_CONTACTS_MAX;
     out->refused = r->finger[f].refused;
-    out->scale = r->finger[f].scale > 0 ? r->finger[f].scale : 1;
-    for (int i = 0; i < out->contacts; i++) {
-        const struct bilateral_contact *c = &out->contact[i];
-        if (c->settle_s >= 0) { settle[out->settled++] = c->settle_s; }
-        out->missed += c->missed;
-        out->early += c->early;
-        out->late += c->late;
-    }
-    qsort(settle, (size_t)out->settled, sizeof settle[0], by_size);
-    out->settle_s = out->settled ? settle[out->settled / 2] : 0;
-    out->stiffness_Npm = bilateral_stiffness(r, f, 0, plot).k_Npm;
+    out->scale = hand_scale(c, f, touch_m > 0 ? touch_m : c->at_m);
+    bilateral_count(&out->count, out->contact, out->contacts, bilateral_stiffness(r, f, 0, plot));
+    out->drawn_Npm = out->count.line.k_Npm;
 }
 
 static double local_Npm(const struct bilateral_options *o)
@@ -109,7 +119,7 @@ static int judge_fingers(const struct bilateral_options *o, int i, const struct 
         to->speed = &o->speed[i];
         to->contact = calloc(BILATERAL_CONTACTS_MAX, sizeof *to->contact);
         if (to->contact == NULL) { return 1; }
-        judge(r, f, o->out ? path : NULL, to);
+        judge(&o->run, r, f, o->out ? path : NULL, to);
         bilateral_print(stdout, to);
         if (o->out) { err = bilateral_out_csv(o->out, r, f, o->speed[i].name); }
         if (r->finger[f].unfrozen) {
@@ -144,6 +154,19 @@ static void print_run(const struct bilateral_options *o, const struct bilateral_
     }
 }
 
+/* What one seed gave is chance: the others, for those results. */
+static int more_seeds(
+    const struct bilateral_options *o, int i, struct bilateral_result *result, int n)
+{
+    struct bilateral_count count[BILATERAL_FINGERS] = {{0}};
+    int err;
+    if (o->udp || o->record || posix_interrupted()) { return 0; }
+    for (int k = 0; k < n; k++) { count[result[k].finger] = result[k].count; }
+    err = bilateral_seeds(o, o->speed[i].mps, count);
+    for (int k = 0; k < n; k++) { result[k].count = count[result[k].finger]; }
+    return err;
+}
+
 /* One speed: its results of all fingers in use behind the others'. */
 static int one_speed(
     const struct bilateral_options *o, int i, struct bilateral_result *result, int *n)
@@ -151,6 +174,7 @@ static int one_speed(
     struct bilateral_run_cfg c = bilateral_at_speed(o, o->speed[i].mps);
     struct bilateral_run r;
     char path[1024], fault[1024], what[NAMES_B];
+    const int first = *n;
     int err;
     c.keep = 1;
     if (open_log(o, i, &c, path, fault, sizeof path) != 0) { return 1; }
@@ -168,7 +192,7 @@ static int one_speed(
     }
     if (err == 0) { print_run(o, &c, &r); }
     bilateral_run_free(&r);
-    return err;
+    return err ? err : more_seeds(o, i, &result[first], *n - first);
 }
 
 int bilateral_experiment(const struct bilateral_options *o)

@@ -131,7 +131,7 @@ int bilateral_out_pictures(const char *dir, const struct bilateral_result *r, in
             shown(&r[i]) && shown(&r[i])->settle_s >= 0 ? 1e3 * shown(&r[i])->settle_s : -1);
     }
     list(f, "stiffnesses");
-    for (int i = 0; i < n; i++) { fprintf(f, " %.0f", r[i].stiffness_Npm); }
+    for (int i = 0; i < n; i++) { fprintf(f, " %.0f", r[i].drawn_Npm); }
     fprintf(f, "'\nload plots.'/contact.gp'\nload plots.'/bilateral_force.gp'\n");
     return done(f, "bilateral.gp");
 }

@@ -2,13 +2,13 @@
 /* The experiment as tables. */
 #include "contact/bilateral.h"
 
+#include "box/hand_need.h"
+
 #include "exhand/error.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define TWO_PI 6.283185307179586
 
 /* --- contacts --- */
 
@@ -65,17 +65,24 @@ void bilateral_print(FILE *f, const struct bilateral_result *r)
     }
 }
 
+/* A figure with its interval, and r2 where it has one. */
+struct figure {
+    double is, lo, hi, r2;
+};
+
 /* paper: 0 where it measured no such thing. */
 static void beside(
-    FILE *f, const char *what, double ours, double paper, const char *unit, int digits)
+    FILE *f, const char *what, struct figure ours, double paper, const char *unit, int digits)
 {
     fprintf(f, "  %-34s", what);
-    number(f, 9, digits, ours, ours > 0);
-    if (paper > 0) {
-        fprintf(f, " %-4s paper %9.*f\n", unit, digits, paper);
-    } else {
-        fprintf(f, "%s%s\n", unit[0] ? " " : "", unit);
+    number(f, 9, digits, ours.is, ours.is > 0);
+    fprintf(f, "%s%s", unit[0] ? " " : "", unit);
+    if (ours.is > 0 && ours.hi > 0) {
+        fprintf(f, ", 95 %% %.*f..%.*f", digits, ours.lo, digits, ours.hi);
     }
+    if (ours.is > 0 && ours.r2 > 0) { fprintf(f, ", r2 %.2f", ours.r2); }
+    if (paper > 0) { fprintf(f, "; paper %.*f", digits, paper); }
+    fputc('\n', f);
 }
 
 /* The paper's wall is flat, hard, rendered at these gains and this rate. */
@@ -89,6 +96,11 @@ static int is_papers_wall(const struct bilateral_options *o)
 static int is_papers_run(const struct bilateral_options *o, const struct bilateral_result *r)
 {
     return is_papers_wall(o) && o->record == NULL && r->speed->mps == sim_path_speed("natural");
+}
+
+static int seeds_of(const struct bilateral_options *o)
+{
+    return o->udp || o->record ? 1 : (int)o->seeds;
 }
 
 static void print_local(FILE *f, const struct bilateral_options *o, double local_Npm)
@@ -105,15 +117,20 @@ void bilateral_print_paper(FILE *f, const struct bilateral_options *o,
 {
     for (int i = 0; i < n; i++) {
         const int same = is_papers_run(o, &r[i]);
-        fprintf(f, "\n%s, %s: %d approaches, %d missed, %d early, %d late, %d settled\n",
-            r[i].speed->name, bilateral_finger_name[r[i].finger], r[i].contacts, r[i].missed,
-            r[i].early, r[i].late, r[i].settled);
-        beside(f, "settled within 5 % of F_mon held", 1e3 * r[i].settle_s,
+        const struct bilateral_count *c = &r[i].count;
+        const struct bilateral_line *l = &c->line;
+        fprintf(f,
+            "\n%s, %s: %d approaches of %d seed%s, %d missed, %d early, %d late, %d settled\n",
+            r[i].speed->name, bilateral_finger_name[r[i].finger], c->contacts, seeds_of(o),
+            seeds_of(o) > 1 ? "s" : "", c->missed, c->early, c->late, c->settled);
+        beside(f, "settled within 5 % of F_mon held",
+            (struct figure){1e3 * c->settle_s, 1e3 * c->settle_lo_s, 1e3 * c->settle_hi_s, 0},
             same * 1e3 * PAPER_SETTLING_S, "ms", 1);
-        beside(f, "stiffness, all approaches", r[i].stiffness_Npm, same * PAPER_STIFFNESS_NPM,
+        beside(f, "stiffness, all approaches",
+            (struct figure){l->k_Npm, l->lo_Npm, l->hi_Npm, l->r2}, same * PAPER_STIFFNESS_NPM,
             "N/m", 0);
         if (local_Npm <= 0) { continue; }
-        beside(f, "bilateral / local stiffness", r[i].stiffness_Npm / local_Npm,
+        beside(f, "bilateral / local stiffness", (struct figure){l->k_Npm / local_Npm, 0, 0, 0},
             same * PAPER_STIFFNESS_NPM / PAPER_LOCAL_NPM, "", 3);
     }
     print_local(f, o, local_Npm);
@@ -181,35 +198,10 @@ void bilateral_print_session(FILE *f, const struct bilateral_run *r, unsigned fi
 
 /* --- d_lim --- */
 
-static int32_t fixed(double v, int frac) { return (int32_t)floor(ldexp(v, frac) + 0.5); }
-
 /* Parameters as the scene has them after the run. */
 static const struct bilateral_par *par(void)
 {
     return (const struct bilateral_par *)(const void *)exh_scene_bilateral.params->active;
-}
-
-struct exh_precontact_need bilateral_need(
-    const struct bilateral_options *o, double scale, double mps)
-{
-    const struct exh_glove_par *g = &par()->glove;
-    const double fc_Hz = g->fc_Hz_q16 / 65536.0;
-    const double filter_s = g->order == 2 ? sqrt(2) / (TWO_PI * fc_Hz)
-                            : g->order    ? 1 / (TWO_PI * fc_Hz)
-                                          : 0;
-    const double lag_s = filter_s + 1 / (TWO_PI * o->run.board.glove_par.cutoff_Hz) +
-                         EXH_GLOVE_SENSORS * o->run.board.glove_par.interval_s +
-                         (par()->glove_own.every - 1) / (double)o->run.rate_Hz;
-    /* A step of the quantizer and its hysteresis, at 0.2 m of lever for all joints together. */
-    const double codes = ldexp(1, 16 - g->bits) + g->hyst_raw_q16 / 65536.0;
-    const double turn = ldexp(fabs((double)par()->sensor[4].gain_turnpraw_q38), -38) * codes;
-    const struct exh_precontact_need n = {
-        .speed_mps_q27 = fixed(mps / scale, EXH_Q_VEL),
-        .lag_us = (int32_t)ceil(1e6 * lag_s),
-        .noise_m_q30 = fixed(0.2 * TWO_PI * turn, EXH_Q_POS),
-        .age_us = (int32_t)ceil(1e6 / o->run.fps),
-    };
-    return n;
 }
 
 void bilateral_print_advice(
@@ -219,7 +211,7 @@ void bilateral_print_advice(
         const struct exh_period T = {1, o->run.rate_Hz};
         const int32_t d_lim = par()->precontact[r[i].finger].d_lim_m_q30;
         const double fastest = r[i].speed->mps * (1 + o->run.board.exo.path[r[i].finger].vary);
-        const struct exh_precontact_need need = bilateral_need(o, r[i].scale, fastest);
+        const struct exh_precontact_need need = hand_need(&o->run, r[i].scale, fastest);
         struct exh_precontact_advice a;
         if (exh_precontact_advise(&a, &need, T, d_lim) < 0) { continue; }
         fprintf(f,
