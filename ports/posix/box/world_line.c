@@ -98,8 +98,8 @@ static void absent(const struct bilateral_box *box)
             given, odd);
         return;
     }
-    cli_complain("--udp %s: no world answers: start `world --scene FILE --listen %s` there", given,
-        given);
+    cli_complain(
+        "--udp %s: no world answers: start `world --scene FILE --listen %s` there", given, given);
 }
 
 static void came(const struct bilateral_box *box, double now_s)
@@ -107,8 +107,8 @@ static void came(const struct bilateral_box *box, double now_s)
     if (world.is == ABSENT) {
         cli_complain("--udp %s: a world answers, after %.1f s", given, now_s);
     } else if (world.is == SILENT) {
-        cli_complain("--udp %s: the world answers again, after %.1f s", given,
-            now_s - world.since_s);
+        cli_complain(
+            "--udp %s: the world answers again, after %.1f s", given, now_s - world.since_s);
     }
     world.is = THERE;
     world.accepted = box->accepted;
