@@ -133,6 +133,8 @@ world_test_obj := $(world_core_obj) $(world_mesh) \
 $(eval $(call tests,closed/world,$(B)/posix,$(world_test_obj) $(posix_lib),$(if \
     $(world_tree),-ldl) -lm))
 $(B)/test/world/window_test $(B)/test/sim/live_world_test: | $(world)
+$(B)/test/sim/live_world_test: | $(exhand)
+$(B)/posix/test/closed/sim/live_world_test.o: PORT_HOSTFLAGS += -DEXHAND_PROGRAM='"$(exhand)"'
 $(B)/posix/test/closed/world/window_test.o \
 $(B)/posix/test/closed/sim/live_world_test.o: PORT_HOSTFLAGS += -DWORLD_PROGRAM='"$(world)"'
 

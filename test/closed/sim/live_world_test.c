@@ -5,6 +5,7 @@
 #include "file_of.h"
 
 #include <arpa/inet.h>
+#include <dirent.h>
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <time.h>
@@ -125,10 +126,10 @@ TEST(world_modbus_log_and_black_box_together)
     strcpy(dir, said_dir());
     (void)close(open_port());
     world = start_world();
-    rig_start(&r,
-        WORDS("run", "--scene", "bilateral", "--udp", at, "--fingers", "index,middle", "--rate",
-            "500", "--modbus", "tcp:127.0.0.1:0", "--log", said_path(dir, "a.exh"), "--blackbox",
-            said_path(dir, "b.exh"), "--let-go", "3", "--grip"));
+    rig_start(
+        &r, WORDS("run", "--scene", "bilateral", "--udp", at, "--fingers", "index,middle", "--rate",
+                "500", "--modbus", "tcp:127.0.0.1:0", "--log", said_path(dir, "a.exh"),
+                "--blackbox", said_path(dir, "b.exh"), "--let-go", "3", "--grip"));
     wait_for_contact(&r);
     end_world(world);
     wait_for(r.dir, "the world has been silent for");
@@ -148,11 +149,96 @@ TEST(world_modbus_log_and_black_box_together)
     check_note("index: %ld contacts under Modbus, log and black box", felt);
 }
 
-#else
-TEST(world_modbus_log_and_black_box_together)
+/* `make live`, its three programs in one group. */
+static int live(int argc, char **argv)
 {
-    check_note("libmodbus is not here: not tried");
+    (void)argc;
+    unsetenv("DISPLAY");
+    unsetenv("WAYLAND_DISPLAY");
+    if (argv[1]) { setenv("LIVE_SECONDS", argv[1], 1); }
+    execl("ports/posix/live.sh", "live.sh", EXHAND_PROGRAM, WORLD_PROGRAM, (char *)NULL);
+    return 99;
 }
+
+static void live_ended(const char *dir, pid_t group, int status)
+{
+    said_end(&s, dir, group);
+    CHECK(s.status == status, "%d, want %d: %s %s", s.status, status, s.out, s.err);
+    CHECK(kill(-group, 0) == -1 && errno == ESRCH, "a process is left");
+}
+
+/* Whether a process is of this group and its command line has this word; blanks are zeros there. */
+static int is_of(const char *pid, pid_t group, const char *word)
+{
+    static char line[SAID_B];
+    char path[64];
+    int n, of = 0;
+    snprintf(path, sizeof path, "/proc/%.20s/stat", pid);
+    said_read(line, path);
+    if (sscanf(line, "%*d (%*[^)]) %*c %*d %d", &of) != 1 || of != group) { return 0; }
+    snprintf(path, sizeof path, "/proc/%.20s/cmdline", pid);
+    memset(line, 0, sizeof line);
+    said_read(line, path);
+    for (n = 0; line[n] || line[n + 1]; n += (int)strlen(line + n) + 1) {
+        if (strcmp(line + n, word) == 0) { return 1; }
+    }
+    return 0;
+}
+
+static pid_t program_of(pid_t group, const char *word)
+{
+    const struct dirent *e;
+    pid_t pid = 0;
+    DIR *d = opendir("/proc");
+    CHECK(d != NULL, "no /proc");
+    while (pid == 0 && (e = readdir(d)) != NULL) {
+        if (is_of(e->d_name, group, word)) { pid = atoi(e->d_name); }
+    }
+    closedir(d);
+    CHECK(pid > 0, "no process with %s", word);
+    return pid;
+}
+
+static void wait_for_watch(const char *dir)
+{
+    static char text[SAID_B];
+    const time_t end = time(NULL) + WAIT_S;
+    do {
+        nap();
+        said_read(text, said_path(dir, "said.out"));
+        CHECK(time(NULL) < end, "nothing is watched: %s", text);
+    } while (!strstr(text, " s  "));
+}
+
+/* By its time, by Ctrl-C, and as one of the three ends: no process is left, and no wait. */
+TEST(make_live_ends_all_three)
+{
+    static const struct {
+        const char *seconds, *kill; /* both NULL: Ctrl-C */
+        int status;
+    } way[] = {{"4", NULL, 0}, {NULL, NULL, 130}, {NULL, "--headless", 137}, {NULL, "run", 137},
+        {NULL, "watch", 137}};
+    char *dir = said_dir();
+    for (size_t i = 0; i < sizeof way / sizeof way[0]; i++) {
+        const pid_t group = said_start(dir, live, WORDS("live", way[i].seconds));
+        if (way[i].seconds == NULL) { wait_for_watch(dir); }
+        if (way[i].kill) {
+            kill(program_of(group, way[i].kill), SIGKILL);
+        } else if (way[i].seconds == NULL) {
+            kill(-group, SIGINT);
+        }
+        live_ended(dir, group, way[i].status);
+        CHECK(strstr(s.out, "it runs without pictures") && strstr(s.out, "box: modbus: tcp:"), "%s",
+            s.out);
+        if (i == 0) { CHECK(contacts(s.out, "  index ") > 0, "%s", s.out); }
+    }
+    said_clean(dir);
+}
+
+#else
+TEST(make_live_ends_all_three) { check_note("libmodbus is not here: not tried"); }
+
+TEST(world_modbus_log_and_black_box_together) { check_note("libmodbus is not here: not tried"); }
 #endif
 
 TEST(a_world_that_is_not_there_is_said_and_fails)
@@ -164,8 +250,7 @@ TEST(a_world_that_is_not_there_is_said_and_fails)
     said(&s, dir, cli_run,
         WORDS("run", "--scene", "bilateral", "--udp", at, "--rate", "500", "--seconds", "3"));
     CHECK(s.status == 1 && strstr(s.err, line), "%d %s", s.status, s.err);
-    CHECK(strstr(s.out, "no world") && strstr(s.out, ": 0 packets"),
-        "%s", s.out);
+    CHECK(strstr(s.out, "no world") && strstr(s.out, ": 0 packets"), "%s", s.out);
     said(&s, dir, cli_bilateral,
         WORDS("bilateral", "--udp", at, "--rate", "500", "--speed", "fast", "--approaches", "1"));
     CHECK(s.status == 1 && strstr(s.err, line), "%d %s", s.status, s.err);
@@ -186,7 +271,8 @@ static void put(int fd, const struct sockaddr_in *to, int n)
 {
     static const char junk[40] = "XW";
     for (int i = 0; i < n; i++) {
-        CHECK(sendto(fd, junk, sizeof junk, 0, (const struct sockaddr *)to, sizeof *to) > 0, "send");
+        CHECK(
+            sendto(fd, junk, sizeof junk, 0, (const struct sockaddr *)to, sizeof *to) > 0, "send");
     }
 }
 
@@ -260,11 +346,13 @@ TEST(a_recording_is_played_again_and_again)
     CHECK(s.status == 2 && strstr(s.err, "--record: ") && strstr(s.err, "not drop"), "%d %s",
         s.status, s.err);
     (void)remove(file);
-    said(&s, dir, cli_run, WORDS("run", "--scene", "bilateral", "--record", file, "--seconds", "1"));
+    said(
+        &s, dir, cli_run, WORDS("run", "--scene", "bilateral", "--record", file, "--seconds", "1"));
     CHECK(s.status == 3 && strstr(s.err, file), "%d %s", s.status, s.err);
     said_clean(dir);
 }
 
 TEST_MAIN("live_world", world_modbus_log_and_black_box_together,
     a_world_that_is_not_there_is_said_and_fails, packets_that_are_no_worlds_are_said_and_counted,
-    bad_addresses_and_other_scenes_are_refused, a_recording_is_played_again_and_again);
+    bad_addresses_and_other_scenes_are_refused, make_live_ends_all_three,
+    a_recording_is_played_again_and_again);
