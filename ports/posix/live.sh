@@ -58,14 +58,28 @@ if [ -z "$DISPLAY$WAYLAND_DISPLAY" ]; then
     echo "world: no screen (DISPLAY, WAYLAND_DISPLAY): it runs without pictures"
 fi
 
-# A port that somebody has is said at once.
+without_pictures()
+{
+    sed 's/^/world: /' "$dir/world"
+    echo "world: it runs without pictures"
+    head=--headless
+}
+
+# What is wrong with the world is said before there is a box. Of free ports the next is taken.
 port=${LIVE_UDP:-$((20000 + $$ % 20000))}
 for _ in {1..20}; do
     start_world
     sleep 0.3
     is_there "$there" && break
-    grep -q "choose another address or port" "$dir/world" && [ -z "$LIVE_UDP" ] || break
-    port=$((port + 1))
+    wait "$there"
+    status=$?
+    if [ "$status" = 3 ] && [ -z "$head" ]; then
+        without_pictures
+    elif grep -q "choose another address or port" "$dir/world" && [ -z "$LIVE_UDP" ]; then
+        port=$((port + 1))
+    else
+        finish "$status"
+    fi
 done
 
 # shellcheck disable=SC2086 # options
@@ -88,9 +102,7 @@ while :; do
     status=$?
     # Built without pictures, or no window can be: the box takes another world as it comes.
     if [ "$status" = 3 ] && [ -z "$head" ] && ! is_there "$there" && is_there "$box"; then
-        sed 's/^/world: /' "$dir/world"
-        echo "world: it runs without pictures"
-        head=--headless
+        without_pictures
         start_world
         continue
     fi
