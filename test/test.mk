@@ -132,11 +132,9 @@ world_test_obj := $(world_core_obj) $(world_mesh) \
                   link_trace) $(B)/posix/ports/posix/base/none.o
 $(eval $(call tests,closed/world,$(B)/posix,$(world_test_obj) $(posix_lib),$(if \
     $(world_tree),-ldl) -lm))
-$(B)/test/world/window_test $(B)/test/sim/live_world_test: | $(world)
-$(B)/test/sim/live_world_test: | $(exhand)
-$(B)/posix/test/closed/sim/live_world_test.o: PORT_HOSTFLAGS += -DEXHAND_PROGRAM='"$(exhand)"'
-$(B)/posix/test/closed/world/window_test.o \
-$(B)/posix/test/closed/sim/live_world_test.o: PORT_HOSTFLAGS += -DWORLD_PROGRAM='"$(world)"'
+$(B)/test/world/window_test $(B)/test/sim/live_world_test: | $(world) $(exhand)
+$(B)/posix/test/closed/world/window_test.o $(B)/posix/test/closed/sim/live_world_test.o: \
+    PORT_HOSTFLAGS += -DWORLD_PROGRAM='"$(world)"' -DEXHAND_PROGRAM='"$(exhand)"'
 
 # The port contract, on the port that runs here.
 $(eval $(call tests,port,$(B)/posix,$(B)/posix/test/port/posix.o $(filter-out %/loop.o,$(sim_obj)) \

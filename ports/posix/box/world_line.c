@@ -2,6 +2,7 @@
 #include "box/world_line.h"
 
 #include "base/option.h"
+#include "box/hand.h"
 
 #include <arpa/inet.h>
 #include <inttypes.h>

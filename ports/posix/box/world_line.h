@@ -6,9 +6,9 @@
 
 #include "posix.h"
 
-#include "bilateral/bilateral.h"
-
 #include <stdio.h>
+
+struct bilateral_box;
 
 /* What --udp gives: HOST:PORT, a name or numbers. The board's line leads there, from any port of
  * ours. 0, or 2 after a line on stderr. */
