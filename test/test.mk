@@ -97,8 +97,8 @@ $(B)/test/loop.o: lib/src/run/loop.c $(stamp)
 	$(Q)$(CC) $(base) $(CFLAGS) -Dexh_assert_failed=exh_loop_assert_failed -Wno-missing-prototypes \
 	    -c $< -o $@
 closed_obj := $(filter-out %/main.o %/loop.o,$(cli_obj) $(dev_obj)) $(B)/test/loop.o
-$(if $(filter libmodbus,$(modbus)),$(B)/posix/test/closed/sim/modbus%.o: \
-    PORT_HOSTFLAGS += -DEXH_MODBUS)
+$(if $(filter libmodbus,$(modbus)),$(B)/posix/test/closed/sim/modbus%.o \
+    $(B)/posix/test/closed/sim/live_world_test.o: PORT_HOSTFLAGS += -DEXH_MODBUS)
 $(eval $(call tests,closed/sim,$(B)/posix,$(closed_obj) $(gpio_none) $(posix_lib),$(cli_libs)))
 
 # Scene custom with generated folders: those of the example, and others.
@@ -132,8 +132,9 @@ world_test_obj := $(world_core_obj) $(world_mesh) \
                   link_trace) $(B)/posix/ports/posix/base/none.o
 $(eval $(call tests,closed/world,$(B)/posix,$(world_test_obj) $(posix_lib),$(if \
     $(world_tree),-ldl) -lm))
-$(B)/test/world/window_test: | $(world)
-$(B)/posix/test/closed/world/window_test.o: PORT_HOSTFLAGS += -DWORLD_PROGRAM='"$(world)"'
+$(B)/test/world/window_test $(B)/test/sim/live_world_test: | $(world) $(exhand)
+$(B)/posix/test/closed/world/window_test.o $(B)/posix/test/closed/sim/live_world_test.o: \
+    PORT_HOSTFLAGS += -DWORLD_PROGRAM='"$(world)"' -DEXHAND_PROGRAM='"$(exhand)"'
 
 # The port contract, on the port that runs here.
 $(eval $(call tests,port,$(B)/posix,$(B)/posix/test/port/posix.o $(filter-out %/loop.o,$(sim_obj)) \

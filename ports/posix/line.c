@@ -54,6 +54,8 @@ int line_start(const struct posix_line *cfg, uint64_t seed)
     return 0;
 }
 
+uint64_t posix_line_strangers(void) { return line.udp_open ? line.udp.strangers : 0; }
+
 struct sim_link *posix_link(void) { return &line.link; }
 
 /* Answers go to whoever sent the newest good packet; a flood of others turns them nowhere. */

@@ -6,6 +6,8 @@
 
 #include "sim/link.h"
 
+#include <stdint.h>
+
 struct posix_line {
     int on;
     struct sim_link_par way[SIM_LINK_WAYS];       /* SIM_LINK_OUT, SIM_LINK_IN */
@@ -32,6 +34,9 @@ void line_advance(double now_s);
 
 int line_send(double now_s, const void *buf, size_t len_B);
 int line_recv(double now_s, void *buf, size_t cap_B);
+
+/* Packets that came to the socket from elsewhere than its peer. */
+uint64_t posix_line_strangers(void);
 
 /* The ways, for their counts and for changes on the way. */
 struct sim_link *posix_link(void);

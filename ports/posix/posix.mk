@@ -84,6 +84,15 @@ demo: all $(lab)
 .PHONY: lab
 lab: $(lab)
 
+##2 Run a world, a box in it and `exhand watch` until one ends or Ctrl-C (SECONDS=10, ARGS: of the
+## box).
+.PHONY: live
+live:
+	@.ci/deps "a box that is watched" "test -f /usr/include/modbus/modbus.h" libmodbus-dev || exit 3
+	@$(MAKE) --no-print-directory world
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(exhand)
+	@LIVE_SECONDS="$(SECONDS)" LIVE_ARGS="$(ARGS)" ports/posix/live.sh $(exhand) $(world)
+
 FIT_BUDGET ?= 6000
 
 ## Search for the plant by every reading of the analysis, for hours (FIT_BUDGET=N plants); state is

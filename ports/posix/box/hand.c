@@ -4,6 +4,7 @@
 #include "box/arming.h"
 #include "box/dumpfile.h"
 #include "box/glove_line.h"
+#include "box/world_line.h"
 #include "base/option.h"
 #include "base/param.h"
 
@@ -155,11 +156,13 @@ static void watch_arming(void)
 
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
+    const struct bilateral_signals *sig = (const void *)exh_scene_bilateral.signal;
     int busy = 0;
     dumpfile_after(tick, in, out);
     run.last_tick = tick;
     run.r->ticks++;
     watch_arming();
+    if (!run.sees) { world_line_after(&sig->box); }
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
         if (run.cfg->board.exo.fingers >> f & 1) { busy |= one_finger(f); }
     }
@@ -336,6 +339,7 @@ int bilateral_run(const struct bilateral_run_cfg *c, struct bilateral_run *r)
     run.done_s = -1;
     run.sees = c->board.line.udp_local == NULL;
     run.see_every = c->rate_Hz / SEES_HZ + 1;
+    world_line_start();
     err = bilateral_stage(c);
     if (err == 0) { put_up(c); }
     if (err < 0) { return err; }

@@ -6,6 +6,8 @@
 #include "base/params_file.h"
 #include "box/hand.h"
 
+#include <stdio.h>
+
 #define BILATERAL_SPEEDS_MAX   8
 #define BILATERAL_SETTINGS_MAX 64
 #define BILATERAL_NAME_B       32
@@ -42,6 +44,9 @@ int bilateral_take_pose(void *ctx, const char *text);
 int bilateral_take_setting(void *ctx, const char *text);
 int bilateral_take_device(void *ctx, const char *text);
 int bilateral_print_params(const struct bilateral_options *o);
+
+/* What each finger did in all: its range of motion, its contacts, its largest force. */
+void bilateral_print_session(FILE *f, const struct bilateral_run *r, unsigned fingers);
 
 /* The run of one speed. */
 struct bilateral_run_cfg bilateral_at_speed(const struct bilateral_options *o, double mps);

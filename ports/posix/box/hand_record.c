@@ -5,6 +5,7 @@
 #include "box/recording.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +17,7 @@
 #define GRID_HZ 60.0
 #define STEP_S  10.0 /* no two rows are farther apart */
 #define LINE_B  1024
+#define BACK_S  1.0 /* from the last row to the first */
 
 /* The order of 23 angles (four of each finger, then palm and wrist; -1: the index's abduction,
  * which this glove does not have) in that of 22. */
@@ -208,6 +210,29 @@ int hand_record_read(
     return err;
 }
 
+/* Least jerk: no more of it than a finger makes by itself. */
+static double eased(double s) { return s * s * s * (10 - 15 * s + 6 * s * s); }
+
+int hand_record_again(struct hand_record *h)
+{
+    const long back = (long)ceil(BACK_S * h->row_hz);
+    for (unsigned i = 0; i < SIM_FINGERS; i++) {
+        double *more = realloc(h->string_m[i], (size_t)(h->rows + back) * sizeof *more);
+        if (more == NULL) {
+            cli_complain("out of memory");
+            return 2;
+        }
+        h->string_m[i] = more;
+        for (long n = 0; n < back; n++) {
+            const double s = eased((double)(n + 1) / (double)(back + 1));
+            more[h->rows + n] = more[h->rows - 1] + s * (more[0] - more[h->rows - 1]);
+        }
+    }
+    h->rows += back;
+    h->again = 1;
+    return 0;
+}
+
 void hand_record_free(struct hand_record *h)
 {
     for (unsigned i = 0; i < SIM_FINGERS; i++) { free(h->string_m[i]); }
@@ -217,6 +242,6 @@ void hand_record_free(struct hand_record *h)
 void hand_record_use(const struct hand_record *h, struct sim_exo_par *exo)
 {
     for (unsigned i = 0; i < SIM_FINGERS; i++) {
-        exo->record[i] = (struct sim_path_record){h->string_m[i], h->rows, h->row_hz};
+        exo->record[i] = (struct sim_path_record){h->string_m[i], h->rows, h->row_hz, h->again};
     }
 }

@@ -16,6 +16,7 @@ struct hand_record {
     double *string_m[SIM_FINGERS]; /* rows each */
     long rows;
     double row_hz;
+    int again;
 };
 
 /* row_hz: of rows without a clock. Arms: of the fingers of exo. 0, or after a line on stderr 2, 3
@@ -23,6 +24,10 @@ struct hand_record {
 int hand_record_read(
     struct hand_record *h, const char *path, double row_hz, const struct sim_exo_par *exo);
 void hand_record_free(struct hand_record *h);
+
+/* It is played again and again: behind its last row a way of a second leads back to its first. 0,
+ * or 2 after a line on stderr. */
+int hand_record_again(struct hand_record *h);
 
 /* The fingers of exo do what was recorded; h must outlive the run. */
 void hand_record_use(const struct hand_record *h, struct sim_exo_par *exo);

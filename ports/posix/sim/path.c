@@ -175,7 +175,8 @@ static void next_phase(struct sim_path *p)
 
 static double control(const struct sim_path_record *r, long n)
 {
-    return r->string_m[n < 0 ? 0 : n < r->rows ? n : r->rows - 1];
+    const long last = r->again ? n % r->rows : r->rows - 1;
+    return r->string_m[n < 0 ? 0 : n < r->rows ? n : last];
 }
 
 /* From row `number` to the next, or near them; before the first and behind the last it stands. */
@@ -196,7 +197,7 @@ static void play(struct sim_path *p)
 
 static void next_row(struct sim_path *p)
 {
-    if (p->number < p->record.rows) {
+    if (p->record.again || p->number < p->record.rows) {
         play(p);
         return;
     }

@@ -56,6 +56,7 @@ struct sim_path_record {
     const double *string_m;
     long rows;
     double row_hz;
+    int again; /* 1: behind the last row comes the first, for ever */
 };
 
 enum sim_path_phase {

@@ -331,7 +331,7 @@ TEST(a_recording_is_smooth_and_stays_within_its_rows)
     static double string_m[300];
     const struct sim_path_load load = {0, 0, 0, 0, 300, 5};
     const struct sim_path_par par = sim_path_default();
-    const struct sim_path_record r = {string_m, 300, 60};
+    const struct sim_path_record r = {string_m, 300, 60, 0};
     const double h = 1e-4;
     struct sim_path p;
     double v = 0, a = 0, last = 0;

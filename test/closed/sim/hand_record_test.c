@@ -94,6 +94,41 @@ TEST(rows_without_a_clock_have_the_rate_they_are_given)
     hand_record_free(&h);
 }
 
+/* Behind the last row a way leads to the first, as smooth as all else, and time goes on. */
+TEST(a_recording_again_has_no_seam)
+{
+    const struct sim_path_load load = {0, 0, 0, 0, 300, 5};
+    const struct sim_path_par par = sim_path_default();
+    struct hand_record h;
+    struct sim_path p;
+    const char *name = file_of("0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n"
+                               "0,0,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n"
+                               "0,0,0,0,2,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n");
+    double last, once_m[60];
+    exo_par = sim_exo_default();
+    CHECK_EQ_I64(hand_record_read(&h, name, 10, &exo_par), 0);
+    (void)remove(name);
+    CHECK_EQ_I64(hand_record_again(&h), 0);
+    hand_record_use(&h, &exo_par);
+    CHECK(h.rows == 13 && exo_par.record[1].again, "%ld rows", h.rows);
+    sim_path_start(&p, &par, &load, &exo_par.record[1], 1);
+    last = sim_path_at(&p, 0);
+    for (int n = 1; n < 60000; n++) { /* 1.3 s a round */
+        const double t = n * 1e-3;
+        double now;
+        sim_path_advance(&p, t);
+        now = sim_path_at(&p, t);
+        CHECK(fabs(now - last) < 0.3e-3, "%.3f s: %.6f m, then %.6f m", t, last, now);
+        last = now;
+        if (n >= 1300 && n < 2600 && n % 50 == 0) { once_m[(n - 1300) / 50] = now; }
+        if (n >= 53300 && n < 54600 && n % 50 == 0) {
+            CHECK(fabs(now - once_m[(n - 53300) / 50]) < 1e-9, "round 41 is not round 1");
+        }
+    }
+    CHECK(once_m[6] > 0.02, "%.4f m, rows to 0.04 m", once_m[6]);
+    hand_record_free(&h);
+}
+
 static const char *bad_path;
 
 static int command(int argc, char **argv)
@@ -192,5 +227,5 @@ TEST(fingers_follow_real_hands)
 }
 
 TEST_MAIN("hand_record", rows_with_a_clock_go_onto_an_even_grid, every_finger_gets_its_own_angles,
-    rows_without_a_clock_have_the_rate_they_are_given, bad_files_are_refused_with_the_line,
-    fingers_follow_real_hands);
+    rows_without_a_clock_have_the_rate_they_are_given, a_recording_again_has_no_seam,
+    bad_files_are_refused_with_the_line, fingers_follow_real_hands);

@@ -3,6 +3,7 @@
 #include "contact/bilateral.h"
 
 #include "box/hand_record.h"
+#include "box/world_line.h"
 
 #include "base/assign.h"
 #include "base/cli.h"
@@ -13,10 +14,6 @@
 
 #include <stdio.h>
 #include <string.h>
-
-/* The device is simulated, so a tick that another program delayed is made up for: both ends are to
- * be tried, not this machine. */
-#define UDP_SLACK_S 1.0
 
 static struct hand_record recorded; /* of --record */
 
@@ -176,11 +173,9 @@ static int go(struct bilateral_options *o, double rate_Hz, const struct bilatera
     o->run.rate_Hz = (uint32_t)(rate_Hz + 0.5);
     own_gains(o);
     if (o->udp) {
-        o->run.board.line.on = 1;
-        o->run.board.line.udp_local = "0.0.0.0:0";
-        o->run.board.line.udp_peer = o->udp;
+        if (world_line_use(o->udp, &o->run.board.line)) { return 2; }
         o->run.board.pace = 1;
-        o->run.board.slack_s = UDP_SLACK_S;
+        o->run.board.slack_s = WORLD_LINE_SLACK_S;
     }
     err = refuse(o);
     if (err == 0 && o->out) { err = bilateral_out_open(o->out); }

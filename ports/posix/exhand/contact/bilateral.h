@@ -50,8 +50,6 @@ void bilateral_print(FILE *f, const struct bilateral_result *r);
 /* The paper's figures stand where the same thing was measured. local_Npm: 0 where there is none. */
 void bilateral_print_paper(FILE *f, const struct bilateral_options *o,
     const struct bilateral_result *r, int n, double local_Npm);
-/* What each finger did in all: its range of motion, its contacts, its largest force. */
-void bilateral_print_session(FILE *f, const struct bilateral_run *r, unsigned fingers);
 void bilateral_csv_head(FILE *f);
 void bilateral_csv(FILE *f, const struct bilateral_result *r);
 /* Whether d_lim is far enough off for these speeds; and what it should be. */

@@ -6,6 +6,7 @@
 #include "base/option.h"
 #include "box/hand_need.h"
 #include "box/table2.h"
+#include "box/world_line.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -200,7 +201,7 @@ int bilateral_experiment(const struct bilateral_options *o)
     static struct bilateral_result result[BILATERAL_SPEEDS_MAX * BILATERAL_FINGERS];
     const double local = local_Npm(o);
     FILE *csv;
-    int n = 0, err = 0;
+    int n = 0, err = 0, heard = 0;
     memset(result, 0, sizeof result);
     if (o->run.k_Npm < 0 || o->run.b_Nspm < 0) {
         printf("%.6g Hz, %s's own k and b", (double)o->run.rate_Hz, o->scene);
@@ -212,6 +213,7 @@ int bilateral_experiment(const struct bilateral_options *o)
     bilateral_print_head(stdout);
     for (int i = 0; err == 0 && i < o->speeds && !posix_interrupted(); i++) {
         err = one_speed(o, i, result, &n);
+        heard |= world_line_heard();
     }
     if (err == 0 && n > 0) {
         bilateral_print_advice(stdout, o, result, n);
@@ -226,5 +228,6 @@ int bilateral_experiment(const struct bilateral_options *o)
         err |= bilateral_out_pictures(o->out, result, n, o->run.k_Npm, o->run.b_Nspm, o->link);
     }
     for (int i = 0; i < n; i++) { free(result[i].contact); }
+    if (err == 0 && o->udp && !heard) { err = 1; } /* nobody's contacts: that was said */
     return err ? err : posix_interrupted() ? 130 : 0;
 }

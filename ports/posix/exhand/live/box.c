@@ -4,6 +4,7 @@
 
 #include "box/dumpfile.h"
 #include "slave/slave.h"
+#include "box/world_line.h"
 #include "box/table2.h"
 
 #include "exhand/error.h"
@@ -116,11 +117,12 @@ int live_stage(struct live_options *o, const struct exh_scene *sc)
     return bilateral_stage(&c);
 }
 
-/* Fingers that approach a wall again and again. */
+static struct bilateral_run felt; /* what the hand's box did */
+
+/* Fingers that approach a wall, or do what was recorded, again and again. */
 static int run_hand(struct live_options *o)
 {
     struct bilateral_run_cfg c = hand_cfg(o);
-    struct bilateral_run r;
     int err;
     c.live = o->live;
     c.more = &hooks;
@@ -129,9 +131,9 @@ static int run_hand(struct live_options *o)
     c.board.glove_tty = o->glove ? &o->tty : NULL;
     c.glove_cal = o->glove_image ? &o->glove_cal : NULL;
     live_status(lowest(c.board.exo.fingers));
-    err = bilateral_run(&c, &r);
-    err = dumped(err, r.dumps);
-    bilateral_run_free(&r);
+    err = bilateral_run(&c, &felt);
+    err = dumped(err, felt.dumps);
+    bilateral_run_free(&felt);
     if (o->glove) { glove_tty_close(&o->tty); }
     return err;
 }
@@ -143,6 +145,17 @@ int live_box(struct live_options *o, const struct exh_scene *sc)
     clients.status = 0;
     live_person(&(struct live_person){o->grip, o->let_go_s});
     return sc == &exh_scene_bilateral ? run_hand(o) : run_mass(o, sc);
+}
+
+int live_box_felt(const struct live_options *o)
+{
+    long contacts = 0;
+    if (o->udp == NULL && o->record == NULL) { return 0; }
+    bilateral_print_session(stdout, &felt, o->hand.run.board.exo.fingers);
+    if (o->udp == NULL) { return 0; }
+    world_line_print(stdout, &felt.box);
+    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) { contacts += felt.finger[f].contacts; }
+    return contacts == 0 && !world_line_heard();
 }
 
 int live_box_clients(void) { return clients.status; }

@@ -5,6 +5,7 @@
 #include "base/assign.h"
 #include "box/glove_image.h"
 #include "box/glove_line.h"
+#include "box/world_line.h"
 #include "live/live.h"
 #include "slave/slave.h"
 #include "base/option.h"
@@ -72,6 +73,29 @@ static int settle(struct live_options *o, const struct exh_scene *sc, int i)
     return 0;
 }
 
+/* A world elsewhere, and what the simulated hand does before it. */
+static int hand_of(struct live_options *o, const struct exh_scene *sc)
+{
+    struct sim_exo_par *const exo = &o->hand.run.board.exo;
+    const char *const given = o->udp ? "udp" : o->record ? "record" : NULL;
+    int err = 0;
+    if (given && sc != &exh_scene_bilateral) {
+        cli_complain("--%s: %s: goes with --scene bilateral, not %s", given,
+            o->udp ? o->udp : o->record, o->scene);
+        return 2;
+    }
+    if (o->slack_s < 0) { o->slack_s = o->udp && !o->gpio.given ? WORLD_LINE_SLACK_S : 0; }
+    if (o->udp) {
+        o->pace = 1;
+        err = world_line_use(o->udp, &o->hand.run.board.line);
+    }
+    if (err || o->record == NULL) { return err; }
+    err = hand_record_read(&o->recorded, o->record, o->record_Hz, exo);
+    if (err == 0) { err = hand_record_again(&o->recorded); }
+    if (err == 0) { hand_record_use(&o->recorded, exo); }
+    return err;
+}
+
 static int settle_all(struct live_options *o, const struct exh_scene *sc)
 {
     int err = 0;
@@ -108,6 +132,7 @@ static int open_modbus(const struct live_options *o)
 static int prepare(struct live_options *o, const struct exh_scene *sc)
 {
     int err = settle_all(o, sc);
+    if (err == 0) { err = hand_of(o, sc); }
     if (err == 0 && o->seconds * o->rate_Hz >= 4294967295.0) {
         cli_complain("--seconds: %.6g: at %.6g Hz %.0f at most, or leave it out", o->seconds,
             o->rate_Hz, 4294967294.0 / o->rate_Hz);
@@ -161,9 +186,11 @@ static int go(struct live_options *o)
         err = err == -EXH_E_IO ? 1 : err < 0 ? 2 : 0; /* the board failed; it could not be set up */
         words_end();
         live_status_end();
+        if (err == 0) { err = live_box_felt(o); }
     }
     if (o->modbus) { live_modbus_close(); }
     contacts_end();
+    hand_record_free(&o->recorded);
     if (live_log_close() && err == 0) { err = 1; }
     if (err == 0) { err = live_box_clients(); }
     return err ? err : posix_interrupted() ? 130 : 0;
@@ -177,6 +204,8 @@ static void defaults(struct live_options *o)
     o->scene = "drop";
     o->rate_Hz = 2000;
     o->seed = 1;
+    o->slack_s = -1;
+    o->record_Hz = o->hand.record_Hz;
     o->live.on = 1;
 }
 
@@ -201,12 +230,18 @@ int cli_run(int argc, char **argv)
         {"pace", CLI_FLAG, &o.pace, 0, 0, NULL,
             "follow the wall clock, by which ticks may be missed; else as fast as it goes"},
         {"slack", CLI_REAL, &o.slack_s, 0, 1, "S",
-            "with --pace: a tick so late is made up for, else it is missed (0)"},
+            "with --pace: a tick so late is made up for, else it is missed (0; with --udp 1)"},
         {"seconds", CLI_REAL, &o.seconds, 0, 1e9, "S", "the box's time, then it ends (never)"},
         {"fingers", CLI_CALL, &fingers, 0, 0, "F[,F...]",
             "of bilateral: thumb, index, ... or all (index)"},
         {"speed", CLI_CALL, &speed, 0, 0, "V",
             "of bilateral: slow, natural, fast or m/s (natural)"},
+        {"udp", CLI_TEXT, &o.udp, 0, 0, "HOST:PORT",
+            "of bilateral: the world is another process there; with --pace"},
+        {"record", CLI_TEXT, &o.record, 0, 0, "FILE",
+            "of bilateral: the fingers do what a glove recorded, again and again"},
+        {"record-rate", CLI_REAL, &o.record_Hz, 0.1, 10000, "HZ",
+            "of its rows, if they have no clock (100)"},
         {"set", CLI_CALL, &set, 0, 0, "NAME=VALUE", "a parameter of the scene"},
         {"load-params", CLI_TEXT, &o.params, 0, 0, "FILE",
             "an image of parameters, restored before --set"},

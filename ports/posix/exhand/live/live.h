@@ -4,6 +4,7 @@
 #define CLI_LIVE_H
 
 #include "box/hand_options.h"
+#include "box/hand_record.h"
 #include "box/contacts.h"
 #include "exhand/run/loop.h"
 #include "box/run.h"
@@ -16,8 +17,11 @@
 #define LIVE_SETTINGS_MAX 64
 
 struct live_options {
-    const char *scene, *params, *log, *blackbox, *modbus, *save, *glove, *glove_image;
-    double rate_Hz, seconds, let_go_s, slack_s;
+    const char *scene, *params, *log, *blackbox, *modbus, *save, *glove, *glove_image, *udp,
+        *record;
+    double rate_Hz, seconds, let_go_s;
+    double slack_s; /* < 0: not given */
+    double record_Hz;
     int64_t seed;
     int pace, grip, list, remote;
     struct contacts gpio;
@@ -26,7 +30,8 @@ struct live_options {
     struct run_setting setting[LIVE_SETTINGS_MAX];
     struct bilateral_options hand;
     struct run_live live;
-    struct glove_tty tty; /* of --glove-serial, while it runs */
+    struct hand_record recorded; /* of --record */
+    struct glove_tty tty;        /* of --glove-serial, while it runs */
     struct exh_glove_cal glove_cal;
 };
 
@@ -35,6 +40,8 @@ struct live_options {
 int live_stage(struct live_options *o, const struct exh_scene *sc);
 /* The box of this scene, until it ends: 0, or the -EXH_E... of board or scene. */
 int live_box(struct live_options *o, const struct exh_scene *sc);
+/* What was felt, of --udp and --record; an exit status: 1 if nothing was and no world was heard. */
+int live_box_felt(const struct live_options *o);
 /* What a client's thread could not do: an exit status; 0: nothing. */
 int live_box_clients(void);
 

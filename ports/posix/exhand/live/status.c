@@ -6,6 +6,7 @@
 #include "base/names.h"
 #include "base/param.h"
 #include "base/messages.h"
+#include "box/world_line.h"
 
 #include "exhand/safety.h"
 
@@ -66,11 +67,13 @@ static void count(char to[ODD_B], const char *before, uint64_t n, const char *be
 /* What was odd and is no fault by itself. */
 static void odd(char to[ODD_B])
 {
+    const char *const world = world_line_word();
     to[0] = '\0';
     count(to, "", status.missed, "missed");
     count(to, "log: ", live_log_lost(), "records lost");
     count(to, "", words_lost(), "lines not said");
     count(to, "contacts disagreed ", gpio_differed(), "times");
+    if (world[0]) { snprintf(to + strlen(to), ODD_B - strlen(to), ", %s", world); }
 }
 
 static void show(void)

@@ -337,6 +337,7 @@ int timeline_print(struct logfile *l, FILE *to)
     int bad;
     memset(&w, 0, sizeof w);
     w.log = l;
+    if (l->scene->params) { l->scene->defaults(); } /* its table is there behind that alone */
     w.now = calloc(n + 1, sizeof *w.now);
     w.before = calloc(n + 1, sizeof *w.before);
     if (w.now != NULL && w.before != NULL) {

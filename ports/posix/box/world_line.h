@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: MIT */
+/* World line: the world at the other end of --udp, and whether it is there. What changes is said on
+ * stderr, each line with the option and its value; the box goes on. */
+#ifndef BOX_WORLD_LINE_H
+#define BOX_WORLD_LINE_H
+
+#include "posix.h"
+
+#include <stdio.h>
+
+struct bilateral_box;
+
+/* What --udp gives: HOST:PORT, a name or numbers. The board's line leads there, from any port of
+ * ours. 0, or 2 after a line on stderr. */
+int world_line_use(const char *given, struct posix_line *line);
+
+/* The device is simulated, so a tick that another program delayed is made up for: both ends are to
+ * be tried, not this machine. */
+#define WORLD_LINE_SLACK_S 1.0
+
+/* A run begins; a tick of it has ended. */
+void world_line_start(void);
+void world_line_after(const struct bilateral_box *box);
+
+/* Of the run. A packet of a world has come; what is to be told of it now, "" where all is well; and
+ * a line of what came in all. */
+int world_line_heard(void);
+const char *world_line_word(void);
+void world_line_print(FILE *f, const struct bilateral_box *box);
+
+#endif
