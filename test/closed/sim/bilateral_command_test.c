@@ -212,8 +212,8 @@ TEST(files_and_tables_are_left_behind)
     said(&s, dir, cli_bilateral,
         WORDS("bilateral", "--speed", "natural", "--approaches", "2", "--out", dir));
     CHECK(s.status == 0, "%d: %s", s.status, s.err);
-    CHECK(strstr(s.out, "paper     41250") && strstr(s.out, "paper      25.0") &&
-              strstr(s.out, "0.825"),
+    CHECK(strstr(s.out, "; paper 41250\n") && strstr(s.out, "; paper 25.0\n") &&
+              strstr(s.out, "; paper 0.825\n") && strstr(s.out, ": 16 approaches of 8 seeds, "),
         "%s", s.out);
     for (size_t i = 0; i < LEN(left); i++) {
         struct stat st;

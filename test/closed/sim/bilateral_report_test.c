@@ -78,7 +78,7 @@ TEST(all_fingers_come_to_their_end)
     static struct said s;
     said(&s, dir, cli_bilateral, WORDS("bilateral", "--fingers", "all"));
     CHECK(s.status == 0 && s.err[0] == '\0', "%d: %s", s.status, s.err);
-    CHECK_EQ_I64(times(s.out, ": 5 approaches, 0 missed, "), 15);
+    CHECK_EQ_I64(times(s.out, ": 40 approaches of 8 seeds, 0 missed, "), 15);
     said(&s, dir, cli_bilateral,
         WORDS(NATURAL, "--fingers", "all", "--device", "hold=6", "--set", "stuck_time=2000"));
     CHECK(s.status == 1 && strstr(s.err, "the box stopped with faults 0x40: stuck"), "%d: %s",
