@@ -185,3 +185,31 @@ struct bilateral_line bilateral_stiffness(
     free(start);
     return line;
 }
+
+/* --- of several --- */
+
+static int by_size(const void *a, const void *b)
+{
+    const double d = *(const double *)a - *(const double *)b;
+    return d < 0 ? -1 : d > 0;
+}
+
+void bilateral_count(struct bilateral_count *to, const struct bilateral_contact *c, int n,
+    struct bilateral_line line)
+{
+    double *settle = calloc((size_t)n + 1, sizeof *settle);
+    memset(to, 0, sizeof *to);
+    to->contacts = n;
+    to->line = line;
+    for (int i = 0; i < n; i++) {
+        if (settle && c[i].settle_s >= 0) { settle[to->settled++] = c[i].settle_s; }
+        to->missed += c[i].missed;
+        to->early += c[i].early;
+        to->late += c[i].late;
+    }
+    if (to->settled) {
+        qsort(settle, (size_t)to->settled, sizeof settle[0], by_size);
+        to->settle_s = settle[to->settled / 2];
+    }
+    free(settle);
+}

@@ -52,4 +52,16 @@ struct bilateral_line {
 struct bilateral_line bilateral_stiffness(
     const struct bilateral_run *r, unsigned f, int approach, const char *plot);
 
+/* What a finger's approaches of one seed, or of several, came to. */
+struct bilateral_count {
+    int contacts, settled, missed, early, late;
+    double settle_s;                 /* median of those that settled; over seeds: mean of these */
+    struct bilateral_line line;      /* pooled; over seeds: mean, its interval, median of r2 */
+    double settle_lo_s, settle_hi_s; /* 95 % of the mean over seeds; hi 0: there is none */
+};
+
+/* Counts contacts c, n of them, and their line. */
+void bilateral_count(struct bilateral_count *to, const struct bilateral_contact *c, int n,
+    struct bilateral_line line);
+
 #endif

@@ -16,18 +16,6 @@ int bilateral_take_link(void *ctx, const char *text);
 /* experiment.c: exit status. */
 int bilateral_experiment(const struct bilateral_options *o);
 
-/* What a finger's approaches of one seed, or of several, came to. */
-struct bilateral_count {
-    int contacts, settled, missed, early, late;
-    double settle_s;                 /* median of those that settled; over seeds: mean of these */
-    struct bilateral_line line;      /* pooled; over seeds: mean, its interval, median of r2 */
-    double settle_lo_s, settle_hi_s; /* 95 % of the mean over seeds; hi 0: there is none */
-};
-
-/* experiment.c. Counts contacts c, n of them, and their line. */
-void bilateral_count(struct bilateral_count *to, const struct bilateral_contact *c, int n,
-    struct bilateral_line line);
-
 /* seeds.c. One speed with the seeds behind the first: adds them to count, by finger, which is the
  * first's. 0, or an exit status after a line on stderr. */
 int bilateral_seeds(

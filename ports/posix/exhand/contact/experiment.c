@@ -12,29 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int by_size(const void *a, const void *b)
-{
-    const double d = *(const double *)a - *(const double *)b;
-    return d < 0 ? -1 : d > 0;
-}
-
-void bilateral_count(struct bilateral_count *to, const struct bilateral_contact *c, int n,
-    struct bilateral_line line)
-{
-    static double settle[BILATERAL_CONTACTS_MAX];
-    memset(to, 0, sizeof *to);
-    to->contacts = n;
-    to->line = line;
-    for (int i = 0; i < n; i++) {
-        if (c[i].settle_s >= 0) { settle[to->settled++] = c[i].settle_s; }
-        to->missed += c[i].missed;
-        to->early += c[i].early;
-        to->late += c[i].late;
-    }
-    qsort(settle, (size_t)to->settled, sizeof settle[0], by_size);
-    to->settle_s = to->settled ? settle[to->settled / 2] : 0;
-}
-
 static void judge(const struct bilateral_run_cfg *c, const struct bilateral_run *r, unsigned f,
     const char *plot, struct bilateral_result *out)
 {
