@@ -407,7 +407,57 @@ TEST(input_that_is_none)
     said_clean(dir);
 }
 
-TEST_MAIN("quad_command", captures_decode_to_their_descriptions,
-    captures_fed_too_slowly_show_their_illegal_steps, a_capture_as_csv, a_sine_goes_from_end_to_end,
-    csv_bytes_and_truth_agree, index_is_printed_when_asked_for, modes_and_small_inputs,
-    options_that_make_no_sense, input_that_is_none);
+/* --- positions -------------------------------------------------------------------- */
+
+TEST(recorded_positions_are_counts_again)
+{
+    static const char rows[] = "t, other, theta\n0, 9, 0\n1, 9, -0.25\n2, 9, -0.25\n"
+                               "3, 9, 0.50\n4, 9, 1.75\n";
+    static const struct {
+        const char *column, *step;
+        int status;
+        const char *says;
+    } row[] = {
+        {"theta", "0.25", 0, "rows=5 net=7 low=-1 high=7 most=5 still=25.0% off=0\n"},
+        {"3", "0.25", 0, "rows=5 net=7 low=-1 high=7 most=5 still=25.0% off=0\n"},
+        {"theta", "0.245", 0, "off=0.14\n"},
+        {"theta", "1", 2, "line 5: not a whole count: give --step"},
+        {"alpha", "1", 2, "its first line has no alpha"},
+        {"4", "1", 2, "line 2: no number in the column of --position"},
+    };
+    char *dir = said_dir();
+    const char *csv = make_file(dir, "rows.csv", rows, sizeof rows - 1);
+    for (size_t i = 0; i < LEN(row); i++) {
+        said(&s, dir, cli_quad,
+            WORDS("quad", "--csv", csv, "--position", row[i].column, "--step", row[i].step));
+        CHECK(s.status == row[i].status && strstr(i < 3 ? s.out : s.err, row[i].says),
+            "%zu: %d %s%s", i, s.status, s.out, s.err);
+    }
+    said(&s, dir, cli_quad, WORDS("quad", "--position", "theta", "--raw"));
+    CHECK(s.status == 2 && strstr(s.err, "--position: goes with --csv FILE"), "%s", s.err);
+    said_clean(dir);
+}
+
+/* Recorded 512 lines x 4, as its description has it: at most 4 counts a sample, 54 % without one.
+ */
+TEST(a_recorded_motor_is_whole_counts)
+{
+    const char *data = getenv("EXH_DATA") ? getenv("EXH_DATA") : "../shared/data";
+    char *dir = said_dir(), path[512];
+    (void)snprintf(path, sizeof path, "%s/motor-encoder-qube/qube_150615.csv", data);
+    if (access(path, R_OK) != 0) {
+        check_note("%s: not there: not tested", path);
+    } else {
+        said(&s, dir, cli_quad,
+            WORDS("quad", "--csv", path, "--position", "theta", "--step", "0.00306796157577"));
+        CHECK(s.status == 0 && strstr(s.out, "rows=10000 ") && strstr(s.out, " most=4 still=53.9%"),
+            "%d %s%s", s.status, s.out, s.err);
+    }
+    said_clean(dir);
+}
+
+TEST_MAIN("quad_command", recorded_positions_are_counts_again, a_recorded_motor_is_whole_counts,
+    captures_decode_to_their_descriptions, captures_fed_too_slowly_show_their_illegal_steps,
+    a_capture_as_csv, a_sine_goes_from_end_to_end, csv_bytes_and_truth_agree,
+    index_is_printed_when_asked_for, modes_and_small_inputs, options_that_make_no_sense,
+    input_that_is_none);

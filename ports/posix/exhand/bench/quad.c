@@ -3,6 +3,7 @@
 #include "base/cli.h"
 
 #include "base/option.h"
+#include "bench/positions.h"
 #include "bench/samples.h"
 
 #include "exhand/quad.h"
@@ -148,6 +149,8 @@ int cli_quad(int argc, char **argv)
 {
     struct samples_opt opt = {.a = -1, .b = -1, .index = -1, .every = 1};
     int raw = 0, x1 = 0, x2 = 0, x4 = 0;
+    const char *position = NULL;
+    double step = 1;
     const struct cli_option option[] = {
         {"raw", CLI_FLAG, &raw, 0, 0, NULL, "samples on standard input, one a byte"},
         {"rate", CLI_REAL, &opt.rate_Hz, 1, 1e9, "HZ", "samples a second"},
@@ -157,6 +160,9 @@ int cli_quad(int argc, char **argv)
             "where an index is: prints also index_cnt=, net at its last rising edge, and indices="},
         {"csv", CLI_TEXT, &opt.csv, 0, 0, "FILE",
             "rows of time in s, a, b; with --rate of a, b; - is standard input"},
+        {"position", CLI_TEXT, &position, 0, 0, "COLUMN",
+            "the rows of --csv hold positions instead, in the column of this name or number"},
+        {"step", CLI_REAL, &step, 1e-12, 1e12, "X", "of --position: what one count is there (1)"},
         {"every", CLI_INT, &opt.every, 1, 1e9, "N",
             "keep one sample in N: what a slower reader would have seen"},
         {"x4", CLI_FLAG, &x4, 0, 0, NULL, "count all edges (default)"},
@@ -169,11 +175,20 @@ int cli_quad(int argc, char **argv)
         "time between two changes, - if there were no two. Illegal steps are a finding: exit\n"
         "status 0, and a word on standard error. A sigrok session holds samples in bytes:\n"
         "  unzip -p FILE.sr 'logic-1*' | exhand quad --raw --rate 1e6 --a 1 --b 2\n"
-        "CSV may begin with a line of names; lines that begin with # or ; are left out.",
+        "CSV may begin with a line of names; lines that begin with # or ; are left out.\n"
+        "With --position: rows, net count, lowest, highest, most counts from row to row, share of\n"
+        "rows without a count, and how far from a whole count a position is at most.",
         option, sizeof option / sizeof option[0], 0};
     int err = cli_parse(&c, argc, argv, NULL);
 
     if (err) { return err == 1 ? 0 : err; }
+    if (position) {
+        if (opt.csv == NULL || raw) {
+            cli_complain("--position: goes with --csv FILE");
+            return 2;
+        }
+        return positions_print(opt.csv, position, step);
+    }
     if (x1 + x2 + x4 > 1) {
         cli_complain("--x1, --x2, --x4: give one of them");
         return 2;
