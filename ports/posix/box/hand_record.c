@@ -175,12 +175,14 @@ static int read_rows(
     struct hand_record *h, const char *path, double row_hz, const struct sim_exo_par *exo)
 {
     struct recording r;
-    int err = recording_read(&r, path, RECORDING_GUESS);
+    const struct recording_ask ask = {RECORDING_GUESS, NULL, NULL};
+    int err = recording_read(&r, path, &ask);
     if (err) { return err; }
     if (r.codes) {
         cli_complain("%s: codes: angles are wanted", path);
         err = 2;
     } else {
+        recording_hold(&r);
         err = even(h, &r, row_hz, exo);
     }
     recording_free(&r);

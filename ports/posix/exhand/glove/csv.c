@@ -7,6 +7,7 @@
 
 #include "exhand/error.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -60,9 +61,13 @@ static void codes_of(
     }
 }
 
-/* Nearest, limited; 1 if it was. */
+/* Nearest, limited; 1 if it was. No number: at the rail, so that the channel has its fault. */
 static int code_of(double v, int16_t *to)
 {
+    if (isnan(v)) {
+        *to = INT16_MAX;
+        return 0;
+    }
     const int beyond = v > 32767.5 || v < -32768.5;
     *to = (int16_t)(v > 32767 ? 32767 : v < -32768 ? -32768 : v < 0 ? v - 0.5 : v + 0.5);
     return beyond;
@@ -87,13 +92,19 @@ static void staged_cal(struct exh_glove_cal *cal)
     glove_cal_of_par(cal, &par);
 }
 
+struct recording_ask glove_asked(const struct glove_options *o)
+{
+    return (struct recording_ask){
+        o->unit ? recording_unit_of(o->unit) : RECORDING_GUESS, o->columns, o->scale};
+}
+
 int glove_frames_of(struct glove_frames *f, const struct glove_options *o, const char *path)
 {
     static struct exh_glove_cal cal;
-    const enum recording_unit unit = o->unit ? recording_unit_of(o->unit) : RECORDING_GUESS;
+    const struct recording_ask ask = glove_asked(o);
     struct recording r;
     long beyond = 0;
-    int err = recording_read(&r, path, unit);
+    int err = recording_read(&r, path, &ask);
     if (err) { return err; }
     if (!r.codes && !o->calibration) { stage_plain(); }
     staged_cal(&cal);

@@ -119,6 +119,15 @@ static int check(const struct glove_options *o)
     if (o->unit && recording_unit_of(o->unit) == RECORDING_GUESS) {
         return glove_bad("--unit: codes, rad, deg or turn");
     }
+    if ((o->columns || o->scale) && !o->csv && !o->play) {
+        return glove_bad("--columns, --scale: of the rows of --csv or --play");
+    }
+    if (o->scale && o->unit && recording_unit_of(o->unit) != RECORDING_CODES) {
+        return glove_bad("--scale: makes codes of the rows: leave out --unit");
+    }
+    if (recording_check(&(struct recording_ask){RECORDING_GUESS, o->columns, o->scale})) {
+        return 2;
+    }
     if ((o->tips || o->deg) && (!(o->csv || (o->serial && !o->record)) || o->study)) {
         return glove_bad("--tips and --deg: go with --csv, or with --serial without --record");
     }
@@ -160,6 +169,11 @@ int glove_command(int argc, char **argv, const struct glove_study *study)
         {"deg", CLI_FLAG, &o.deg, 0, 0, NULL, "angles in degrees, not radians"},
         {"unit", CLI_TEXT, &o.unit, 0, 0, "UNIT",
             "of the rows: codes, rad, deg, turn; else guessed"},
+        {"columns", CLI_TEXT, &o.columns, 0, 0, "LIST",
+            "which of the rows' columns are the 22 sensors: 3-24, or 8-14,16-30, or names (the "
+            "first 22)"},
+        {"scale", CLI_TEXT, &o.scale, 0, 0, "A[,B]",
+            "a code is A times the row's number and B: 256,-32768 of 8-bit codes"},
         {"calibration", CLI_TEXT, &o.calibration, 0, 0, "FILE", "instead of nobody's"},
         {"record", CLI_TEXT, &o.record, 0, 0, "FILE",
             "run the scene on the simulated glove, or --serial, log it there"},

@@ -18,7 +18,7 @@
 
 struct glove_options {
     int tips, deg, cards, study; /* study: the lab asks for no mode of these */
-    const char *serial, *csv, *record, *play, *calibration, *unit, *does, *pose;
+    const char *serial, *csv, *record, *play, *calibration, *unit, *columns, *scale, *does, *pose;
     double rate_Hz;  /* 0: not said */
     double glove_Hz; /* of --serial */
     double seconds;  /* 0: not said */
@@ -44,6 +44,9 @@ struct exh_period glove_period(double rate_Hz);
  * for goes down to a quarter of the rate where it must. 0, or 2 after a line on stderr. */
 int glove_ready(const struct glove_options *o, struct glove_par *par, struct glove_cfg *cfg,
     struct exh_period T);
+
+/* How its recording is to be read. */
+struct recording_ask glove_asked(const struct glove_options *o);
 
 /* The codes of a recording; angles through the calibration, backwards. If angles come without
  * --calibration, a glove is staged whose 65536 codes are one turn, so that each has its code.

@@ -92,13 +92,15 @@ static uint32_t ticks_of(const struct glove_options *o, long rows)
 static int play(const struct glove_options *o, struct posix_config *c, struct glove_frames *f,
     struct recording *r)
 {
-    int err = recording_read(r, o->play, o->unit ? recording_unit_of(o->unit) : RECORDING_GUESS);
+    const struct recording_ask ask = glove_asked(o);
+    int err = recording_read(r, o->play, &ask);
     if (err) { return err; }
     if (r->codes) {
         err = glove_frames_of(f, o, o->play);
         c->frame = (const int16_t(*)[SIM_GLOVE_SENSORS])f->raw;
         c->frames = f->n;
     } else {
+        recording_hold(r);
         c->hand.does = SIM_RECORD;
         c->hand.row_rad = (const double(*)[SIM_GLOVE_SENSORS])r->row;
         c->hand.rows = r->rows;
