@@ -33,7 +33,8 @@ define tests
 $(filter $(B)/test/$(notdir $(1))/$(or $(5),%)_test,$(test_bin)): $(B)/test/$(notdir $(1))/%_test: \
     $(2)/test/$(1)/%_test.o $(3)
 	@mkdir -p $$(@D)
-	$$(Q)$$(CC) $(if $(filter $(in_san),$(2)),$(san)) -o $$@ $$^ -lcmocka $(4)
+	$$(Q)$$(CC) $(if $(filter $(in_san),$(2)),$(san),$(filter -fsanitize%,$(LDFLAGS))) -o $$@ $$^ \
+	    -lcmocka $(4)
 endef
 san_support := $(in_san)/test/support.o
 san_lib     := $(san_support) $(lib_src:%.c=$(in_san)/%.o)

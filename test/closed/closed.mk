@@ -68,8 +68,9 @@ stress:
 	    $(B)/san/test/stress
 	@$(B)/san/test/stress $(STRESS_TICKS)
 	@$(MAKE) --no-print-directory B=$(B)/san CFLAGS="$(san)" LDFLAGS="$(san)" $(if $(V),,-s) \
-	    $(B)/san/test/stability
+	    $(B)/san/test/stability $(B)/san/test/sim/late_test
 	@$(B)/san/test/stability --short
+	@EXH_CASES=$(STRESS_CASES) $(B)/san/test/sim/late_test
 	@$(MAKE) --no-print-directory stability ARGS=--full
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(prop_bin)
 	@echo "laws at $(STRESS_CASES) random cases each, under sanitizers," \
