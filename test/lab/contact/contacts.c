@@ -104,17 +104,12 @@ static void beside_perfect(
     bilateral_run_free(&perfect);
 }
 
-/* Tick of the first freeze of any finger; the run's end if there is none. */
-static size_t first_freeze(const struct bilateral_run *r)
+/* Tick of its first freeze; its run's end if there is none. */
+static size_t first_freeze(const struct bilateral_track *t)
 {
-    size_t first = r->finger[0].n;
-    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
-        const struct bilateral_track *t = &r->finger[f];
-        for (size_t i = 0; i < t->n && i < first; i++) {
-            if (t->at[i].bits & EXH_PRECONTACT_FREEZE) { first = i; }
-        }
-    }
-    return first;
+    size_t i = 0;
+    while (i < t->n && !(t->at[i].bits & EXH_PRECONTACT_FREEZE)) { i++; }
+    return i;
 }
 
 /* Whoever is frozen then goes on with the same bits until it is released, all but d: the glove's
@@ -133,23 +128,22 @@ static int stands_alike(
     return 1;
 }
 
-/* The same again, and the world dies when the first finger is frozen. */
+/* The same again for each finger that froze, and the world dies in that tick: what comes over any
+ * link after it makes no bit of the contact. */
 static void beside_dead(
     struct cell *to, const struct bilateral_run_cfg *given, const struct bilateral_run *r)
 {
-    struct bilateral_run_cfg c = *given;
-    struct bilateral_run dead;
-    const size_t from = first_freeze(r);
-    if (from == r->finger[0].n) { return; }
-    c.until_s = ((double)from + 1) / c.rate_Hz;
-    if (bilateral_run(&c, &dead) == 0) {
-        for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
-            if (!(r->finger[f].at[from].bits & EXH_PRECONTACT_STANDS)) { continue; }
-            to->stood++;
-            to->broke += !stands_alike(&r->finger[f], &dead.finger[f], from);
-        }
+    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
+        const size_t from = first_freeze(&r->finger[f]);
+        struct bilateral_run_cfg c = *given;
+        struct bilateral_run dead;
+        if (from == r->finger[f].n) { continue; }
+        c.until_s = ((double)from + 1) / c.rate_Hz;
+        to->stood++;
+        to->broke += bilateral_run(&c, &dead) < 0 ||
+                     !stands_alike(&r->finger[f], &dead.finger[f], from);
+        bilateral_run_free(&dead);
     }
-    bilateral_run_free(&dead);
 }
 
 static void work(const void *ctx, int i, void *result)
@@ -241,8 +235,8 @@ static int table(const struct cell *cell, int n)
         "which the pad touches\nwhat is there then, mm, whatever its sign. Around: the hand's own "
         "motion brought an object onto a\nfinger that rests: by the rule not felt until it was "
         "left. Late: the finger was "
-        "inside when its plane came. Nothing: a\ncontact where nothing is. Stood: frozen fingers "
-        "whose bits stayed when the world died then. Same bits:\nfingers with every bit as over "
+        "inside when its plane came. Nothing: a\ncontact where nothing is. Stood: first contacts "
+        "whose bits stayed when the world died as they froze. Same bits:\nfingers with every bit as over "
         "the perfect link from their first freeze on: at flat faces; of a curved\nsurface the "
         "plane is of where the pad was foreseen.\n",
         SCENES, APPROACHES, is.seeds);
