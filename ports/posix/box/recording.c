@@ -72,12 +72,9 @@ static int is_value(struct reader *in, const char *text, double *v)
 
 static int no_number(const struct reader *in, int column)
 {
-    const char *field = in->now.field[column - 1];
-    char text[RECORDING_FIELD_B + 40], plain[RECORDING_FIELD_B];
-    size_t n = 0;
-    for (; field[n]; n++) { plain[n] = field[n] >= ' ' && field[n] <= '~' ? field[n] : '?'; }
-    plain[n] = '\0'; /* what is no text must not reach a terminal */
-    snprintf(text, sizeof text, "\"%s\" is no number", plain);
+    char text[RECORDING_FIELD_B + 40];
+    snprintf(text, sizeof text, "\"%.*s\" is no number", RECORDING_FIELD_B - 1,
+        in->now.field[column - 1]);
     return bad(in, column, text);
 }
 
