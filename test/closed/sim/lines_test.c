@@ -16,9 +16,12 @@ TEST(what_a_terminal_obeys_is_escaped)
         {"plain, \"text\" ~", "plain, \"text\" ~"},
         {"\x1b[2J", "\\x1b[2J"},
         {"a\tb\r\n\x07\x7f", "a\\x09b\\x0d\\x0a\\x07\\x7f"},
-        {"M\xC3\xBCller \xE2\x82\xAC \xF0\x9F\x98\x80", "M\xC3\xBCller \xE2\x82\xAC \xF0\x9F\x98\x80"},
+        {"M\xC3\xBCller \xE2\x82\xAC \xF0\x9F\x98\x80",
+            "M\xC3\xBCller \xE2\x82\xAC \xF0\x9F\x98\x80"},
         {"\x80\x9b", "\\x80\\x9b"},
-        {"\xC2\x9b" "2J \xC2\xA0", "\\xc2\\x9b2J \xC2\xA0"}, /* the same in UTF-8, and one that is none */
+        {"\xC2\x9b"
+         "2J \xC2\xA0",
+            "\\xc2\\x9b2J \xC2\xA0"}, /* the same in UTF-8, and one that is none */
         {"\xC3", "\\xc3"},
         {"\xE2\x82", "\\xe2\\x82"},
         {"\xC0\x9b\xF5\xFF", "\\xc0\\x9b\\xf5\\xff"},
@@ -69,8 +72,7 @@ TEST(no_byte_of_a_file_reaches_the_terminal)
         said(&s, dir, cli_glove,
             WORDS("glove", "--csv", file, "--rate", "200", "--columns", "1-22"));
         check_words("glove --columns", n);
-        said(&s, dir, cli_calibrate,
-            WORDS("calibrate", "--glove", "--poses", file, "--out", dir));
+        said(&s, dir, cli_calibrate, WORDS("calibrate", "--glove", "--poses", file, "--out", dir));
         check_words("calibrate --poses", n);
         said(&s, dir, cli_bilateral, WORDS("bilateral", "--record", file));
         check_words("bilateral --record", n);
@@ -79,5 +81,4 @@ TEST(no_byte_of_a_file_reaches_the_terminal)
     said_clean(dir);
 }
 
-TEST_MAIN(
-    "sim/lines", what_a_terminal_obeys_is_escaped, no_byte_of_a_file_reaches_the_terminal);
+TEST_MAIN("sim/lines", what_a_terminal_obeys_is_escaped, no_byte_of_a_file_reaches_the_terminal);
