@@ -10,4 +10,8 @@
  * behind it is lost. 1; 0 after the last; -1 if it does not fit. */
 int lines_next(FILE *f, char *to, size_t cap_B);
 
+/* As a terminal shows it and does not obey it: control characters, and bytes that are no UTF-8,
+ * become \xHH. What does not fit is cut off. */
+void lines_plain(char *to, size_t cap_B, const char *from);
+
 #endif

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/option.h"
 
+#include "base/lines.h"
+
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -10,7 +12,7 @@
 const char *cli_program = "exhand";
 static const char *command = ""; /* for cli_complain() */
 
-#define LINE_B 2048 /* of a complaint that somebody takes */
+#define LINE_B 8192
 void (*cli_complain_by)(const char *line);
 
 /* Between the program and its command. */
@@ -18,19 +20,18 @@ static const char *blank(const char *name) { return cli_program[0] && name[0] ? 
 
 void cli_complain(const char *format, ...)
 {
-    char line[LINE_B];
+    char line[LINE_B], plain[LINE_B];
+    const int n = snprintf(line, 64, "%s%s%s: ", cli_program, blank(command), command);
     va_list args;
     va_start(args, format);
-    if (cli_complain_by) {
-        const int n = snprintf(line, 64, "%s%s%s: ", cli_program, blank(command), command);
-        vsnprintf(line + (n < 64 ? n : 63), sizeof line - 64, format, args);
-        cli_complain_by(line);
-    } else {
-        fprintf(stderr, "%s%s%s: ", cli_program, blank(command), command);
-        vfprintf(stderr, format, args);
-        fputc('\n', stderr);
-    }
+    vsnprintf(line + (n < 64 ? n : 63), sizeof line - 64, format, args);
     va_end(args);
+    lines_plain(plain, sizeof plain, line); /* it may quote a file, of any bytes */
+    if (cli_complain_by) {
+        cli_complain_by(plain);
+    } else {
+        fprintf(stderr, "%s\n", plain);
+    }
 }
 
 int cli_finish(int status)

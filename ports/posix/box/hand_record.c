@@ -4,105 +4,20 @@
 #include "base/option.h"
 #include "box/recording.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define SENSORS EXH_GLOVE_SENSORS
-#define FIELDS  30
-#define FIRST   7 /* angle */
-#define DAY_S   86400.0
 #define GRID_HZ 60.0
-#define STEP_S  10.0 /* no two rows are farther apart */
 #define LINE_B  1024
+#define FIELDS  30
 #define BACK_S  1.0 /* from the last row to the first */
 
-/* The order of 23 angles (four of each finger, then palm and wrist; -1: the index's abduction,
- * which this glove does not have) in that of 22. */
-static const signed char place[23] = {
-    0, 1, 2, 3, 4, 5, 6, -1, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21};
-
-struct timed {
-    double (*row)[SENSORS];
-    double *t_s; /* from the first */
-    long rows, cap;
-};
-
-static int complain(const char *path, long line, const char *what)
-{
-    cli_complain("%s: line %ld: %s", path, line, what);
-    return 2;
-}
-
-/* How many numbers there are; up to FIELDS of them into v; -1: something else. */
-static int numbers(const char *line, double v[FIELDS])
-{
-    int n = 0;
-    for (;;) {
-        char *end;
-        double x;
-        line += strspn(line, " \t\r\n");
-        if (*line == '\0') { return n; }
-        x = strtod(line, &end);
-        if (end == line || !(x >= -1e9 && x <= 1e9)) { return -1; }
-        if (n < FIELDS) { v[n] = x; }
-        n++;
-        line = end;
-    }
-}
-
-static int room(struct timed *r)
-{
-    if (r->rows == r->cap) {
-        const long cap = r->cap ? 2 * r->cap : 1024;
-        double(*row)[SENSORS] = realloc(r->row, (size_t)cap * sizeof *row);
-        double *t_s;
-        if (row == NULL) { return -1; }
-        r->row = row;
-        t_s = realloc(r->t_s, (size_t)cap * sizeof *t_s);
-        if (t_s == NULL) { return -1; }
-        r->t_s = t_s;
-        r->cap = cap;
-    }
-    return 0;
-}
-
-/* Seconds of the day, made to go on over midnight. */
-static const char *take(struct timed *r, const double v[FIELDS], double *last_s)
-{
-    const double s = (v[3] * 60 + v[4]) * 60 + v[5];
-    double step_s = s - *last_s;
-    if (r->rows > 0 && step_s < -DAY_S / 2) { step_s += DAY_S; }
-    if (r->rows > 0 && !(step_s > 0 && step_s <= STEP_S)) { return "its clock stands or jumps"; }
-    if (room(r) < 0) { return "out of memory"; }
-    r->t_s[r->rows] = r->rows > 0 ? r->t_s[r->rows - 1] + step_s : 0;
-    for (int k = 0; k < 23; k++) {
-        if (place[k] >= 0) { r->row[r->rows][place[k]] = v[FIRST + k]; }
-    }
-    r->rows++;
-    *last_s = s;
-    return NULL;
-}
-
-static int read_timed(struct timed *r, const char *path, FILE *f)
-{
-    char line[LINE_B];
-    double v[FIELDS], last_s = 0;
-    for (long n = 1; fgets(line, sizeof line, f) != NULL; n++) {
-        const int got = numbers(line, v);
-        const char *what = NULL;
-        if (got == 0) { continue; }
-        what = got == FIELDS ? take(r, v, &last_s) : "not 30 numbers";
-        if (what != NULL) { return complain(path, n, what); }
-    }
-    if (ferror(f)) {
-        cli_complain("%s: %s", path, strerror(errno));
-        return 2;
-    }
-    return 0;
-}
+/* Of 30 numbers: a date, a flag, and 23 angles, four of each finger, then palm and wrist. The
+ * index's abduction is left out, which this glove does not have. */
+#define DATED "8-14,16-30,clock=4-6"
 
 /* --- to strings --- */
 
@@ -138,7 +53,8 @@ static int even(
     return err;
 }
 
-static int onto_grid(struct hand_record *h, const struct timed *r, const struct sim_exo_par *exo)
+static int onto_grid(
+    struct hand_record *h, const struct recording *r, const struct sim_exo_par *exo)
 {
     const double sign = sim_path_sign((const double(*)[SENSORS])r->row, r->rows);
     const long rows = (long)(r->t_s[r->rows - 1] * GRID_HZ) + 1;
@@ -162,53 +78,43 @@ static int onto_grid(struct hand_record *h, const struct timed *r, const struct 
 
 /* --- either --- */
 
-static int is_timed(FILE *f)
+/* Whether the first line is FIELDS numbers. */
+static int is_dated(const char *path)
 {
     char line[LINE_B];
-    double v[FIELDS];
-    const int yes = fgets(line, sizeof line, f) != NULL && numbers(line, v) == FIELDS;
-    rewind(f);
-    return yes;
+    const char *at = line;
+    int n = 0;
+    FILE *f = fopen(path, "rb");
+    if (f == NULL) { return 0; }
+    if (fgets(line, sizeof line, f) == NULL) { line[0] = '\0'; }
+    fclose(f);
+    for (;; n++) {
+        char *end;
+        at += strspn(at, " \t\r\n");
+        (void)strtod(at, &end);
+        if (end == at) { break; }
+        at = end;
+    }
+    return n == FIELDS && *at == '\0';
 }
 
-static int read_rows(
-    struct hand_record *h, const char *path, double row_hz, const struct sim_exo_par *exo)
+int hand_record_read(struct hand_record *h, const char *path, const char *columns, double row_hz,
+    const struct sim_exo_par *exo)
 {
+    const struct recording_ask ask = {
+        RECORDING_GUESS, columns == NULL && is_dated(path) ? DATED : columns, NULL};
     struct recording r;
-    const struct recording_ask ask = {RECORDING_GUESS, NULL, NULL};
     int err = recording_read(&r, path, &ask);
+    memset(h, 0, sizeof *h);
     if (err) { return err; }
     if (r.codes) {
         cli_complain("%s: codes: angles are wanted", path);
         err = 2;
     } else {
         recording_hold(&r);
-        err = even(h, &r, row_hz, exo);
+        err = r.t_s != NULL ? onto_grid(h, &r, exo) : even(h, &r, row_hz, exo);
     }
     recording_free(&r);
-    return err;
-}
-
-int hand_record_read(
-    struct hand_record *h, const char *path, double row_hz, const struct sim_exo_par *exo)
-{
-    struct timed timed = {NULL, NULL, 0, 0};
-    FILE *f = fopen(path, "rb");
-    int err;
-    memset(h, 0, sizeof *h);
-    if (f == NULL) {
-        cli_complain("%s: %s", path, strerror(errno));
-        return 3;
-    }
-    if (!is_timed(f)) {
-        fclose(f);
-        return read_rows(h, path, row_hz, exo);
-    }
-    err = read_timed(&timed, path, f);
-    fclose(f);
-    if (err == 0) { err = onto_grid(h, &timed, exo); }
-    free(timed.row);
-    free(timed.t_s);
     return err;
 }
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Hand record: what a glove recorded, as string for simulated fingers.
  *
- * Two kinds of text: rows of 22 angles in the glove's order, as recording.h reads them, equally far
- * apart; and rows of 30 numbers, a date (year, month, day, hour, minute, second), a flag and 23
- * angles in radians, which have a clock that jitters: they are put on an even 60 Hz grid, on
- * straight lines between rows. What is flexion counts as in hand.h; whether up or down is
+ * Rows of 22 angles as recording.h reads them, equally far apart, or with time, which jitters: then
+ * they are put on an even 60 Hz grid, on straight lines between rows. Rows of 30 numbers are known
+ * without columns: a date (year, month, day, hour, minute, second), a flag and 23 angles in
+ * radians. What is flexion counts as in hand.h; whether up or down is
  * seen from the rows.
  */
 #ifndef CLI_HAND_RECORD_H
@@ -19,10 +19,10 @@ struct hand_record {
     int again;
 };
 
-/* row_hz: of rows without a clock. Arms: of the fingers of exo. 0, or after a line on stderr 2, 3
- * if it is not there. */
-int hand_record_read(
-    struct hand_record *h, const char *path, double row_hz, const struct sim_exo_par *exo);
+/* columns: recording_columns.h, or NULL. row_hz: of rows without time. Arms: of the fingers of exo.
+ * 0, or after a line on stderr 2, 3 if it is not there. */
+int hand_record_read(struct hand_record *h, const char *path, const char *columns, double row_hz,
+    const struct sim_exo_par *exo);
 void hand_record_free(struct hand_record *h);
 
 /* It is played again and again: behind its last row a way of a second leads back to its first. 0,

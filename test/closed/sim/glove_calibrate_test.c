@@ -329,6 +329,83 @@ TEST(recorded_poses_give_the_same)
     said_clean(dir);
 }
 
+/* Poses by number behind a time, codes of 8 bits and fractions: the same image, byte for byte. */
+static void other_columns(const char *from, const char *to, const char *rest)
+{
+    FILE *in = fopen(from, "r"), *out = fopen(to, "w");
+    char line[2000];
+    CHECK(in != NULL && out != NULL && fgets(line, sizeof line, in), "%s, %s", from, to);
+    fputs("t\tpose", out);
+    for (int i = 0; i < EXH_GLOVE_SENSORS; i++) { fprintf(out, "\ts %d", i); }
+    for (int n = 0; fgets(line, sizeof line, in); n++) {
+        char *at = strchr(line, ',');
+        *at++ = '\0';
+        fprintf(out, "\n%d\t", 5 * n);
+        fprintf(out, n % 2 ? "%s" : "%.0s%d", line, glove_pose_find(line) + 1);
+        for (int i = 0; i < EXH_GLOVE_SENSORS; i++, at++) {
+            fprintf(out, "\t%.12f", (strtod(at, &at) + 32768) / 256);
+        }
+    }
+    fprintf(out, "\n%s", rest);
+    CHECK(fclose(in) == 0 && fclose(out) == 0, "%s", to);
+}
+
+#define TEN_60 "60\t60\t60\t60\t60\t60\t60\t60\t60\t60"
+#define ALL_60 TEN_60 "\t60\t"
+
+TEST(poses_in_other_columns_give_the_same)
+{
+    static struct said s;
+    static char image[2][EXH_GLOVE_CAL_IMAGE_B];
+    char *dir = said_dir(), *in = strdup(said_path(dir, "in.tsv")), poses[100], once[100];
+    snprintf(once, sizeof once, "%s/once", dir);
+    snprintf(poses, sizeof poses, "%s/poses.csv", dir);
+    said(&s, dir, cli_calibrate_glove, WORDS("calibrate", "--glove", "--out", dir));
+    CHECK(s.status == 0, "%s", s.err);
+    other_columns(poses, in, "0\t1\tnan\t" ALL_60 TEN_60 "\n");
+    for (int k = 0; k < 2; k++) {
+        const char *const read = k ? in : poses;
+        FILE *f;
+        said(&s, dir, cli_calibrate_glove,
+            WORDS("calibrate", "--glove", "--out", once, "--day", "20000", "--poses", read,
+                k ? "--columns" : NULL, "3-24,label=pose", "--scale", "256,-32768"));
+        CHECK(s.status == 0, "%d: %s", s.status, s.err);
+        f = fopen(said_path(once, "glove.bin"), "rb");
+        CHECK(f != NULL && fread(image[k], 1, sizeof image[k], f) == sizeof image[k], "glove.bin");
+        fclose(f);
+    }
+    CHECK(strstr(s.err, "1 rows are left out") != NULL, "%s", s.err);
+    CHECK(memcmp(image[0], image[1], sizeof image[0]) == 0, "another calibration");
+    free(in);
+    said_clean(dir);
+}
+
+TEST(poses_in_bad_columns_are_refused)
+{
+    static const struct {
+        const char *row, *columns, *says;
+    } row[] = {
+        {"1\t", "2-23", "no pose: label=C"},
+        {"16\t", "2-23,label=1", "row 1: 16: no such pose"},
+        {"0\t", "2-23,label=1", "row 1: 0: no such pose"},
+        {"\x1b[1m\t", "2-23,label=1", "row 1: ?[1m: no such pose"},
+        {"1\t", "2-23,label=24", "line 1: 23 columns (24 wanted)"},
+    };
+    static struct said s;
+    char *dir = said_dir(), text[300];
+    const char *in = said_path(dir, "in.tsv");
+    for (size_t i = 0; i < LEN(row); i++) {
+        snprintf(text, sizeof text, "%s" ALL_60 TEN_60 "\t60\n", row[i].row);
+        write_text(in, text);
+        said(&s, dir, cli_calibrate_glove,
+            WORDS("calibrate", "--glove", "--poses", in, "--columns", row[i].columns));
+        CHECK(s.status == 2 && strstr(s.err, row[i].says), "row %zu: %d: %s", i, s.status, s.err);
+    }
+    said(&s, dir, cli_calibrate_glove, WORDS("calibrate", "--glove", "--columns", "1-22"));
+    CHECK(s.status == 2 && strstr(s.err, "--columns goes with"), "%s", s.err);
+    said_clean(dir);
+}
+
 /* Every sensor moves in poses that know it, and every abduction is seen with each of its
  * knuckles bent alone. */
 TEST(poses_know_enough)
@@ -350,4 +427,5 @@ TEST(poses_know_enough)
 TEST_MAIN("sim/glove_calibrate", a_good_hand_is_found_back, a_real_hand_is_found_back,
     exit_status_says_what_happened, all_that_is_wrong_is_told_at_once, lines_of_a_pose_are_averaged,
     a_glove_of_18_sensors_lacks_the_last_joints, bad_lines_are_told_by_number,
-    recorded_poses_give_the_same, poses_know_enough);
+    recorded_poses_give_the_same, poses_in_other_columns_give_the_same,
+    poses_in_bad_columns_are_refused, poses_know_enough);

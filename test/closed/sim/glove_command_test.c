@@ -73,7 +73,7 @@ TEST(bad_recordings_are_refused_by_line)
         {"nan," ROW_A "\n", "in.csv: line 1: more than 22 columns"},
         {"1,nan,3\n", "in.csv: line 1: 3 columns (22 wanted)"},
         {"1,,3\n", "in.csv: line 1: 3 columns (22 wanted)"},
-        {ROW_A "\n\x1b[2J\x07\x80,2\n", "line 2, column 1: \"?[2J??\" is no number"},
+        {ROW_A "\n\x1b[2J\x07\x80,2\n", "line 2, column 1: \"\\x1b[2J\\x07\\x80\" is no number"},
         {ROW_A ",1\n", "in.csv: line 1: more than 22 columns and a label"},
         {ROW_A ",A,B\n", "in.csv: line 1: more than 22 columns and a label"},
         {"t_s,x\n0," ROW_A "\n0.1,0.1,0.2\n", "in.csv: line 3: 3 columns (23 wanted)"},

@@ -38,7 +38,7 @@ TEST(rows_with_a_clock_go_onto_an_even_grid)
             -0.5, -0.25);
     }
     name = file_of(text);
-    CHECK_EQ_I64(hand_record_read(&h, name, 5, &exo_par), 0);
+    CHECK_EQ_I64(hand_record_read(&h, name, NULL, 5, &exo_par), 0);
     (void)remove(name);
     CHECK(
         h.row_hz == 60 && h.rows == (long)(1.5345 * 60) + 1, "%ld rows at %g Hz", h.rows, h.row_hz);
@@ -67,7 +67,7 @@ TEST(every_finger_gets_its_own_angles)
         strcat(text, "\n");
     }
     name = file_of(text);
-    CHECK_EQ_I64(hand_record_read(&h, name, 5, &exo_par), 0);
+    CHECK_EQ_I64(hand_record_read(&h, name, NULL, 5, &exo_par), 0);
     (void)remove(name);
     CHECK_EQ_I64(h.rows, 61);
     for (unsigned i = 0; i < 5; i++) {
@@ -85,7 +85,7 @@ TEST(rows_without_a_clock_have_the_rate_they_are_given)
     const char *name = file_of("0,0,0,0,.5,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\r0,0,0,0,1.5,0,0,0,0,"
                                "0,0,0,0,0,0,0,0,0,0,0,0,0\r");
     exo_par = sim_exo_default();
-    CHECK_EQ_I64(hand_record_read(&h, name, 12.5, &exo_par), 0);
+    CHECK_EQ_I64(hand_record_read(&h, name, NULL, 12.5, &exo_par), 0);
     (void)remove(name);
     CHECK(h.rows == 2 && h.row_hz == 12.5, "%ld rows", h.rows);
     CHECK(fabs(h.string_m[1][0] - 0.01) < 1e-12 && fabs(h.string_m[1][1] - 0.03) < 1e-12, "string");
@@ -106,7 +106,7 @@ TEST(a_recording_again_has_no_seam)
                                "0,0,0,0,2,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n");
     double last, once_m[60];
     exo_par = sim_exo_default();
-    CHECK_EQ_I64(hand_record_read(&h, name, 10, &exo_par), 0);
+    CHECK_EQ_I64(hand_record_read(&h, name, NULL, 10, &exo_par), 0);
     (void)remove(name);
     CHECK_EQ_I64(hand_record_again(&h), 0);
     hand_record_use(&h, &exo_par);
@@ -129,6 +129,30 @@ TEST(a_recording_again_has_no_seam)
     hand_record_free(&h);
 }
 
+/* Time and angles in columns of somebody else's order: on the even grid, too. */
+TEST(columns_say_where_time_and_angles_are)
+{
+    char text[1000] = "";
+    struct hand_record h;
+    const char *name;
+    exo_par = sim_exo_default();
+    for (int n = 0; n < 3; n++) { /* only the index's knuckle bends, 1 rad/s, past an even clock */
+        const double t = n == 1 ? 0.04 : n * 0.05;
+        snprintf(text + strlen(text), 200,
+            "x;0;0;0;0;%.3f;0;0;0;0;0;0;0;0;0;0;0;0;0;0;0;0;0;%.0f\n", t, 7e6 + 1e3 * t);
+    }
+    name = file_of(text);
+    CHECK_EQ_I64(hand_record_read(&h, name, "2-23,time_ms=24", 5, &exo_par), 0);
+    (void)remove(name);
+    CHECK(h.rows == 7 && h.row_hz == 60, "%ld rows at %g Hz", h.rows, h.row_hz);
+    for (long n = 0; n < h.rows; n++) {
+        const double want = exo_par.finger[1].arm_m[0] * ((double)n / 60);
+        CHECK(fabs(h.string_m[1][n] - want) < 1e-12, "row %ld: %.9f, want %.9f", n,
+            h.string_m[1][n], want);
+    }
+    hand_record_free(&h);
+}
+
 static const char *bad_path;
 
 static int command(int argc, char **argv)
@@ -136,7 +160,7 @@ static int command(int argc, char **argv)
     struct hand_record h;
     (void)argc;
     (void)argv;
-    return hand_record_read(&h, bad_path, 10, &exo_par);
+    return hand_record_read(&h, bad_path, NULL, 10, &exo_par);
 }
 
 TEST(bad_files_are_refused_with_the_line)
@@ -146,8 +170,9 @@ TEST(bad_files_are_refused_with_the_line)
         const char *first, *second, *why;
     } row[] = {{"1", "1", "line 2: its clock stands or jumps"},
         {"2", "1", "line 2: its clock stands or jumps"},
-        {"1", "12", "line 2: its clock stands or jumps"}, {"1", "2 2", "line 2: not 30 numbers"},
-        {"1", "x", "line 2: not 30 numbers"}};
+        {"1", "12", "line 2: its clock stands or jumps"},
+        {"1", "2 2", "line 2: 31 columns (30 in the first line)"},
+        {"1", "x", "line 2, column 6: \"x\" is no number"}};
     static const char *const word[] = {"hand", NULL};
     struct said s;
     char dir[] = "/tmp/hand_record_test.XXXXXX", path[64];
@@ -194,7 +219,7 @@ static void follow(const char *file, double row_hz, double run_s)
     fclose(f);
     exo_par = sim_exo_default();
     exo_par.fingers = 0x1F;
-    CHECK_EQ_I64(hand_record_read(&h, path, row_hz, &exo_par), 0);
+    CHECK_EQ_I64(hand_record_read(&h, path, NULL, row_hz, &exo_par), 0);
     hand_record_use(&h, &exo_par);
     CHECK_EQ_I64(sim_exo_start(&exo, &exo_par, &d, 3, 0), 0);
     for (int n = 1; n * 0.005 < run_s && !sim_exo_done(&exo); n++) {
@@ -228,4 +253,5 @@ TEST(fingers_follow_real_hands)
 
 TEST_MAIN("hand_record", rows_with_a_clock_go_onto_an_even_grid, every_finger_gets_its_own_angles,
     rows_without_a_clock_have_the_rate_they_are_given, a_recording_again_has_no_seam,
-    bad_files_are_refused_with_the_line, fingers_follow_real_hands);
+    columns_say_where_time_and_angles_are, bad_files_are_refused_with_the_line,
+    fingers_follow_real_hands);

@@ -59,14 +59,14 @@ TEST(columns_that_cannot_be_are_refused)
     static const struct {
         const char *text, *option, *value, *says;
     } row[] = {
-        {V "\n", "--columns", "1-21", "--columns: 1-21: give the columns of 22 sensors"},
-        {V "\n", "--columns", "1-23", "--columns: 1-23: give"},
-        {V "\n", "--columns", "0-21", "--columns: 0-21: give"},
-        {V "\n", "--columns", "22-1", "--columns: 22-1: give"},
-        {V "\n", "--columns", "1-22,", "--columns: 1-22,: give"},
-        {V "\n", "--columns", "2-23", "line 1: 22 columns: 21 of the 22 asked for"},
-        {V "\n", "--columns", "1-21,wrist", "its header has no wrist"},
-        {NAMES "\n" V "\n", "--columns", "1-21,wrist", "its header has no wrist"},
+        {V "\n", "--columns", "1-21", "in.csv: columns: 1-21: 21 sensors: give 22"},
+        {V "\n", "--columns", "1-23", "columns: 1-23: too many columns for that"},
+        {V "\n", "--columns", "0-21", "columns: 0-21: no such column"},
+        {V "\n", "--columns", "22-1", "columns: 22-1: a range rises"},
+        {V "\n", "--columns", "1-22,", "columns: : no such column"},
+        {V "\n", "--columns", "2-23", "line 1: 22 columns (23 wanted)"},
+        {V "\n", "--columns", "1-21,wrist", "columns: wrist: no such column"},
+        {NAMES "\n" V "\n", "--columns", "1-21,wrist", "columns: wrist: no such column"},
         {"1,x" V "\n", "--columns", "2-23", "column 2: \"x.11\" is no number"},
         {V "\n", "--scale", "0", "--scale: 0: give A or A,B"},
         {V "\n", "--scale", "2,3,4", "--scale: 2,3,4: give"},

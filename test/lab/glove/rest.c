@@ -131,7 +131,6 @@ int glove_rest_log(struct glove_rest *r, const char *path)
 
 int glove_rest_csv(struct glove_rest *r, const struct glove_options *o)
 {
-    r->frames.T = glove_period(o->rate_Hz);
     return glove_frames_of(&r->frames, o, o->csv);
 }
 

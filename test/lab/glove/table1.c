@@ -319,7 +319,7 @@ int glove_table1(const struct glove_options *o, const struct rest_options *rest)
     }
     if (err == 0 && (o->csv || is->log)) { err = glove_rest_cut(&r.frames, is); }
     if (err == 0) { err = report(o, &r, source); }
-    free(r.frames.raw);
+    glove_frames_free(&r.frames);
     free(r.enc);
     free(r.mon);
     return err;

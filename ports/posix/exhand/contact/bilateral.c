@@ -98,13 +98,17 @@ static int load_params(struct bilateral_options *o)
 static int load_record(struct bilateral_options *o)
 {
     int err;
+    if (o->record == NULL && o->columns != NULL) {
+        cli_complain("--record-columns: goes with --record");
+        return 2;
+    }
     if (o->record == NULL) { return 0; }
     if (o->study) {
         cli_complain("--record: what was recorded is played once: leave out --sweep, --check, "
                      "--hands, --crisp");
         return 2;
     }
-    err = hand_record_read(&recorded, o->record, o->record_Hz, &o->run.board.exo);
+    err = hand_record_read(&recorded, o->record, o->columns, o->record_Hz, &o->run.board.exo);
     if (err) { return err; }
     hand_record_use(&recorded, &o->run.board.exo);
     o->speeds = 1;
@@ -211,6 +215,7 @@ static const struct cli_option option[] = {
         "the fingers do what a glove recorded, instead of approaches"},
     {"record-rate", CLI_REAL, &is.record_Hz, 0.1, 10000, "HZ",
         "of its rows, if they have no clock (100)"},
+    {"record-columns", CLI_TEXT, &is.columns, 0, 0, "LIST", "of `exhand glove`"},
     {"approaches", CLI_INT, &is.approaches, 1, BILATERAL_CONTACTS_MAX, "N", "at each speed (5)"},
     {"at", CLI_REAL, &is.run.at_m, 0.008, 0.06, "M",
         "the wall stands where so much string is out (0.030)"},

@@ -21,7 +21,7 @@
 struct poses_options {
     int64_t user, id, day, valid_days, sensors, move_raw, noise_raw;
     double residual_deg;
-    const char *poses, *out, *check;
+    const char *poses, *columns, *scale, *out, *check;
     struct glove_bench bench;
 };
 
@@ -221,7 +221,8 @@ static int calibrate(const struct poses_options *o)
     memset(&r, 0, sizeof r);
     if (o->out != NULL && outfile_dir(o->out, "poses.csv") != 0) { return 2; }
     if (o->poses != NULL) {
-        err = glove_poses_read(&r.taken, o->poses);
+        err = o->columns ? glove_poses_read_columns(&r.taken, o->poses, o->columns, o->scale)
+                         : glove_poses_read(&r.taken, o->poses);
         if (err) { return err; }
     } else {
         glove_poses_take(&r.taken, &o->bench, stdout);
@@ -273,6 +274,9 @@ int cli_calibrate_glove(int argc, char **argv)
         {"glove", CLI_FLAG, &glove, 0, 0, NULL, "the glove, not a finger's motor"},
         {"poses", CLI_TEXT, &o.poses, 0, 0, "FILE",
             "recorded: CSV of pose,22 codes; - standard input"},
+        {"columns", CLI_TEXT, &o.columns, 0, 0, "LIST",
+            "its columns, of `exhand glove --help`; label=C is the pose"},
+        {"scale", CLI_TEXT, &o.scale, 0, 0, "A[,B]", "with --columns: A times its number and B"},
         {"list", CLI_FLAG, &list, 0, 0, NULL, "the poses and what to do in each"},
         {"sensors", CLI_INT, &o.sensors, 18, 22, "N",
             "of the glove: 18 (no last joints) or 22 (22)"},
@@ -308,6 +312,10 @@ int cli_calibrate_glove(int argc, char **argv)
     if (err) { return err == 1 ? 0 : err; }
     if (o.sensors != 18 && o.sensors != 22) {
         cli_complain("--sensors: %" PRId64 ": give 18 or 22", o.sensors);
+        return 2;
+    }
+    if ((o.columns && !o.poses) || (o.scale && !o.columns)) {
+        cli_complain("--columns goes with --poses, --scale with --columns");
         return 2;
     }
     if (list) { glove_poses_print(stdout); }

@@ -61,13 +61,9 @@ static void codes_of(
     }
 }
 
-/* Nearest, limited; 1 if it was. No number: at the rail, so that the channel has its fault. */
+/* Nearest, limited; 1 if it was. */
 static int code_of(double v, int16_t *to)
 {
-    if (isnan(v)) {
-        *to = INT16_MAX;
-        return 0;
-    }
     const int beyond = v > 32767.5 || v < -32768.5;
     *to = (int16_t)(v > 32767 ? 32767 : v < -32768 ? -32768 : v < 0 ? v - 0.5 : v + 0.5);
     return beyond;
@@ -92,38 +88,79 @@ static void staged_cal(struct exh_glove_cal *cal)
     glove_cal_of_par(cal, &par);
 }
 
+/* Rows to codes; how many were beyond the codes there are. No number has a rail's code, so that its
+ * channel has the fault. What is no number lets the angles that
+ * it pulls along hold to what it was before. */
+static long take_rows(struct glove_frames *f, const struct recording *r)
+{
+    static struct exh_glove_cal cal;
+    double held[SENSORS] = {0};
+    long beyond = 0;
+    staged_cal(&cal);
+    for (long n = 0; n < r->rows; n++) {
+        const double *row = r->row[n];
+        double code[SENSORS];
+        for (int i = 0; i < SENSORS; i++) { held[i] = isnan(row[i]) ? held[i] : row[i]; }
+        if (r->codes) {
+            memcpy(code, held, sizeof code);
+        } else {
+            codes_of(&cal, held, code);
+        }
+        for (int i = 0; i < SENSORS; i++) {
+            beyond += code_of(code[i], &f->raw[n][i]);
+            if (isnan(row[i])) { f->raw[n][i] = INT16_MAX; }
+        }
+    }
+    return beyond;
+}
+
+/* The rate that was said, or that of the recorded time, whose unevenness is said. */
+static int take_rate(struct glove_frames *f, const struct glove_options *o,
+    const struct recording *r, const char *path)
+{
+    const double hz = o->rate_Hz > 0 ? o->rate_Hz : recording_row_hz(r);
+    const long gaps = recording_gaps(r);
+    if (hz <= 0) {
+        cli_complain(
+            "--csv: --rate HZ says how fast its rows came, or --columns where their time is");
+        return 2;
+    }
+    if (hz < 1 || hz > GLOVE_RATE_TOP) {
+        cli_complain("%s: %.6g rows a second by its time (allowed 1..%d): another unit of time?",
+            path, hz, GLOVE_RATE_TOP);
+        return 2;
+    }
+    if (gaps > 0) {
+        cli_complain("%s: %ld of %ld steps of time are longer than 1.5 of the mean: the low-pass "
+                     "takes them as even, %.6g Hz",
+            path, gaps, r->rows - 1, hz);
+    }
+    f->T = glove_period(hz);
+    return 0;
+}
+
 struct recording_ask glove_asked(const struct glove_options *o)
 {
     return (struct recording_ask){
         o->unit ? recording_unit_of(o->unit) : RECORDING_GUESS, o->columns, o->scale};
 }
 
-int glove_frames_of(struct glove_frames *f, const struct glove_options *o, const char *path)
+int glove_frames_from(
+    struct glove_frames *f, const struct glove_options *o, struct recording *r, const char *path)
 {
-    static struct exh_glove_cal cal;
-    const struct recording_ask ask = glove_asked(o);
-    struct recording r;
-    long beyond = 0;
-    int err = recording_read(&r, path, &ask);
-    if (err) { return err; }
-    if (!r.codes && !o->calibration) { stage_plain(); }
-    staged_cal(&cal);
-    f->n = r.rows;
-    f->raw = malloc((size_t)r.rows * sizeof *f->raw);
-    for (long n = 0; f->raw != NULL && n < r.rows; n++) {
-        double code[SENSORS];
-        if (r.codes) {
-            memcpy(code, r.row[n], sizeof code);
-        } else {
-            codes_of(&cal, r.row[n], code);
-        }
-        for (int i = 0; i < SENSORS; i++) { beyond += code_of(code[i], &f->raw[n][i]); }
-    }
-    recording_free(&r);
+    long beyond;
+    if (!r->codes && !o->calibration) { stage_plain(); }
+    f->n = r->rows;
+    f->raw = malloc((size_t)r->rows * sizeof *f->raw);
     if (f->raw == NULL) {
         cli_complain("out of memory");
         return 1;
     }
+    beyond = take_rows(f, r);
+    f->t_s = r->t_s;
+    f->label = r->label;
+    r->t_s = NULL;
+    r->label = NULL;
     if (beyond > 0) {
         cli_complain(
             "%s: %ld of %ld angles lie beyond the codes of this calibration: they are limited",
@@ -132,9 +169,31 @@ int glove_frames_of(struct glove_frames *f, const struct glove_options *o, const
     return 0;
 }
 
+int glove_frames_of(struct glove_frames *f, const struct glove_options *o, const char *path)
+{
+    const struct recording_ask ask = glove_asked(o);
+    struct recording r;
+    int err = recording_read(&r, path, &ask);
+    if (err) { return err; }
+    err = take_rate(f, o, &r, path);
+    if (err == 0) { err = glove_frames_from(f, o, &r, path); }
+    recording_free(&r);
+    return err;
+}
+
+void glove_frames_free(struct glove_frames *f)
+{
+    free(f->raw);
+    free(f->t_s);
+    free(f->label);
+    f->raw = NULL;
+    f->t_s = NULL;
+    f->label = NULL;
+}
+
 /* --- out --- */
 
-void glove_header(const struct glove_options *o)
+void glove_header(const struct glove_options *o, int labelled)
 {
     const struct exh_signal_table *t = exh_scene_glove.signals;
     const uint32_t n = exh_signal_count(t);
@@ -144,10 +203,11 @@ void glove_header(const struct glove_options *o)
         const char *unit = strcmp(r->unit, "turn") == 0 ? o->deg ? "deg" : "rad" : r->unit;
         if (i <= SENSORS || o->tips) { printf(",%s%s%s", r->name, unit[0] ? "_" : "", unit); }
     }
-    putchar('\n');
+    puts(labelled ? ",label" : "");
 }
 
-void glove_line(const struct glove_options *o, double t_s, const struct glove_signals *s)
+void glove_line(
+    const struct glove_options *o, double t_s, const struct glove_signals *s, const char *label)
 {
     const double turn = (o->deg ? 360 : 2 * PI) / 4294967296.0;
     printf("%.9g", t_s);
@@ -166,30 +226,31 @@ void glove_line(const struct glove_options *o, double t_s, const struct glove_si
                 ",%.9g,%.9g,%.9g", p->x / 1073741824.0, p->y / 1073741824.0, p->z / 1073741824.0);
         }
     }
+    if (label != NULL) { printf(",%s", label); }
     putchar('\n');
 }
 
 int glove_csv(const struct glove_options *o)
 {
-    const struct exh_period T = glove_period(o->rate_Hz);
     static struct glove_cfg cfg;
     static struct glove_par par;
     static struct glove s;
-    struct glove_frames f = {NULL, 0, T};
+    struct glove_frames f = {NULL, 0, {0, 0}, NULL, NULL};
     int err = glove_frames_of(&f, o, o->csv);
-    if (err == 0) { err = glove_ready(o, &par, &cfg, T); }
+    if (err == 0) { err = glove_ready(o, &par, &cfg, f.T); }
     if (err) {
-        free(f.raw);
+        glove_frames_free(&f);
         return err;
     }
     memset(&s, 0, sizeof s);
-    glove_header(o);
+    glove_header(o, f.label != NULL);
     for (long n = 0; n < f.n; n++) {
         struct exh_glove_in in = {.age_ticks = 0};
         memcpy(in.raw, f.raw[n], sizeof in.raw);
         glove_frame(&s, &cfg, &in);
-        glove_line(o, (double)n * T.num / T.den, &s.sig);
+        glove_line(o, f.t_s != NULL ? f.t_s[n] : (double)n * f.T.num / f.T.den, &s.sig,
+            f.label != NULL ? f.label[n] : NULL);
     }
-    free(f.raw);
+    glove_frames_free(&f);
     return 0;
 }

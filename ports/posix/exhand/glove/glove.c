@@ -13,8 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define RATE_TOP 20000
-
 /* --- options with a syntax of their own --- */
 
 static int take_setting(void *ctx, const char *text)
@@ -113,7 +111,7 @@ static int check(const struct glove_options *o)
     if ((o->record || o->serial) && o->csv) {
         return glove_bad("--record or --serial, and --csv: one at a time");
     }
-    if (o->csv && o->rate_Hz <= 0) {
+    if (o->csv && o->rate_Hz <= 0 && !o->columns) {
         return glove_bad("--csv: --rate HZ says how fast its rows came");
     }
     if (o->unit && recording_unit_of(o->unit) == RECORDING_GUESS) {
@@ -124,9 +122,6 @@ static int check(const struct glove_options *o)
     }
     if (o->scale && o->unit && recording_unit_of(o->unit) != RECORDING_CODES) {
         return glove_bad("--scale: makes codes of the rows: leave out --unit");
-    }
-    if (recording_check(&(struct recording_ask){RECORDING_GUESS, o->columns, o->scale})) {
-        return 2;
     }
     if ((o->tips || o->deg) && (!(o->csv || (o->serial && !o->record)) || o->study)) {
         return glove_bad("--tips and --deg: go with --csv, or with --serial without --record");
@@ -164,14 +159,15 @@ int glove_command(int argc, char **argv, const struct glove_study *study)
     const struct cli_option option[] = {
         {"csv", CLI_TEXT, &o.csv, 0, 0, "FILE",
             "a recording: 22 codes or angles a line; - is standard input"},
-        {"rate", CLI_REAL, &o.rate_Hz, 1, RATE_TOP, "HZ", "of the rows, or of the loop (2000)"},
+        {"rate", CLI_REAL, &o.rate_Hz, 1, GLOVE_RATE_TOP, "HZ",
+            "of the rows, or of the loop (2000)"},
         {"tips", CLI_FLAG, &o.tips, 0, 0, NULL, "joints and fingertips of the robot hand too"},
         {"deg", CLI_FLAG, &o.deg, 0, 0, NULL, "angles in degrees, not radians"},
         {"unit", CLI_TEXT, &o.unit, 0, 0, "UNIT",
             "of the rows: codes, rad, deg, turn; else guessed"},
         {"columns", CLI_TEXT, &o.columns, 0, 0, "LIST",
-            "which of the rows' columns are the 22 sensors: 3-24, or 8-14,16-30, or names (the "
-            "first 22)"},
+            "which columns are its 22 sensors: 3-24, or 8-14,16-30, or names; time=1 (time_ms, "
+            "time_us; clock=4-6: h, m, s), label=24"},
         {"scale", CLI_TEXT, &o.scale, 0, 0, "A[,B]",
             "a code is A times the row's number and B: 256,-32768 of 8-bit codes"},
         {"calibration", CLI_TEXT, &o.calibration, 0, 0, "FILE", "instead of nobody's"},

@@ -15,6 +15,7 @@
 #include <stdint.h>
 
 #define GLOVE_SETTINGS 64
+#define GLOVE_RATE_TOP 20000
 
 struct glove_options {
     int tips, deg, cards, study; /* study: the lab asks for no mode of these */
@@ -35,6 +36,8 @@ struct glove_frames {
     int16_t (*raw)[EXH_GLOVE_SENSORS];
     long n;
     struct exh_period T;
+    double *t_s;                      /* as recorded; NULL: a row each T */
+    char (*label)[RECORDING_LABEL_B]; /* NULL: none */
 };
 
 /* 1 / rate as a ratio, to 1/1000 Hz. */
@@ -45,17 +48,22 @@ struct exh_period glove_period(double rate_Hz);
 int glove_ready(const struct glove_options *o, struct glove_par *par, struct glove_cfg *cfg,
     struct exh_period T);
 
-/* How its recording is to be read. */
+/* What the options say of a recording's text. */
 struct recording_ask glove_asked(const struct glove_options *o);
 
 /* The codes of a recording; angles through the calibration, backwards. If angles come without
  * --calibration, a glove is staged whose 65536 codes are one turn, so that each has its code.
- * 0, or an exit status after a line on stderr. Free raw. */
+ * T is that of --rate, else by the recorded time; _from leaves it as it is, and takes time and
+ * labels out of r. 0, or an exit status after a line on stderr. */
 int glove_frames_of(struct glove_frames *f, const struct glove_options *o, const char *path);
+int glove_frames_from(
+    struct glove_frames *f, const struct glove_options *o, struct recording *r, const char *path);
+void glove_frames_free(struct glove_frames *f);
 
-/* Rows as --csv writes them. */
-void glove_header(const struct glove_options *o);
-void glove_line(const struct glove_options *o, double t_s, const struct glove_signals *s);
+/* Rows as --csv writes them; label NULL: without. */
+void glove_header(const struct glove_options *o, int labelled);
+void glove_line(
+    const struct glove_options *o, double t_s, const struct glove_signals *s, const char *label);
 /* Options that do not go together: 2 after a line on stderr. */
 int glove_bad(const char *what);
 

@@ -3,8 +3,10 @@
 
 #include "base/lines.h"
 #include "base/option.h"
+#include "box/recording.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -214,6 +216,58 @@ int glove_poses_read(struct glove_taken *t, const char *path)
     }
     if (!standard) { fclose(f); }
     return status;
+}
+
+/* --- recorded, in columns of somebody else --- */
+
+/* By its name, or its number in --list; -1: neither. */
+static int labelled(const char *label)
+{
+    char *end;
+    const long n = strtol(label, &end, 10);
+    return end != label && *end == '\0' ? (n >= 1 && n <= GLOVE_POSES ? (int)n - 1 : -1)
+                                        : glove_pose_find(label);
+}
+
+/* A row as it is, or not at all: what it says is of one pose. 1 if it was taken; -1: no pose. */
+static int take_labelled(
+    struct glove_taken *t, const double row[EXH_GLOVE_SENSORS], const char *label)
+{
+    const int pose = labelled(label);
+    if (pose < 0) { return -1; }
+    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
+        if (isnan(row[i])) { return 0; }
+    }
+    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { take_code(&t->code[pose][i], row[i]); }
+    t->frames[pose]++;
+    return 1;
+}
+
+int glove_poses_read_columns(
+    struct glove_taken *t, const char *path, const char *columns, const char *scale)
+{
+    const struct recording_ask ask = {RECORDING_CODES, columns, scale ? scale : "1"};
+    struct recording r;
+    long left = 0;
+    int err = recording_read(&r, path, &ask);
+    memset(t, 0, sizeof *t);
+    if (err == 0 && r.label == NULL) {
+        cli_complain("--columns: no pose: label=C says which column has its name or number");
+        err = 2;
+    }
+    for (long n = 0; err == 0 && n < r.rows; n++) {
+        const int taken = take_labelled(t, r.row[n], r.label[n]);
+        left += taken == 0;
+        if (taken < 0) {
+            cli_complain("--poses: %s: row %ld: %s: no such pose: `exhand calibrate --glove "
+                         "--list` lists them",
+                path, n + 1, r.label[n]);
+            err = 2;
+        }
+    }
+    if (left > 0) { cli_complain("--poses: %s: %ld rows are left out for that", path, left); }
+    recording_free(&r);
+    return err;
 }
 
 /* --- to the fit, and to a file --- */

@@ -52,6 +52,12 @@ void glove_poses_take(struct glove_taken *t, const struct glove_bench *b, FILE *
  * or both. "-" is standard input. 0, or 2 or 3 after a line on stderr. */
 int glove_poses_read(struct glove_taken *t, const char *path);
 
+/* A recording in other columns (recording_columns.h), whose label is a pose's name or number, and
+ * other codes (recording_ask.h; scale may be NULL). A row with a value that is no number is left
+ * out and counted. */
+int glove_poses_read_columns(
+    struct glove_taken *t, const char *path, const char *columns, const char *scale);
+
 /* For the fit: those that were taken. Their number; which[] says which they are. */
 unsigned glove_poses_fit(
     struct exh_glove_pose *pose, uint8_t which[GLOVE_POSES], const struct glove_taken *t);

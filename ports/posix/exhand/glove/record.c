@@ -81,22 +81,30 @@ static int run_logged(const struct glove_options *o, const struct posix_config *
 }
 
 /* As long as was said, or as what is played; one tick at least, since none were no end. */
-static uint32_t ticks_of(const struct glove_options *o, long rows)
+static uint32_t ticks_of(const struct glove_options *o, const struct posix_config *c)
 {
-    const double seconds = o->seconds > 0 ? o->seconds : rows > 0 ? (double)rows / o->rate_Hz : 10;
+    const double every = *exh_scene_glove.glove_every;
+    const double plays = c->frames > 0      ? (double)c->frames * every / o->rate_Hz
+                         : c->hand.rows > 0 ? (double)c->hand.rows / c->hand.row_hz
+                                            : 10;
+    const double seconds = o->seconds > 0 ? o->seconds : plays;
     const double ticks = seconds * o->rate_Hz + 0.5;
     return ticks < 1 ? 1 : ticks > UINT32_MAX ? UINT32_MAX : (uint32_t)ticks;
 }
 
-/* The rows of --play: codes as frames, angles through the analog chain. */
+/* The rows of --play: codes as frames, a scan each; angles through the analog chain. */
 static int play(const struct glove_options *o, struct posix_config *c, struct glove_frames *f,
     struct recording *r)
 {
     const struct recording_ask ask = glove_asked(o);
     int err = recording_read(r, o->play, &ask);
     if (err) { return err; }
+    if (r->codes && r->t_s != NULL) {
+        cli_complain("--play: codes come a row a scan: leave their time out of --columns");
+        return 2;
+    }
     if (r->codes) {
-        err = glove_frames_of(f, o, o->play);
+        err = glove_frames_from(f, o, r, o->play);
         c->frame = (const int16_t(*)[SIM_GLOVE_SENSORS])f->raw;
         c->frames = f->n;
     } else {
@@ -104,7 +112,7 @@ static int play(const struct glove_options *o, struct posix_config *c, struct gl
         c->hand.does = SIM_RECORD;
         c->hand.row_rad = (const double(*)[SIM_GLOVE_SENSORS])r->row;
         c->hand.rows = r->rows;
-        c->hand.row_hz = o->rate_Hz;
+        c->hand.row_hz = r->t_s != NULL && r->rows > 1 ? recording_row_hz(r) : o->rate_Hz;
     }
     return err;
 }
@@ -112,8 +120,8 @@ static int play(const struct glove_options *o, struct posix_config *c, struct gl
 int glove_record(const struct glove_options *o)
 {
     struct posix_config c = posix_config_default();
-    struct glove_frames f = {NULL, 0, {0, 0}};
-    struct recording r = {NULL, 0, 0};
+    struct glove_frames f = {NULL, 0, {0, 0}, NULL, NULL};
+    struct recording r = {NULL, NULL, NULL, 0, 0};
     int err = find_motion(o, &c.hand), closed;
     if (err == 0 && o->play) { err = play(o, &c, &f, &r); }
     c.device = o->device;
@@ -123,7 +131,7 @@ int glove_record(const struct glove_options *o)
     c.bench = c.glove = 1;
     c.T = glove_period(o->rate_Hz);
     if (err == 0) { err = try_once(o, c); }
-    c.max_ticks = ticks_of(o, r.codes ? r.rows * *exh_scene_glove.glove_every : r.rows);
+    c.max_ticks = ticks_of(o, &c);
     if (err == 0 && (c.log = fopen(o->record, "wb")) == NULL) {
         cli_complain(
             "--record: %s: %s: give a file that can be written", o->record, strerror(errno));
@@ -138,7 +146,7 @@ int glove_record(const struct glove_options *o)
             err = 1;
         }
     }
-    free(f.raw);
+    glove_frames_free(&f);
     recording_free(&r);
     return err ? err : posix_interrupted() ? 130 : 0;
 }

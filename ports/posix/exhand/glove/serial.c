@@ -99,7 +99,7 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     if (run.o->pose && in->glove_new) {
         glove_poses_row(stdout, run.o->pose, in->glove.raw);
     } else if (!run.o->record && in->glove_new) {
-        glove_line(run.o, t_s, (const struct glove_signals *)exh_scene_glove.signal);
+        glove_line(run.o, t_s, (const struct glove_signals *)exh_scene_glove.signal, NULL);
     }
     watch_silence(in->glove.age_ticks / run.rate_Hz);
     if (run.tty.in.frames == 0 && t_s >= NEVER_S) {
@@ -113,7 +113,7 @@ static void started(const struct exh_scene *sc, struct exh_scene_board board)
     if (run.o->record) {
         exh_log_start(sc, board);
     } else if (!run.o->pose) {
-        glove_header(run.o);
+        glove_header(run.o, 0);
     }
 }
 

@@ -79,6 +79,10 @@ static int hand_of(struct live_options *o, const struct exh_scene *sc)
     struct sim_exo_par *const exo = &o->hand.run.board.exo;
     const char *const given = o->udp ? "udp" : o->record ? "record" : NULL;
     int err = 0;
+    if (o->hand.columns && o->record == NULL) {
+        cli_complain("--record-columns: goes with --record");
+        return 2;
+    }
     if (given && sc != &exh_scene_bilateral) {
         cli_complain("--%s: %s: goes with --scene bilateral, not %s", given,
             o->udp ? o->udp : o->record, o->scene);
@@ -90,7 +94,7 @@ static int hand_of(struct live_options *o, const struct exh_scene *sc)
         err = world_line_use(o->udp, &o->hand.run.board.line);
     }
     if (err || o->record == NULL) { return err; }
-    err = hand_record_read(&o->recorded, o->record, o->record_Hz, exo);
+    err = hand_record_read(&o->recorded, o->record, o->hand.columns, o->record_Hz, exo);
     if (err == 0) { err = hand_record_again(&o->recorded); }
     if (err == 0) { hand_record_use(&o->recorded, exo); }
     return err;
@@ -242,6 +246,7 @@ int cli_run(int argc, char **argv)
             "of bilateral: the fingers do what a glove recorded, again and again"},
         {"record-rate", CLI_REAL, &o.record_Hz, 0.1, 10000, "HZ",
             "of its rows, if they have no clock (100)"},
+        {"record-columns", CLI_TEXT, &o.hand.columns, 0, 0, "LIST", "of `exhand glove`"},
         {"set", CLI_CALL, &set, 0, 0, "NAME=VALUE", "a parameter of the scene"},
         {"load-params", CLI_TEXT, &o.params, 0, 0, "FILE",
             "an image of parameters, restored before --set"},

@@ -1,0 +1,298 @@
+/* SPDX-License-Identifier: MIT */
+/* Recordings of others: sensors, time and label stand where --columns says. */
+#include "glove_said.h"
+
+#include "base/cli.h"
+
+static struct said s;
+static const char *dir;
+static char *csv;
+
+#define RATE "--rate", "200"
+#define REST "0.3,0.4,0.5,0.6,0.7,0.8,0.9,1,1.1,1.2,1.3,1.4,1.5,-0.1,-0.2,-0.3,-0.4,-0.5,-0.6,-0.7"
+
+static void begin(void)
+{
+    dir = said_dir();
+    csv = strdup(said_path(dir, "in.csv"));
+}
+
+static void end(void)
+{
+    free(csv);
+    said_clean(dir);
+}
+
+/* What the two plain rows give, for all that is read otherwise to compare with. */
+static const char *plain(void)
+{
+    static char text[SAID_B];
+    write_text(csv, ROW_A "\n" ROW_B "\n");
+    said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, RATE));
+    CHECK(s.status == 0, "%d: %s", s.status, s.err);
+    return strcpy(text, s.out);
+}
+
+static void says(const char *text, const char *columns)
+{
+    write_text(csv, text);
+    said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, RATE, "--columns", columns));
+}
+
+/* The same 22 values behind and before other columns, by number and by name. */
+TEST(sensors_are_where_the_columns_say)
+{
+#define NAMES "a-b,c d,e,f,g,h,i,j,k,l,m,n,o,p,q,r,s,t,u,v,w,\"x\""
+    static const struct {
+        const char *head, *before, *behind, *columns;
+    } row[] = {
+        {"", "7720, ", "", "2-23"},
+        {"", "7720,7.84,", ",0.5,-9e9,word", "3-24"},
+        {"", "A,", "", "2-23"},
+        {"t," NAMES ",y", ",", ",two words", "2-23"},
+        {"t," NAMES ",y", "1,", ",2", "a-b,c d,e-w,x"},
+        {NAMES, "", "", "1-22"},
+        {NAMES, "", "", "a-b,c d,e-w,x"},
+        {NAMES, "", "", "a-b-e,4,5,6-x"},
+        {NAMES, "", "", "1,2-21,x"},
+    };
+    const char *want;
+    begin();
+    want = plain();
+    for (size_t i = 0; i < LEN(row); i++) {
+        char text[2000];
+        snprintf(text, sizeof text, "%s\n%s" ROW_A "%s\n\r\n%s" ROW_B "%s\n", row[i].head,
+            row[i].before, row[i].behind, row[i].before, row[i].behind);
+        says(text, row[i].columns);
+        CHECK(s.status == 0, "%zu: %d: %s", i, s.status, s.err);
+        CHECK(strcmp(s.out, want) == 0, "%zu: %s", i, s.out);
+    }
+    end();
+}
+
+/* Blanks, semicolons and tabs; the order of the list is the order of the sensors. */
+TEST(columns_go_with_every_separator_and_order)
+{
+    char text[2000] = "";
+    const char *want;
+    begin();
+    want = plain();
+    for (const char *sep = " ;\t"; *sep != '\0'; sep++) {
+        snprintf(text, sizeof text, "9,%s,8\n9,%s,8\n", ROW_A, ROW_B);
+        for (char *c = text; *c != '\0'; c++) { *c = *c == ',' ? *sep : *c; }
+        says(text, "2-23");
+        CHECK(s.status == 0 && strcmp(s.out, want) == 0, "'%c': %d: %s", *sep, s.status, s.err);
+    }
+    says("-0.7," ROW_A "\n-0.7," ROW_B "\n", "2-22,1");
+    CHECK(s.status == 0 && strcmp(s.out, want) == 0, "%d: %s", s.status, s.err);
+    says(ROW_A "\n" ROW_B "\n", "2,1,3-22");
+    CHECK(s.status == 0 && strcmp(s.out, want) != 0, "%d: %s", s.status, s.err);
+    CHECK(
+        number_after(s.out, "\n0", 0) > 0.19 && number_after(s.out, "\n0", 1) < 0.11, "%s", s.out);
+    end();
+}
+
+/* A word before the first row makes no header of it: no row is lost, nor shifted. */
+TEST(no_row_is_lost_or_shifted)
+{
+    const char *want;
+    begin();
+    want = plain();
+    says("A," ROW_A "\nB," ROW_B "\n", "2-23");
+    CHECK(s.status == 0 && strcmp(s.out, want) == 0, "%d: %s%s", s.status, s.err, s.out);
+    says("2014-09-12," ROW_A ",x\n2014-09-12," ROW_B ",x\n", "2-23");
+    CHECK(s.status == 0 && strcmp(s.out, want) == 0, "%d: %s%s", s.status, s.err, s.out);
+    says("1,2," ROW_A "\n1,2," ROW_B "\n1,2,3," ROW_B "\n", "3-24");
+    CHECK(s.status == 2 && strstr(s.err, "line 3: 25 columns (24 in the first line)") != NULL,
+        "%d: %s", s.status, s.err);
+    write_text(csv, ",.2"
+                    "," REST "\n,.2," REST "\n"); /* nothing where the first number is */
+    said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, RATE));
+    CHECK(s.status == 0 && strstr(s.err, "2 of 44 values are no number") != NULL, "%d: %s",
+        s.status, s.err);
+    CHECK(strstr(s.out, "\n0.005,") != NULL, "%s", s.out);
+    end();
+}
+
+/* No number is the fault of its own channel, not of one that it pulls along: of four frames three
+ * make it one. */
+TEST(no_number_is_no_fault_of_a_neighbour)
+{
+    static struct exh_glove_cal cal;
+    uint8_t image[EXH_GLOVE_CAL_IMAGE_B];
+    char *to;
+    FILE *f;
+    begin();
+    to = strdup(said_path(dir, "user.glove"));
+    cal = exh_glove_cal_default;
+    cal.sensor[10].of[0] = 4;
+    cal.sensor[10].cross_q30[0] = -(1 << 28);
+    CHECK_EQ_I64(exh_glove_cal_save(&cal, image, sizeof image, NULL), EXH_GLOVE_CAL_IMAGE_B);
+    f = fopen(to, "wb");
+    CHECK(f != NULL && fwrite(image, 1, sizeof image, f) == sizeof image, "%s", to);
+    CHECK_EQ_I64(fclose(f), 0);
+#define BEFORE ".1,.2,.3,.4,"
+#define BEHIND ",.6,.7,.8,.9,1,.3,1.2,1.3,1.4,.4,.6,.7,.8,.3,.2,.1,-.1\n"
+    write_text(csv,
+        BEFORE ".5" BEHIND BEFORE BEHIND BEFORE "inf" BEHIND BEFORE "nan" BEHIND BEFORE BEHIND);
+    said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, RATE, "--calibration", to));
+    CHECK(s.status == 0 && strstr(s.err, "4 of 110 values are no number") != NULL, "%s", s.err);
+    CHECK(number_after(s.out, "\n0.01,", 22) == 0, "%s", s.out);
+    CHECK(number_after(s.out, "\n0.015,", 22) == 1 << 4, "%s", s.out);
+    CHECK(number_after(s.out, "\n0.02,", 22) == 1 << 4, "%s", s.out);
+    for (int i = 0; i < SENSORS; i++) { /* nor of its angle: none moves */
+        CHECK(number_after(s.out, "\n0.02,", i) == number_after(s.out, "\n0,", i), "column %d", i);
+    }
+    free(to);
+    end();
+}
+
+/* Time of a column stands in the answer, from 0, and says the rate. */
+TEST(time_is_taken_from_its_column)
+{
+    static const struct {
+        const char *columns, *at[3];
+    } row[] = {
+        {"4-25,time=3", {"0,0,7.5,", "0,0,7.505,", "0,0,7.51,"}},
+        {"4-25,time_ms=1", {"65180,0,0,", "65185,0,0,", "65190,0,0,"}},
+        {"4-25,time_us=2", {"0,-5000,0,", "0,0,0,", "0,5e3,0,"}},
+        {"4-25,clock=1-3", {"23,59,59.995,", "0,0,0,", "0,0,0.005,"}},
+    };
+    char text[2000], want[SAID_B];
+    begin();
+    write_text(csv, ROW_A "\n" ROW_B "\n" ROW_A "\n");
+    said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, RATE));
+    strcpy(want, s.out);
+    for (size_t i = 0; i < LEN(row); i++) {
+        snprintf(text, sizeof text, "%s" ROW_A "\n%s" ROW_B "\n%s" ROW_A "\n", row[i].at[0],
+            row[i].at[1], row[i].at[2]);
+        write_text(csv, text);
+        said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--columns", row[i].columns));
+        CHECK(s.status == 0 && s.err[0] == '\0', "%zu: %d: %s", i, s.status, s.err);
+        CHECK(strcmp(s.out, want) == 0, "%zu: %s", i, s.out);
+    }
+    end();
+}
+
+/* Steps that are not even are said, and times stay as they are. */
+TEST(uneven_time_is_said)
+{
+    begin();
+    write_text(csv, "1," ROW_A "\n1.01," ROW_B "\n1.02," ROW_B "\n1.07," ROW_B "\n");
+    said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--columns", "time=1,2-23"));
+    CHECK(s.status == 0 && strstr(s.out, "\n0.07,") != NULL, "%d: %s", s.status, s.out);
+    CHECK(strstr(s.err, "in.csv: 1 of 3 steps of time are longer than 1.5 of the mean") != NULL,
+        "%s", s.err);
+    CHECK(strstr(s.err, "42.8571 Hz") != NULL, "%s", s.err);
+    end();
+}
+
+/* A label stands behind its row; one that is a number, too. */
+TEST(labels_stand_in_the_answer)
+{
+    char text[2000], want[SAID_B], *line;
+    begin();
+    strcpy(want, plain());
+    says(ROW_A ",A\n" ROW_B ",two words\n", "1-22,label=23");
+    CHECK(s.status == 0 && strstr(s.out, ",label\n") != NULL, "%d: %s", s.status, s.err);
+    CHECK(strstr(s.out, ",0,A\n") != NULL && strstr(s.out, ",0,two words\n") != NULL, "%s", s.out);
+    says("7," ROW_A ",1\n-7," ROW_B ",2\n", "2-23,label=1");
+    CHECK(s.status == 0, "%d: %s", s.status, s.err);
+    text[0] = '\0';
+    for (int n = 0; n < 3; n++) { /* all else is as without */
+        line = strtok(n == 0 ? want : NULL, "\n");
+        sprintf(text + strlen(text), "%s%s\n", line, n == 0 ? ",label" : n == 1 ? ",7" : ",-7");
+    }
+    CHECK(strcmp(s.out, text) == 0, "%s", s.out);
+    end();
+}
+
+TEST(bad_columns_are_refused_by_name)
+{
+    static const struct {
+        const char *text, *columns, *why;
+    } row[] = {
+        {ROW_A "\n", "1-21", "21 sensors: give 22"},
+        {ROW_A "\n", "1-23", "too many columns"},
+        {ROW_A "\n", "22-1", "22-1: a range rises"},
+        {ROW_A "\n", "1-21,21", "21: a column in use already"},
+        {ROW_A "\n", "1-22,time=5", "time=5: a column in use already"},
+        {ROW_A "\n", "1-22,", "no such column"},
+        {ROW_A "\n", "0-21", "0-21: no such column"},
+        {ROW_A "\n", "1-300", "no such column"},
+        {ROW_A "\n", "thumb,2-22", "thumb: no such column"},
+        {ROW_A "\n", "1-22,clock=23-24", "its three columns"},
+        {ROW_A "\n", "2-23", "line 1: 22 columns (23 wanted)"},
+        {"1," ROW_A "\n1," ROW_A ",3\n", "2-23", "line 2: 24 columns (23 in the first line)"},
+        {"1," ROW_A "\n1,x" ROW_A "\n", "2-23", "line 2, column 2: \"x0.1\" is no number"},
+        {"1," ROW_A "\nx," ROW_A "\n", "2-23,time=1", "line 2, column 1: \"x\" is no number"},
+        {"1," ROW_A "\n1," ROW_A "\n", "2-23,time=1", "line 2: its clock stands or jumps"},
+        {"2," ROW_A "\n1," ROW_A "\n", "2-23,time=1", "line 2: its clock stands or jumps"},
+        {"1," ROW_A "\n20," ROW_A "\n", "2-23,time=1", "line 2: its clock stands or jumps"},
+        {ROW_A ",12345678901234567890123456789012\n", "1-22,label=23", "column 23: a label of"},
+        {"1,x" ROW_A "\n", "2-23", "line 1, column 2: \"x0.1\" is no number"},
+    };
+    begin();
+    for (size_t i = 0; i < LEN(row); i++) {
+        says(row[i].text, row[i].columns);
+        CHECK(s.status == 2 && s.out[0] == '\0', "%zu: %d: %s", i, s.status, s.out);
+        CHECK(strstr(s.err, row[i].why) != NULL, "%zu: %s", i, s.err);
+    }
+    write_text(csv, "1," ROW_A "\n5," ROW_B "\n");
+    said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--columns", "2-23,time=1"));
+    CHECK(s.status == 2 && strstr(s.err, "0.25 rows a second") != NULL, "%s", s.err);
+    said(&s, dir, cli_glove, WORDS("glove", "--csv", csv, "--columns", "2-23"));
+    CHECK(s.status == 2 && strstr(s.err, "--rate HZ says") != NULL, "%s", s.err);
+    said(&s, dir, cli_glove, WORDS("glove", "--record", csv, "--columns", "2-23"));
+    CHECK(s.status == 2 && strstr(s.err, "--columns, --scale: of the rows") != NULL, "%s", s.err);
+    end();
+}
+
+/* --play does at 200 Hz of recorded time what it does at 200 Hz of plain rows; codes have none. */
+TEST(a_played_recording_has_columns_too)
+{
+    static char log[2][65536];
+    size_t n[2] = {0, 0};
+    char *to;
+    begin();
+    to = strdup(said_path(dir, "log.exh"));
+    for (int timed = 0; timed < 2; timed++) {
+        FILE *f;
+        write_text(csv, timed ? "5," ROW_A "\n5.005," ROW_B "\n" : ROW_A "\n" ROW_B "\n");
+        said(&s, dir, cli_glove,
+            WORDS("glove", "--record", to, "--play", csv, RATE, timed ? "--columns" : NULL,
+                "2-23,time=1"));
+        CHECK(s.status == 0, "%d: %s", s.status, s.err);
+        f = fopen(to, "rb");
+        CHECK(f != NULL, "%s", to);
+        n[timed] = fread(log[timed], 1, sizeof log[timed], f);
+        CHECK_EQ_I64(fclose(f), 0);
+    }
+    CHECK(n[0] == n[1] && n[0] > 1000 && memcmp(log[0], log[1], n[0]) == 0, "%zu, %zu", n[0], n[1]);
+    write_text(csv, "1,10," ROW_A "\n"); /* ten is no angle */
+    said(&s, dir, cli_glove,
+        WORDS(
+            "glove", "--record", to, "--play", csv, "--unit", "codes", "--columns", "3-24,time=1"));
+    CHECK(s.status == 2 && strstr(s.err, "codes are whole") != NULL, "%s", s.err);
+    write_text(csv, "1,1,2,3,4,5,6,7,8,9,1,2,3,4,5,6,7,8,9,1,2,3,4\n");
+    said(&s, dir, cli_glove,
+        WORDS("glove", "--record", to, "--play", csv, "--columns", "2-23,time=1"));
+    CHECK(s.status == 2 && strstr(s.err, "a row a scan") != NULL, "%s", s.err);
+    write_text(csv,
+        ",1,2,3,4,5,6,7,8,9,1,2,3,4,5,6,7,8,9,1,2,3\n\n,1,2,3,4,5,6,7,8,9,1,2,3,4,5,6,7,8,"
+        "9,1,2,3\n");
+    said(&s, dir, cli_glove, WORDS("glove", "--record", to, "--play", csv));
+    CHECK(s.status == 0, "%d: %s", s.status, s.err);
+    for (int k = 0; k < 2; k++) { /* each is said, and once */
+        const char *word = k ? "1 empty lines" : "2 of 44 values", *at = strstr(s.err, word);
+        CHECK(at != NULL && strstr(at + 1, word) == NULL, "%s", s.err);
+    }
+    free(to);
+    end();
+}
+
+TEST_MAIN("sim/glove_columns", sensors_are_where_the_columns_say,
+    columns_go_with_every_separator_and_order, no_row_is_lost_or_shifted,
+    no_number_is_no_fault_of_a_neighbour, time_is_taken_from_its_column, uneven_time_is_said,
+    labels_stand_in_the_answer, bad_columns_are_refused_by_name,
+    a_played_recording_has_columns_too);
