@@ -140,8 +140,8 @@ static void beside_dead(
         if (from == r->finger[f].n) { continue; }
         c.until_s = ((double)from + 1) / c.rate_Hz;
         to->stood++;
-        to->broke += bilateral_run(&c, &dead) < 0 ||
-                     !stands_alike(&r->finger[f], &dead.finger[f], from);
+        to->broke +=
+            bilateral_run(&c, &dead) < 0 || !stands_alike(&r->finger[f], &dead.finger[f], from);
         bilateral_run_free(&dead);
     }
 }
@@ -236,9 +236,9 @@ static int table(const struct cell *cell, int n)
         "motion brought an object onto a\nfinger that rests: by the rule not felt until it was "
         "left. Late: the finger was "
         "inside when its plane came. Nothing: a\ncontact where nothing is. Stood: first contacts "
-        "whose bits stayed when the world died as they froze. Same bits:\nfingers with every bit as over "
-        "the perfect link from their first freeze on: at flat faces; of a curved\nsurface the "
-        "plane is of where the pad was foreseen.\n",
+        "whose bits stayed when the world died as they froze. Same bits:\n"
+        "fingers with every bit as over the perfect link from their first freeze on: at flat "
+        "faces; of a curved\nsurface the plane is of where the pad was foreseen.\n",
         SCENES, APPROACHES, is.seeds);
     return csv && fclose(csv) != 0;
 }
