@@ -4,6 +4,8 @@
 
 #include "base/cli.h"
 
+#include <dirent.h>
+
 static struct said s;
 static const char *dir;
 static char *csv;
@@ -291,8 +293,89 @@ TEST(a_played_recording_has_columns_too)
     end();
 }
 
+/* --- the recordings themselves, by the lines of docs/EXPERIMENTS.md --- */
+
+/* A command of the document with one file: every row of it comes out, at its time. */
+static void open_by(const char *command, const char *file)
+{
+    static char words[600], line[4096], last[4096];
+    const char *word[30];
+    int n = 0, columns = 0;
+    long rows = 0, lines = 0;
+    FILE *f;
+    snprintf(words, sizeof words, "%s", command);
+    for (char *at = strtok(words, " "); at != NULL && n < 29; at = strtok(NULL, " ")) {
+        word[n++] = strcmp(at, "FILE") == 0 ? file : at;
+    }
+    word[n] = NULL;
+    said(&s, dir, cli_glove, word + 1);
+    CHECK(s.status == 0, "%s %s: %d: %s", command, file, s.status, s.err);
+    f = fopen(file, "rb");
+    CHECK(f != NULL, "%s", file);
+    for (int c = getc(f), before = '\n'; c != EOF; before = c, c = getc(f)) {
+        rows += before == '\n' || before == '\r'; /* none of them ends in both */
+    }
+    CHECK_EQ_I64(fclose(f), 0);
+    f = fopen(said_path(dir, "said.out"), "r");
+    CHECK(f != NULL, "no answer");
+    for (; fgets(line, sizeof line, f) != NULL; lines++) { strcpy(last, line); }
+    CHECK_EQ_I64(fclose(f), 0);
+    for (const char *c = last; *c != '\0'; c++) { columns += *c == ','; }
+    CHECK(columns == 23 + (strstr(command, "label=") != NULL), "%s: %d columns", file, columns);
+    CHECK(lines == rows + (strstr(command, "S01") == NULL), "%s: %ld of %ld", file, lines, rows);
+    check_note("%s: %ld rows, to %.9g s", strrchr(file, '/') + 1, lines - 1, strtod(last, NULL));
+}
+
+/* All recordings of a folder: those that are there. */
+static int open_folder(const char *folder, const char *command)
+{
+    const char *data = getenv("EXH_DATA") ? getenv("EXH_DATA") : "../shared/data";
+    char path[512];
+    struct dirent *e;
+    int files = 0;
+    DIR *d;
+    snprintf(path, sizeof path, "%s/%s", data, folder);
+    d = opendir(path);
+    if (d == NULL) {
+        check_note("%s: not there: nothing of it is tested; EXH_DATA names the place", path);
+        return 0;
+    }
+    while ((e = readdir(d)) != NULL) {
+        const char *end = strrchr(e->d_name, '.');
+        char file[800];
+        if (end == NULL || (strcmp(end, ".txt") != 0 && strcmp(end, ".csv") != 0)) { continue; }
+        snprintf(file, sizeof file, "%s/%s", path, e->d_name);
+        open_by(command, file);
+        files++;
+    }
+    closedir(d);
+    return files;
+}
+
+TEST(documented_commands_open_the_recordings)
+{
+    static char line[4096], folder[100], command[600];
+    FILE *f = fopen("docs/EXPERIMENTS.md", "r");
+    int rows = 0, files = 0;
+    begin();
+    CHECK(f != NULL, "docs/EXPERIMENTS.md");
+    while (fgets(line, sizeof line, f) != NULL) {
+        const char *at = strstr(line, "| `exhand glove --csv FILE");
+        if (at == NULL || sscanf(line, "| `%99[^`]`", folder) != 1 ||
+            sscanf(at, "| `%599[^`]`", command) != 1) {
+            continue;
+        }
+        files += open_folder(folder, command);
+        rows++;
+    }
+    CHECK_EQ_I64(fclose(f), 0);
+    CHECK_EQ_I64(rows, 3);
+    CHECK(files == 0 || files == 6, "%d files", files);
+    end();
+}
+
 TEST_MAIN("sim/glove_columns", sensors_are_where_the_columns_say,
     columns_go_with_every_separator_and_order, no_row_is_lost_or_shifted,
     no_number_is_no_fault_of_a_neighbour, time_is_taken_from_its_column, uneven_time_is_said,
-    labels_stand_in_the_answer, bad_columns_are_refused_by_name,
-    a_played_recording_has_columns_too);
+    labels_stand_in_the_answer, bad_columns_are_refused_by_name, a_played_recording_has_columns_too,
+    documented_commands_open_the_recordings);
