@@ -104,11 +104,10 @@ static inline const char *said_path(const char *dir, const char *name)
     char text[512];
     (void)snprintf(text, sizeof text, "%s/%s", dir, name);
     for (int i = 0; i < 4; i++) { /* who asks again and again takes no other's place */
-        if (strcmp(path[i], text) == 0) { return path[i]; }
+        if (strcmp(path[i], text) == 0) { return memcpy(path[i], text, sizeof text); }
     }
     turn = (turn + 1) % 4;
-    strcpy(path[turn], text);
-    return path[turn];
+    return memcpy(path[turn], text, sizeof text);
 }
 
 static inline long said_size(const char *path)
