@@ -100,14 +100,18 @@ static inline void said_clean(const char *dir)
 static inline const char *said_path(const char *dir, const char *name)
 {
     static char path[4][512];
-    static int turn;
+    static unsigned used[4], now;
     char text[512];
+    int at = 0; /* who asks again and again takes no other's place, else that of the oldest */
     (void)snprintf(text, sizeof text, "%s/%s", dir, name);
-    for (int i = 0; i < 4; i++) { /* who asks again and again takes no other's place */
-        if (strcmp(path[i], text) == 0) { return memcpy(path[i], text, sizeof text); }
+    for (int i = 1; i < 4; i++) {
+        if (used[i] < used[at]) { at = i; }
     }
-    turn = (turn + 1) % 4;
-    return memcpy(path[turn], text, sizeof text);
+    for (int i = 0; i < 4; i++) {
+        if (strcmp(path[i], text) == 0) { at = i; }
+    }
+    used[at] = ++now;
+    return memcpy(path[at], text, sizeof text);
 }
 
 static inline long said_size(const char *path)
