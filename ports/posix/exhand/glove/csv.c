@@ -89,8 +89,7 @@ static void staged_cal(struct exh_glove_cal *cal)
 }
 
 /* Rows to codes; how many were beyond the codes there are. No number has a rail's code, so that its
- * channel has the fault. What is no number lets the angles that
- * it pulls along hold to what it was before. */
+ * channel has the fault; to a neighbour that it pulls along it is what it was before. */
 static long take_rows(struct glove_frames *f, const struct recording *r)
 {
     static struct exh_glove_cal cal;
