@@ -38,7 +38,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static const struct exh_material_par material[2] = {{1 << 24, 1 << 24, 1 << 22}, {1, 1, 1}};
 static const struct exh_precontact_par par = {
-    -5368709, 1073741, 1 << 24, 0, 0, 100, 5368709, 100, 50};
+    -5368709, 1073741, 1 << 24, 0, 0, 100, 5368709, 100, 50, 100};
 
 /* All that a packet may reach. */
 struct box {
