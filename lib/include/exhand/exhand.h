@@ -29,7 +29,7 @@
  * HELLO, a log and a register carry. Wire, records, images and the map of registers have versions
  * of their own, in their headers. */
 #define EXH_VERSION_MAJOR 0
-#define EXH_VERSION_MINOR 2
+#define EXH_VERSION_MINOR 3
 #define EXH_VERSION_PATCH 0
 #define EXH_VERSION_NUMBER \
     ((uint32_t)EXH_VERSION_MAJOR << 16 | (uint32_t)EXH_VERSION_MINOR << 8 | EXH_VERSION_PATCH)

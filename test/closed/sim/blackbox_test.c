@@ -257,7 +257,7 @@ TEST(forged_records_are_harmless)
 /* As a serial line gives it: words, the dump, words. */
 TEST(words_before_and_behind_a_dump_are_no_damage)
 {
-    static const char banner[] = "exhand 0.2.0, scene drop\r\nEXEXE\r\n",
+    static const char banner[] = "exhand 0.3.0, scene drop\r\nEXEXE\r\n",
                       last[] = "\r\nticks 1000\r\ndone EX\r\n";
     const char *path = log_path();
     const size_t n = one_dump(path);

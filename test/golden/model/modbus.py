@@ -96,7 +96,7 @@ def table_crc(groups):
 
 OUT_ROWS, OUT_CRC, PAR_ROWS, PAR_CRC = rows_of(OUT), table_crc(OUT), rows_of(PAR), table_crc(PAR)
 SIGNALS, PARAMS, FRAMES = len(OUT_ROWS), len(PAR_ROWS), 8
-VERSION = (0, 2, 0)  # of the library: in the head and in what it says it is
+VERSION = (0, 3, 0)  # of the library: in the head and in what it says it is
 APPLY, DISCARD, SAVE, OFF, RUN, CLEAR = (1 << k for k in range(6))
 HOLDING, INPUT = 3, 4
 

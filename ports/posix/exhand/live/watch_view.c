@@ -47,7 +47,7 @@ static void spark(uint32_t i)
 {
     static const char *const step[] = {"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
     const unsigned n = view.n < PAST ? view.n : PAST;
-    double lo = INFINITY, hi = -INFINITY;
+    double lo = (double)INFINITY, hi = -(double)INFINITY;
     for (unsigned k = 0; k < n; k++) {
         const double v = view.past[i][k];
         if (v < lo) { lo = v; }
