@@ -405,6 +405,33 @@ TEST(late_is_at_the_true_place_and_slow)
     CHECK(bits == (EXH_PRECONTACT_RELEASE | EXH_PRECONTACT_TRACKS), "left");
 }
 
+/* Where a finger was before bytes, nobody knows: what was about to be late is inside. */
+TEST(from_bytes_nothing_is_late)
+{
+    uint8_t buf[512];
+    for (int resumes = 0; resumes < 2; resumes++) {
+        struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
+        start();
+        tell((struct exh_plane){EXH_PLANE_NONE, 0, 0, {0, 0, 0}, {0, 0, 0}});
+        at(MM(150));
+        tell(floor_plane);
+        in.vel_mps_q27 = INT32_MAX;
+        at(MM(107));
+        tell(floor_plane);
+        CHECK(s.phase == EXH_PRECONTACT_IDLE && s.met && s.told == 2, "told %d", s.told);
+        if (resumes) {
+            s.told = 3; /* damaged, or somebody's */
+            exh_precontact_serialize(&c, &s);
+            c = exh_bytes_reader(buf, c.at);
+            exh_precontact_serialize(&c, &s);
+            CHECK(s.told == 2, "%d", s.told);
+        }
+        at(MM(107));
+        CHECK(((bits & EXH_PRECONTACT_LATE) != 0) == !resumes, "%d: %" PRIx32, resumes, bits);
+        CHECK(((bits & EXH_PRECONTACT_AROUND) != 0) == resumes, "%d: %" PRIx32, resumes, bits);
+    }
+}
+
 TEST(never_is_who_rests_or_has_just_begun)
 {
     late_at(MM(107), MPS_CENTI);
@@ -773,9 +800,10 @@ TEST_MAIN("unit/precontact", distance_has_the_sign_of_the_text, rounds_once_and_
     what_comes_while_frozen_is_ignored_and_counted, what_came_while_frozen_is_new_at_the_release,
     born_inside_gives_no_contact_until_left, born_near_follows_to_the_touch,
     who_went_around_it_leaves_by_the_string, late_is_at_the_true_place_and_slow,
-    never_is_who_rests_or_has_just_begun, another_object_has_to_be_left_first,
-    the_same_object_may_come_to_the_finger, a_stale_plane_is_none,
-    a_message_may_be_old_when_it_comes, a_frozen_plane_does_not_age, what_cannot_be_is_refused,
-    material_is_taken_at_the_freeze, scale_and_slope, set_up_refuses, state_round_trip,
-    damaged_state_comes_back_into_range, restored_tracking_touches_nothing_at_once,
-    a_plane_that_turned_over_is_another, the_longest_normal);
+    from_bytes_nothing_is_late, never_is_who_rests_or_has_just_begun,
+    another_object_has_to_be_left_first, the_same_object_may_come_to_the_finger,
+    a_stale_plane_is_none, a_message_may_be_old_when_it_comes, a_frozen_plane_does_not_age,
+    what_cannot_be_is_refused, material_is_taken_at_the_freeze, scale_and_slope, set_up_refuses,
+    state_round_trip, damaged_state_comes_back_into_range,
+    restored_tracking_touches_nothing_at_once, a_plane_that_turned_over_is_another,
+    the_longest_normal);
