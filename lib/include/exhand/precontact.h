@@ -29,9 +29,9 @@
  * Born at d >= 0, in the object, it is
  *   - late, if the world has spoken of this finger while it was free, it was told
  *     twice on end, the string runs out, and s is 2 at most and was not limited: the link was too
- *     slow for it. The wall is at its true place, q
- * - s*d, at once, and frozen. As it would push with all its force at once, the caller limits the
- * rise of force to late_slew for as long as `late` is 1 (exh_precontact_arrived()).
+ *     slow for it. The wall is at its true place, (q - s*d), at once, and frozen. As it would push
+ *     with all its force at once, the caller limits the rise of force to late_slew for as long as
+ *     `late` is 1 (exh_precontact_arrived()).
  *   - nobody's fault else: the box has just begun to pull, the world has just begun to speak
  *     (exh_precontact_forget()), or something came onto a finger that rests. There is no force
  *     until the finger has left the object by hyst.
