@@ -74,7 +74,7 @@ int tick_setup(struct tick_box *b)
     static const struct exh_contact_par wall = {EXH_Q(19973, 1, EXH_Q_K), EXH_Q(617, 10, EXH_Q_B),
         EXH_Q(107, 1000, EXH_Q_FORCE), EXH_Q(2, 10000, EXH_Q_POS), 0};
     static const struct exh_precontact_par freeze = {
-        -MM(5), MM(1), 1 << 24, 0, 0, 60000, MM(5), 60000, 50};
+        -MM(5), MM(1), 1 << 24, 0, 0, 60000, MM(5), 60000, 50, 100};
     const struct exh_hand_par hand = {
         exh_hand_rows[0].dflt, exh_hand_rows[1].dflt, exh_hand_rows[2].dflt, exh_hand_rows[3].dflt};
     const struct tick_box power_on = {.wall = wall, .freeze = freeze};

@@ -12,7 +12,8 @@
 #define MM(x) EXH_Q(x, 1000, EXH_Q_POS)
 
 static const struct exh_material_par material[1] = {{1 << 24, 1 << 24, 1 << 22}};
-static const struct exh_precontact_par par = {-MM(5), MM(1), 1 << 24, 0, 0, 60000, MM(5), 100, 50};
+static const struct exh_precontact_par par = {
+    -MM(5), MM(1), 1 << 24, 0, 0, 60000, MM(5), 100, 50, 100};
 static struct exh_precontact_cfg cfg;
 static struct exh_precontact finger[WORK_FINGERS];
 static struct plain_freeze_double in_double[WORK_FINGERS];

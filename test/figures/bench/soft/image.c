@@ -129,8 +129,8 @@ static void table_float_op(uint32_t i)
 /* --- precontact --- */
 
 static const struct exh_material_par material = {1 << 24, 1 << 24, 1 << 22};
-static const struct exh_precontact_par freeze = {
-    -EXH_Q(5, 1000, 30), EXH_Q(1, 1000, 30), 1 << 24, 0, 0, 60000, EXH_Q(5, 1000, 30), 100, 50};
+static const struct exh_precontact_par freeze = {-EXH_Q(5, 1000, 30), EXH_Q(1, 1000, 30), 1 << 24,
+    0, 0, 60000, EXH_Q(5, 1000, 30), 100, 50, 100};
 static struct exh_precontact_cfg freeze_cfg;
 static struct exh_precontact plane[FINGERS];
 static struct plain_freeze_double plane_double[FINGERS];
