@@ -20,7 +20,9 @@ check:
 	@$(timed) all
 	@$(timed) matrix ARGS=--ci
 	@$(timed) golden ARGS="--check --every 40"
+	@$(timed) golden-beyond
 	@$(timed) golden-traces
+	@$(timed) gate
 	@$(timed) mutants ARGS="--some 4"
 	@$(timed) mcdc
 	@$(timed) proof-ci
@@ -58,5 +60,6 @@ picture:
 	    --png $(B)/world.png || [ $$? = 3 ]
 bits:
 	@$(lab) faults --rate 100 > $(B)/faults_100Hz.txt
-	@JOBS=$(jobs) FAULTS=$(B)/faults_100Hz.txt test/closed/sim/bits.sh $(B)/bits $(B)/demo \
-	    $(variants:%=$(B)/variant/%/posix/exhand-lab)
+	@$(lab) drop --runs 3 --out $(B)/drop_3 > $(B)/drop_3.txt
+	@JOBS=$(jobs) TABLE2=$(B)/drop_3/table2.csv FAULTS=$(B)/faults_100Hz.txt \
+	    test/closed/sim/bits.sh $(B)/bits $(B)/demo $(variants:%=$(B)/variant/%/posix/exhand-lab)

@@ -8,6 +8,28 @@ coverage:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/test/sim/coverage_test
 	@LIMIT=86400 EXH_CASES=10000000 test/run.sh $(B)/test/sim/coverage_test
 
+## Compare the drop experiment with a model and an analysis that share no code with it.
+.PHONY: gate gate-sample gate-mutants
+gate: all
+	@test/closed/model/gate.py check $(exhand) $(ARGS)
+
+## Make the model's sample anew: 60 runs a rate (test/closed/model/falls.csv; 14 min of a core).
+gate-sample: all
+	@test/closed/model/gate.py sample $(exhand) $(ARGS)
+
+## Plant small errors in simulator and analysis; each must be told by its check (8 min of a core).
+gate-mutants:
+	@mkdir -p $(B)/gate
+	@test/closed/model/mutants.py $(B)/gate $(ARGS)
+
+DEVICES ?= 240
+## Identify random devices, advise each by its file, and run it inside of its rule (DEVICES=240; an
+## hour of two cores; goes on from build/certificate.csv).
+.PHONY: certificate
+certificate:
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(lab)
+	@$(lab) certificate --devices $(DEVICES) --seed 100 --results $(B)/certificate.csv $(ARGS)
+
 # Recorded networks beside them, where there are any.
 SEEDS    ?= 5
 comma    := ,

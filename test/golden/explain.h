@@ -13,6 +13,9 @@ struct golden_rates {
 /* The rates that EXH_RATES=lo..hi:step asks for; all without it. */
 struct golden_rates golden_rates(void);
 
+/* 1 if the hundred that begins at `first` is one of EXH_HUNDREDS=2001,2301; all are without it. */
+int golden_drawn(uint32_t first);
+
 /* 1 if EXH_CELLS=1: say of each module which rates ran, and the CRC of their digests. */
 int golden_cells(void);
 

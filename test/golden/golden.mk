@@ -24,6 +24,12 @@ golden:
 .PHONY: golden-rates
 golden-rates: $(golden_rates)
 
+## Compare a quarter of 2001..20000 Hz, drawn anew each time (EXH_SEED=N repeats a draw).
+.PHONY: golden-beyond
+golden-beyond: $(B)/test/golden/golden_test
+	@mkdir -p $(B)/golden
+	@JOBS=$(jobs) test/matrix/beyond.py $(B)/golden $< 45
+
 ## Make the model's traces at six rates, and compare the library with them tick by tick.
 .PHONY: golden-traces
 golden_traced := $(B)/golden/trace

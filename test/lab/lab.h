@@ -9,6 +9,7 @@ int lab_drop(int argc, char **argv);
 int lab_glove(int argc, char **argv);
 int cli_budget(int argc, char **argv);
 int cli_cards(int argc, char **argv);
+int cli_certificate(int argc, char **argv);
 int cli_diagram(int argc, char **argv);
 int cli_faults(int argc, char **argv);
 int cli_fit(int argc, char **argv);

@@ -10,6 +10,7 @@ static const struct program_command command[] = {
     {"budget", "the highest rate of the loop that the box can hold, bound by bound", cli_budget},
     {"cards", "every misbehaviour of a card in every phase of its driver, and how it ends",
         cli_cards},
+    {"certificate", "random devices: identified, advised, and whether that holds", cli_certificate},
     {"diagram", "a block diagram made from the signal and device tables", cli_diagram},
     {"drop", "the falling mass, and its spread, readings, stability map; beside the one before",
         lab_drop},

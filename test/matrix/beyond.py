@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""beyond.py DIR GOLDEN: 2001..20000 Hz of every module of test/golden/digests.inc by the program
-GOLDEN, as many at a time as JOBS says. Compares the CRC over each module's 180 hundreds with the
-generator's, writes DIR/beyond.tsv, ends with `N passed, N failed`. `make matrix-beyond`. Standard
-library only.
+"""beyond.py DIR GOLDEN [N]: 2001..20000 Hz of every module of test/golden/digests.inc by the
+program GOLDEN, as many modules at a time as JOBS says: all 180 hundreds (`make matrix-beyond`), or
+N of them, drawn anew for each module (`make golden-beyond`; EXH_SEED repeats a draw). Compares the
+CRC over a module's hundreds with the generator's, writes DIR/beyond.tsv, ends with `N passed, N
+failed`. Standard library only.
 """
 
 import concurrent.futures
 import os
+import random
 import re
 import subprocess
 import sys
@@ -17,18 +19,29 @@ sys.dont_write_bytecode = True
 sys.path.insert(1, os.path.join(ROOT, "test", "golden"))
 import digests  # noqa: E402
 
+FIRSTS = digests.BEYOND[::digests.HUNDRED]
 
-def expected(crcs):
-    """(rates, CRC over the hundreds), as the program says."""
-    crcs = crcs[len(digests.RATES) // digests.HUNDRED:]
+
+def drawn(module, count, seed):
+    """Which hundreds: each module has others, so that one rate is seen by some module more often
+    than by one of them."""
+    if count >= len(FIRSTS):
+        return list(FIRSTS)
+    return sorted(random.Random("%d %s" % (seed, module)).sample(FIRSTS, count))
+
+
+def expected(crcs, firsts):
+    """(rates, CRC over these hundreds), as the program says."""
+    crcs = [crcs[first // digests.HUNDRED] for first in firsts]
     return len(crcs) * digests.HUNDRED, "%08x" % digests.together(crcs)
 
 
-def ran(golden, module):
+def ran(golden, module, firsts):
     """(rates, CRC) as the program says, and what else it said of what is wrong."""
+    env = dict(os.environ, EXH_TEST=module, EXH_RATES="2001..20000", EXH_CELLS="1",
+               EXH_HUNDREDS=",".join("%d" % f for f in firsts))
     done = subprocess.run([golden], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                          text=True, env=dict(os.environ, EXH_TEST=module, EXH_RATES="2001..20000",
-                                              EXH_CELLS="1"))
+                          text=True, env=env)
     said = re.search(r"^  \| hundreds: %s (\d+) ([0-9a-f]{8})$" % module, done.stdout, re.M)
     return ((int(said.group(1)) * digests.HUNDRED, said.group(2)) if said and done.returncode == 0
             else (0, "-"), done.stdout)
@@ -36,13 +49,19 @@ def ran(golden, module):
 
 def main():
     where, golden = sys.argv[1:3]
+    count = int(sys.argv[3]) if len(sys.argv) > 3 else len(FIRSTS)
+    seed = int(os.environ.get("EXH_SEED") or random.SystemRandom().randrange(1, 10**6))
     kept = digests.committed()
     modules = sorted(kept)
+    jobs = [(m, drawn(m, count, seed)) for m in modules]
+    if count < len(FIRSTS):
+        print("%d of %d hundreds of each module, drawn: EXH_SEED=%d repeats them" %
+              (count, len(FIRSTS), seed), flush=True)
     failed = cells = 0
     with open(os.path.join(where, "beyond.tsv"), "w") as out, \
             concurrent.futures.ThreadPoolExecutor(int(os.environ.get("JOBS") or "1")) as pool:
-        for m, (got, said) in zip(modules, pool.map(lambda m: ran(golden, m), modules)):
-            agree = got == expected(kept[m])
+        for (m, firsts), (got, said) in zip(jobs, pool.map(lambda j: ran(golden, *j), jobs)):
+            agree = got == expected(kept[m], firsts)
             failed += not agree
             cells += got[0] * agree
             out.write("%s\t%d\t%s\t%s\n" % (m, got[0], got[1], "agrees" if agree else "differs"))

@@ -110,10 +110,11 @@ matrix-beyond: $(B)/test/golden/golden_test
 .PHONY: matrix-box
 matrix-box: all $(lab)
 	@mkdir -p $(B)/box/host
-	@$(lab) drop --out $(B)/box/host --spread 20 > $(B)/box/host/table2.txt
+	@$(lab) drop --out $(B)/box/host --runs 3 > $(B)/box/host/table2.txt
 	@$(exhand) calibrate --out $(B)/box/host/calibration > $(B)/box/host/calibration.txt
 	@$(exhand) bilateral --out $(B)/box/host/bilateral > $(B)/box/host/bilateral.txt
 	@$(exhand) glove --record $(B)/box/host/glove.exh --does poses --seconds 5 \
 	    > $(B)/box/host/glove.txt
 	@$(lab) faults --rate 100 > $(B)/box/host/faults.txt
-	@MAKE="$(MAKE)" JOBS=$(jobs) FAULTS=$(B)/box/host/faults.txt test/matrix/box.py $(B)/box $(ARGS)
+	@MAKE="$(MAKE)" JOBS=$(jobs) FAULTS=$(B)/box/host/faults.txt \
+	    TABLE2=$(B)/box/host/table2.csv test/matrix/box.py $(B)/box $(ARGS)

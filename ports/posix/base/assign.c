@@ -70,6 +70,6 @@ int assign_grid(const char *text, int *columns, int *rows)
         *columns <= ASSIGN_GRID_MAX && *rows <= ASSIGN_GRID_MAX) {
         return 0;
     }
-    cli_complain("--grid: %s (KxB cells, 2..%d each): e.g. --grid 20x16", text, ASSIGN_GRID_MAX);
+    cli_complain("--grid: %s (two numbers, 2..%d each): e.g. --grid 16x6", text, ASSIGN_GRID_MAX);
     return 2;
 }

@@ -7,6 +7,7 @@
 int cli_advise(int argc, char **argv);
 int cli_bilateral(int argc, char **argv);
 int cli_bringup(int argc, char **argv);
+int cli_identify(int argc, char **argv);
 int cli_calibrate(int argc, char **argv);
 int cli_calibrate_glove(int argc, char **argv); /* `exhand calibrate --glove` */
 int cli_drop(int argc, char **argv);

@@ -7,7 +7,8 @@
 #define NAME_B 16 /* a log's name of its scene has no end if it is as long */
 
 const struct exh_scene *const cli_scenes[CLI_SCENES] = {&exh_scene_drop, &exh_scene_guarded,
-    &exh_scene_bilateral, &exh_scene_glove, &exh_scene_calibrate, &exh_scene_bringup};
+    &exh_scene_bilateral, &exh_scene_glove, &exh_scene_calibrate, &exh_scene_bringup,
+    &exh_scene_identify};
 
 const struct exh_scene *cli_scene_find(const char *name)
 {

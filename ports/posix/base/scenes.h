@@ -9,10 +9,10 @@
 #include <stdint.h>
 
 extern const struct exh_scene exh_scene_drop, exh_scene_guarded, exh_scene_bilateral,
-    exh_scene_glove, exh_scene_calibrate, exh_scene_bringup;
+    exh_scene_glove, exh_scene_calibrate, exh_scene_bringup, exh_scene_identify;
 
 /* All of these, in that order. */
-#define CLI_SCENES 6
+#define CLI_SCENES 7
 extern const struct exh_scene *const cli_scenes[CLI_SCENES];
 
 /* One of them, or cli_scene_more; NULL: none has this name. */

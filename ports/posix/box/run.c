@@ -9,6 +9,9 @@
 #include "base/params_file.h"
 #include "base/scenes.h"
 
+#include "sim/codes.h"
+#include "sim/random.h"
+
 #include "drop/drop.h"
 #include "exhand/run/log.h"
 #include "exhand/run/loop.h"
@@ -178,6 +181,41 @@ static int complain(const struct run_cfg *c, const struct exh_scene *sc)
     return images_complain(c->images, sc);
 }
 
+static double fraction(double v) { return v - (double)sim_floor(v); }
+
+static double wall_m(const struct run_cfg *c)
+{
+    const struct sim_device *d = &c->board.device;
+    struct sim_random chance = {c->board.seed ^ 0x77616C6C}; /* not the run's own chance */
+    if (c->wall == RUN_WALL_AT_HEIGHT) { return d->height_m; }
+    return sim_wall_m(d, c->wall == RUN_WALL_DRAWN ? sim_random_unit(&chance) : c->phase);
+}
+
+/* An image has the wall of the run that saved it: another place between the same two counts. */
+static int image_wall(const struct run_cfg *c)
+{
+    const struct exh_params *p = scene_of(c)->params;
+    const struct sim_device *d = &c->board.device;
+    double off_cnt;
+    uint32_t i;
+    if (c->live.image == NULL || c->wall == RUN_WALL_AT_HEIGHT ||
+        !cli_signal_find(p->table, "q_lim", &i)) {
+        return 0;
+    }
+    off_cnt = (si(p->staged[i], EXH_Q_POS) - d->height_m) * d->decode / d->step_m;
+    return off_cnt > -0.51 && off_cnt < 0.51;
+}
+
+/* As the scene will have it. */
+static void tell_wall(const struct run_cfg *c, struct run *r)
+{
+    const struct exh_params *p = scene_of(c)->params;
+    uint32_t i;
+    if (!cli_signal_find(p->table, "q_lim", &i)) { return; }
+    r->q_lim_m = si(p->staged[i], EXH_Q_POS);
+    r->phase = fraction(r->q_lim_m / (c->board.device.step_m / c->board.device.decode));
+}
+
 static int set_parameters(const struct run_cfg *c)
 {
     const struct sim_device *d = &c->board.device;
@@ -187,7 +225,7 @@ static int set_parameters(const struct run_cfg *c)
         {"dac_scale", d->dac_perA},
         {"dac_zero", d->dac_zero},
         {"mon_scale", d->mon_apc},
-        {"q_lim", d->height_m},
+        {"q_lim", wall_m(c)},
         {"k", c->k_Npm},
         {"b", c->b_Nspm},
     };
@@ -199,6 +237,7 @@ static int set_parameters(const struct run_cfg *c)
         err = cli_param_set(p, calibrated[i].name, calibrated[i].value);
     }
     if (err == 0) { err = run_image(&c->live, p); }
+    if (err == 0 && image_wall(c)) { err = cli_param_set(p, "q_lim", wall_m(c)); }
     /* Today is not the day on which that was saved, and what was waived then is not now. */
     if (err == 0 && c->images && c->images->n) { err = images_give(c->images, scene_of(c)); }
     if (err == 0 && c->live.gains) {
@@ -243,6 +282,7 @@ int run_drop(const struct run_cfg *c, struct run *r)
     run.mon_gain = c->mon_gain != 0 ? c->mon_gain : 1;
     err = set_parameters(c);
     if (err == 0) {
+        tell_wall(c, r);
         board = c->board;
         board.wait = 1;
         posix_configure(&board);

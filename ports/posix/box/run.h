@@ -28,12 +28,22 @@ struct run_live {
     int gains;        /* 1: k and b of the run are behind it */
 };
 
+/* Where the virtual wall lies between two encoder counts. At 2 kHz it decides whether a fall comes
+ * to rest, and no experimenter knows it, so a command draws it in each run. */
+enum run_wall {
+    RUN_WALL_AT_HEIGHT, /* wherever the device's height puts it */
+    RUN_WALL_DRAWN,     /* uniform over a count, by the board's seed */
+    RUN_WALL_AT_PHASE   /* `phase` counts above a count: the nearest such place to the height */
+};
+
 struct run_cfg {
     const struct exh_scene
         *scene; /* drop, or one that begins with its parameters and signals; NULL: drop */
     uint32_t rate_Hz;
     double k_Npm, b_Nspm;
-    const struct run_setting *setting; /* further parameters */
+    enum run_wall wall;
+    double phase;                      /* 0..1 of a count */
+    const struct run_setting *setting; /* further parameters; one of q_lim is above `wall` */
     int settings;
     const struct exh_loop_hooks *more; /* behind the run's own; NULL: none */
     double mon_gain;                   /* on the monitor's force, behind the box; 0: 1 */
@@ -49,6 +59,7 @@ struct run_cfg {
 struct run {
     struct fall_log log; /* samples of the falls only, not of hold and lift */
     struct exh_period T;
+    double q_lim_m, phase; /* the wall, and its place in counts above a count */
     uint64_t ticks, known; /* the latter of them not run: idle.h */
     uint32_t lost;         /* log records lost */
     uint32_t faults;       /* enum exh_fault */

@@ -100,8 +100,28 @@ static void write_fall(const struct fall_log *log, const char *prefix, struct ta
     }
 }
 
-static void judge_stiffness(
-    const struct run *run, const char *plot_prefix, enum table2_ask ask, struct table2_result *r)
+/* Of so many pairs in the band, the share that the scope "till the motor stops" leaves out. */
+static double resting(const struct run *run, const struct sim_device *d, size_t pairs)
+{
+    struct fall_opt opt = fall_opt_default;
+    struct fall_contacts moving;
+    struct fall_pairs raw = {NULL, 0}, band = {NULL, 0};
+    enum fall_status status;
+    double share = -1;
+    opt.scope = FALL_SCOPE_MOVES;
+    opt.step_m = d->step_m / d->decode;
+    status = fall_dissect_scope(&run->log, &opt, &moving);
+    if (status == FALL_OK) { status = fall_pool(&run->log, &moving, opt.lag, &raw); }
+    if (status == FALL_OK) { status = fall_band(&raw, opt.band_lo_N, opt.band_hi_N, &band); }
+    if (status == FALL_OK && pairs > 0) { share = 1 - (double)band.n / (double)pairs; }
+    fall_contacts_free(&moving);
+    fall_pairs_free(&raw);
+    fall_pairs_free(&band);
+    return share;
+}
+
+static void judge_stiffness(const struct run *run, const struct sim_device *d,
+    const char *plot_prefix, enum table2_ask ask, struct table2_result *r)
 {
     struct fall_opt opt = fall_opt_default;
     struct fall_stiffness s;
@@ -118,6 +138,7 @@ static void judge_stiffness(
         r->ci_low_Npm = s.b.lo_Npm;
         r->ci_high_Npm = s.b.hi_Npm;
         r->ci_bounded = s.b.status == FALL_OK;
+        r->resting = resting(run, d, s.band.n);
     }
     if (plot_prefix != NULL && status == FALL_OK) {
         write_plot(&s, plot_prefix, r);
@@ -147,16 +168,20 @@ struct table2_result table2_measure_more(
     r.rate_Hz = c->rate_Hz;
     r.k_Npm = c->k_Npm;
     r.b_Nspm = c->b_Nspm;
+    r.seed = c->board.seed;
+    r.resting = -1;
     r.error = run_drop(c, &run) < 0;
     if (r.error == 0 && !posix_interrupted()) {
         r.done = 1;
         r.rate_Hz = (double)run.T.den / run.T.num;
         judge_rest(&run, &c->board.device, &r);
-        if (ask >= TABLE2_LINE) { judge_stiffness(&run, plot_prefix, ask, &r); }
+        if (ask >= TABLE2_LINE) { judge_stiffness(&run, &c->board.device, plot_prefix, ask, &r); }
         if (more) { more(&run.log, &c->board.device, &r); }
         r.faults = run.faults;
         r.lost = run.lost;
         r.guard = run.guard;
+        r.phase = run.phase;
+        r.q_lim_m = run.q_lim_m;
     }
     run_free(&run);
     return r;

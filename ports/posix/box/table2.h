@@ -26,10 +26,13 @@ struct table2_result {
     int done;  /* run to its end and judged: else the values below are void */
     int error; /* it or a file of it failed, said on stderr */
     double rate_Hz, k_Npm, b_Nspm;
+    uint64_t seed;
+    double phase, q_lim_m; /* the wall's place between two counts, and the wall */
     enum fall_status line; /* aligned: OK, or why there is no stiffness */
     double b_Npm, a_Npm, r2, ci_low_Npm, ci_high_Npm; /* aligned; 0: none */
     double b_same_Npm, a_same_Npm;                    /* 0: none */
     int ci_bounded;
+    double resting; /* share of the band's pairs from after the motor's last movement; < 0: none */
     double reading_Npm[TABLE2_MORE]; /* of whoever judges the run, too; 0: none */
     int falls, oscillating, buzzing, incomplete;
     unsigned faults;

@@ -24,6 +24,8 @@ static const struct program_command command[] = {
         calibrate},
     {"drop", "the paper's falling-mass experiment on the simulated device", cli_drop},
     {"glove", "glove codes to stable angles and fingertips; the paper's Table I", cli_glove},
+    {"identify", "what is this device? inertia, friction, stiffness, delay, with intervals",
+        cli_identify},
     {"csv", "a log as comma-separated values", cli_csv},
     {"listen", "the log of a box that sends it over the network, as a file", cli_listen},
     {"run", "a box that goes on: live values and parameters, over Modbus too", cli_run},

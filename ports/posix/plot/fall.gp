@@ -11,14 +11,15 @@
 #   stiffnesses  N/m as they shall be printed, one per file; '-' for none
 # All are lists with spaces between their words. Optional:
 #   out          PNG to write                            (fall.png)
-#   q_lim_m      position of the virtual contact, m       (0)
+#   q_lims       positions of the virtual contact, m, one a file  (0)
 #   zoom_s       length of the wide panels, s             (0.3)
 #   observe_s    length of the observation, s             (5)
 #   q_top_mm, f_top_N   tops of the axes                  (from the data)
 
 reset # another script may have run before
 if (!exists("out")) out = 'fall.png'
-if (!exists("q_lim_m")) q_lim_m = 0
+if (!exists("q_lims")) q_lims = ""
+q_lim(i) = words(q_lims) >= i ? real(word(q_lims, i)) : 0
 if (!exists("zoom_s")) zoom_s = 0.3
 if (!exists("observe_s")) observe_s = 5
 
@@ -38,7 +39,7 @@ set style line 4 lc rgb '#c03028' lw 1.2                 # monitored force
 q_low = 0; q_high = 0; f_high = 0
 do for [i = 1:rows] {
     FILE = word(files, i)
-    stats FILE using ((column('q_m') - q_lim_m)*1e3) name 'Q' nooutput
+    stats FILE using ((column('q_m') - q_lim(i))*1e3) name 'Q' nooutput
     stats FILE using (column('f_mon_n')) name 'F' nooutput
     stats FILE using (column('f_des_n')) name 'D' nooutput
     if (Q_max > q_high) { q_high = Q_max }
@@ -110,7 +111,7 @@ do for [i = 1:rows] {
         if (c == 0) { set ylabel 'q (mm)' textcolor rgb ink }
         if (c == 2) { set ylabel 'F (N)' textcolor rgb ink }
         if (c < 2) {
-            plot FILE using (column('t_s') - T0):((column('q_m') - q_lim_m)*1e3) with steps ls 1, \
+            plot FILE using (column('t_s') - T0):((column('q_m') - q_lim(i))*1e3) with steps ls 1, \
                  0 with lines ls 2
         } else {
             plot FILE using (column('t_s') - T0):(column('f_des_n')) with steps ls 3, \

@@ -69,7 +69,8 @@ do for [panel in 'a b'] {
     if (!exists("P_min")) { P_min = 0; P_max = 1 } # no pair in the band: an empty panel
     pad = 0.06 * (P_max - P_min) + 0.02
     right_mm = exists(panel.'_q_hi_mm') ? value(panel.'_q_hi_mm') : P_max + pad
-    set xrange [P_min - pad : right_mm]
+    left_mm = P_min - pad < 0 ? P_min - pad : 0 # the wall itself is in the picture
+    set xrange [left_mm : right_mm]
     set lmargin at screen (panel eq 'a' ? 0.065 : 0.562)
     set rmargin at screen (panel eq 'a' ? 0.487 : 0.985)
     set title sprintf("{/:Bold (%s)  %s Hz}   k = %s N/m, b = %s Ns/m\n%s", panel, \

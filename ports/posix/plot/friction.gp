@@ -4,9 +4,9 @@
 #
 #   gnuplot -e "data='friction.csv'; rates='90 100 ...'" friction.gp
 #
-#   data         friction,rate_hz,times,gain_stable,gain_unstable,gain_linear
-#                (exhand-lab drop --friction); gain_stable 0: at rest at no gain tried;
-#                gain_unstable empty: the ray ended first, no border
+#   data         friction,rate_hz,times,gain,gain_low,gain_high,open,gain_linear
+#                (exhand-lab drop --friction); gain empty: at rest at no gain tried; open 1: at
+#                rest at the last gain that the scene takes
 #   rates        Hz, spaces between them
 # Optional:
 #   out          PNG to write                            (friction.png)
@@ -33,6 +33,7 @@ set key at screen 0.52, screen 0.985 center top horizontal Left reverse maxrows 
 plot for [i = 1:words(rates)] NaN with linespoints lc rgb tint(i) lw 2.2 pt 7 ps 1.4 \
          title word(rates, i).' Hz', \
      NaN with lines lc rgb '#777777' lw 1.4 dt (7,5) title 'linear, {/Symbol r} = 1', \
+     NaN with lines lc rgb '#777777' lw 1.2 title 'bars: 95 % interval', \
      NaN with points lc rgb '#777777' pt 10 ps 1.8 title 'at rest at no gain tried'
 set key off
 set border 3 lc rgb ink lw 0.8
@@ -52,13 +53,12 @@ do for [c = 0:2] {
     set rmargin at screen 0.065 + 0.315*c + 0.285
     set title '{/:Bold '.word(heads, c + 1).'}' textcolor rgb ink offset 0,-0.6
     if (c == 0) {
-        set ylabel "largest stable gains, times the paper's" textcolor rgb ink
+        set ylabel "gains where half of the falls rest, times paper's" textcolor rgb ink
         set format y '%g'
     } else {
         unset ylabel
         set format y ''
     }
-    # Points in the middle between the last stable gain and the next, on the log axis.
     here(i, v) = strcol('friction') eq KIND && column('rate_hz') == real(word(rates, i)) ? v : NaN
     set arrow 1 from -0.04,1 to 2.04,1 nohead lc rgb '#999999' lw 1
     plot for [i = 1:words(rates)] data \
@@ -66,11 +66,12 @@ do for [c = 0:2] {
              : NaN) \
              with lines lc rgb tint(i) lw 1.2 dt (7,5), \
          for [i = 1:words(rates)] data using (here(i, column('times'))): \
-             (column('gain_stable') > 0 && valid(5) \
-             ? sqrt(column('gain_stable')*column('gain_unstable')) : NaN) \
-             with linespoints lc rgb tint(i) lw 2.2 pt 7 ps 1.2, \
+             (valid(4) ? column('gain') : NaN):(column('gain_low')):(column('gain_high')) \
+             with yerrorbars lc rgb tint(i) lw 1.2 pt 0, \
+         for [i = 1:words(rates)] data using (here(i, column('times'))): \
+             (valid(4) ? column('gain') : NaN) with linespoints lc rgb tint(i) lw 2.2 pt 7 ps 1.2, \
          for [i = 1:words(rates)] data using (here(i, column('times')) + 0.012*(i - 3.5)): \
-             (column('gain_stable') > 0 ? NaN : 0.092) with points lc rgb tint(i) pt 10 ps 1.6
+             (valid(4) ? NaN : 0.092) with points lc rgb tint(i) pt 10 ps 1.6
 }
 unset multiplot
 unset output

@@ -3,9 +3,9 @@
 #
 #   gnuplot -c gains.gp PLOTS        in a directory of `exhand-lab advise gains --out`
 #
-#   allowed.csv  rate_hz, b_low, b_high, k_low, k_high: boxes that are allowed
+#   allowed.csv  rate_hz, b_low, b_high, k_low, k_high: boxes where every fall of the model rests
 #   rule.csv     rate_hz, knot, b, k, k_min
-#   map.csv      rate_hz, k, b, stable_falls, falls (with has_map=1)
+#   map.csv      rate_hz, k, b, resting_falls, falls (with has_map=1)
 #   rates        Hz; k_tops, b_tops: ends of the axes; paper_ks, paper_bs: the paper's point, -1 for
 #   none
 # Lists have spaces between their words. Optional:
@@ -40,8 +40,8 @@ unset border; unset tics
 set xrange [0:1]; set yrange [0:1]
 set key at screen 0.52, screen 1.0-20.0/height center top horizontal Left reverse maxrows 2 \
     samplen 2.4 width 1 textcolor rgb ink
-plot NaN with boxes ls 4 title 'allowed by the advisor', \
-     NaN with lines ls 5 title 'the rule on the target', \
+plot NaN with boxes ls 4 title 'every fall of the model rests', \
+     NaN with lines ls 5 title 'allowed: the rule', \
      NaN with points ls 6 title 'paper, Table II', \
      NaN with points ls 1 ps 1.6 title has_map ? 'simulated: every fall comes to rest' : '', \
      NaN with points ls 2 ps 1.6 title has_map ? 'nine of ten' : '', \
@@ -77,10 +77,10 @@ do for [i = 1:panels] {
     } else { unset xlabel }
     if (c == 0) { set ylabel 'damping b (Ns/m)' textcolor rgb ink } else { unset ylabel }
     mine(v) = column('rate_hz') == RATE ? v : NaN
-    all(v) = mine(column('stable_falls') == column('falls') ? v : NaN)
-    some(v) = mine(column('stable_falls') < column('falls') && 10*column('stable_falls') >= \
+    all(v) = mine(column('resting_falls') == column('falls') ? v : NaN)
+    some(v) = mine(column('resting_falls') < column('falls') && 10*column('resting_falls') >= \
         9*column('falls') ? v : NaN)
-    none(v) = mine(10*column('stable_falls') < 9*column('falls') ? v : NaN)
+    none(v) = mine(10*column('resting_falls') < 9*column('falls') ? v : NaN)
     pk = real(word(paper_ks, i)); pb = real(word(paper_bs, i))
     set label 1 '' at (pk < 0 ? NaN : pk/1e3), pb point ls 6 front
     eval 'plot '.boxes.(has_map ? ', '.cells : '')

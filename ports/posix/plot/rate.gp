@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# What a rate of the loop buys: the largest stable stiffness over the rate, simulated and linear,
-# and the paper's rows.
+# What a rate of the loop buys: the largest stable stiffness over the rate, simulated with its
+# interval and linear, and the paper's rows.
 #
 #   gnuplot -e "data='stiffness.csv'" rate.gp
 #
@@ -31,8 +31,10 @@ k(n) = column(n) > 0 ? column(n)/1e3 : NaN
 if (exists("held")) {
     plot data using 1:(k('linear_k_n_per_m')) with linespoints \
         lc rgb '#d07800' lw 2.2 dt (9,4) pt 6 ps 1.2 title 'linear test, {/Symbol r} < 1', \
+         data using 1:(k('k_n_per_m')):(k('k_low_n_per_m')):(k('k_high_n_per_m')) \
+         with yerrorbars lc rgb '#1f5fbf' lw 1.4 pt 0 notitle, \
          data using 1:(k('k_n_per_m')) with linespoints lc rgb '#1f5fbf' lw 2.4 pt 7 ps 1.4 \
-         title 'simulated, velocity over 2 ticks', \
+         title 'simulated, velocity over 2 ticks; bars: 95 % interval', \
          held using 1:(k('k_n_per_m')) with points lc rgb '#7a1fa2' pt 9 ps 2.0 \
          title 'simulated, velocity over 0.8 ms', \
          data using 1:(k('paper_k_n_per_m')) with points lc rgb '#1a8f2e' pt 3 ps 2.4 lw 2.2 \
@@ -40,8 +42,10 @@ if (exists("held")) {
 } else {
     plot data using 1:(k('linear_k_n_per_m')) with linespoints \
         lc rgb '#d07800' lw 2.2 dt (9,4) pt 6 ps 1.2 title 'linear test, {/Symbol r} < 1', \
+         data using 1:(k('k_n_per_m')):(k('k_low_n_per_m')):(k('k_high_n_per_m')) \
+         with yerrorbars lc rgb '#1f5fbf' lw 1.4 pt 0 notitle, \
          data using 1:(k('k_n_per_m')) with linespoints lc rgb '#1f5fbf' lw 2.4 pt 7 ps 1.4 \
-         title 'simulated', \
+         title 'simulated; bars: 95 % interval', \
          data using 1:(k('paper_k_n_per_m')) with points lc rgb '#1a8f2e' pt 3 ps 2.4 lw 2.2 \
          title 'paper, Table II: k'
 }

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-# The k-b plane at each loop rate: which cells come to rest, the border found by
-# bisection, the border of the exact linear test, the paper's point.
+# The k-b plane at each loop rate: how many falls come to rest, the border where half of them do
+# with its interval, the border of the exact linear test, the paper's point.
 #
 #   gnuplot -e "cells='stability.csv'; border='border.csv'; rho='rho.csv'; ..." stability.gp
 #
-#   cells        rate_hz,k_n_per_m,b_ns_per_m,stable_falls,falls,...   (exhand-lab drop --sweep)
-#   border       rate_hz,along,k_n_per_m,b_ns_per_m: points between stable and unstable
+#   cells        rate_hz,...,k_n_per_m,b_ns_per_m,resting_falls,falls,...  (exhand-lab drop --sweep)
+#   border       rate_hz,ray,k_n_per_m,b_ns_per_m,k_low_n_per_m,...: a point a ray
 #   rho          rate,k,b,rho on a grid; two empty lines between rates, in order of rates
 #   rates        Hz; k_tops, b_tops: ends of the axes, N/m and Ns/m, one per rate
 #   paper_ks, paper_bs   the paper's point at each rate; -1 for none
@@ -19,7 +19,7 @@ panels = words(rates)
 across = panels < 3 ? panels : 3
 down = (panels + across - 1) / across
 width = 130.0 + 600*across
-height = 190.0 + 520*down
+height = 215.0 + 520*down
 set terminal pngcairo size width,height font 'DejaVu Sans,20' linewidth 1.6 background '#ffffff'
 set datafile separator ','
 
@@ -27,7 +27,8 @@ ink = '#333333'
 set style line 1 lc rgb '#1f5fbf' pt 7 ps 1.1             # at rest
 set style line 2 lc rgb '#8fb2e0' pt 7 ps 0.9             # most of its falls at rest
 set style line 3 lc rgb '#e0a8a0' pt 2 ps 0.7 lw 1.0      # oscillates
-set style line 4 lc rgb '#333333' pt 7 ps 0.8 lw 1.6      # simulated border
+set style line 4 lc rgb '#333333' pt 6 ps 0.9 lw 2.2      # simulated border
+set style line 7 lc rgb '#333333' lw 1.2 dt (2,3)         # its interval
 set style line 5 lc rgb '#d07800' lw 2.6 dt (9,4)         # rho = 1
 set style line 6 lc rgb '#1a8f2e' pt 3 ps 2.6 lw 2.4      # the paper's point
 
@@ -52,7 +53,8 @@ set key at screen 0.52, screen 1.0-20.0/height center top horizontal Left revers
 plot NaN with points ls 1 ps 1.6 title 'every fall comes to rest', \
      NaN with points ls 2 ps 1.6 title 'some falls do', \
      NaN with points ls 3 ps 1.2 title 'no fall does', \
-     NaN with linespoints ls 4 ps 1.2 title 'simulated border', \
+     NaN with linespoints ls 4 ps 1.2 title 'half of the falls do', \
+     NaN with lines ls 7 title '95 % interval', \
      NaN with lines ls 5 title 'linear border, {/Symbol r} = 1', \
      NaN with points ls 6 title 'paper, Table II'
 set key off
@@ -65,8 +67,8 @@ do for [i = 1:panels] {
     c = (i-1) % across; r = (i-1) / across
     set lmargin at screen (130.0 + 600*c) / width
     set rmargin at screen (130.0 + 600*c + 510) / width
-    set tmargin at screen 1.0 - (120.0 + 520*r + 40) / height
-    set bmargin at screen 1.0 - (120.0 + 520*r + 440) / height
+    set tmargin at screen 1.0 - (145.0 + 520*r + 40) / height
+    set bmargin at screen 1.0 - (145.0 + 520*r + 440) / height
     k_top = real(word(k_tops, i)) / 1e3
     b_top = real(word(b_tops, i))
     RATE = real(word(rates, i))
@@ -79,19 +81,21 @@ do for [i = 1:panels] {
     if (c == 0) { set ylabel 'damping b (Ns/m)' textcolor rgb ink } else { unset ylabel }
     mine(v) = column('rate_hz') == RATE ? v : NaN
     blank(n) = real(word(strcol(1), n)) # gnuplot's own tables have no commas
-    along(w) = strcol('along') eq w
-    all(v) = mine(column('stable_falls') == column('falls') ? v : NaN)
-    some(v) = mine(column('stable_falls') > 0 && column('stable_falls') < column('falls') ? v : NaN)
-    none(v) = mine(column('stable_falls') == 0 ? v : NaN)
+    all(v) = mine(column('resting_falls') == column('falls') ? v : NaN)
+    rest(x) = column('resting_falls')
+    some(v) = rest(0) > 0 && rest(0) < column('falls') ? mine(v) : NaN
+    none(v) = mine(column('resting_falls') == 0 ? v : NaN)
     pk = real(word(paper_ks, i)); pb = real(word(paper_bs, i))
     set label 1 '' at (pk < 0 ? NaN : pk/1e3), pb point ls 6 front
     plot cells using (column('k_n_per_m')/1e3):(none(column('b_ns_per_m'))) with points ls 3, \
          cells using (column('k_n_per_m')/1e3):(some(column('b_ns_per_m'))) with points ls 2, \
          cells using (column('k_n_per_m')/1e3):(all(column('b_ns_per_m'))) with points ls 1, \
          sprintf('%s.%d.rho1', out, i) using (blank(1)/1e3):(blank(2)) with lines ls 5, \
-         border using (column('k_n_per_m')/1e3):(mine(column('b_ns_per_m'))) with points ls 4, \
-         border using (along('k') ? column('k_n_per_m')/1e3 : NaN):(mine(column('b_ns_per_m'))) \
-             with lines ls 4
+         border using (column('k_low_n_per_m')/1e3):(mine(column('b_low_ns_per_m'))) \
+             with lines ls 7, \
+         border using (column('k_high_n_per_m')/1e3):(mine(column('b_high_ns_per_m'))) \
+             with lines ls 7, \
+         border using (column('k_n_per_m')/1e3):(mine(column('b_ns_per_m'))) with linespoints ls 4
     unset label 1
 }
 unset multiplot

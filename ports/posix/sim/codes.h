@@ -54,4 +54,12 @@ static inline double sim_drive_A(const struct sim_device *d, uint16_t dac_raw, i
     return enabled ? ref_A : 0;
 }
 
+/* The place of a wall `phase` (0..1) counts above an encoder count that is nearest to the height of
+ * the fall, counted from where the string starts. */
+static inline double sim_wall_m(const struct sim_device *d, double phase)
+{
+    const double step_m = d->step_m / d->decode;
+    return ((double)sim_floor(d->height_m / step_m - phase + 0.5) + phase) * step_m;
+}
+
 #endif

@@ -30,14 +30,6 @@ static double shrink(double v, double most)
     return v > most ? v - most : v < -most ? v + most : 0;
 }
 
-/* What stays the same from sub-step to sub-step of h_s. */
-struct step {
-    double h_s, half_s, ref_A;
-    double keep_cur, keep_mon, cur_to_mon, mean_cur; /* shares of what was off the reference */
-    double h_mass, h_rotor;                          /* of a force, the change of speed */
-    double damp_mass, damp_rotor; /* what linear friction leaves in half a step, implicit */
-};
-
 /* What a deviation of the current adds to the monitor's: y (e^-x - e^-y) / (y - x). */
 static double through(double x, double y, double keep_x, double keep_y)
 {
@@ -46,13 +38,19 @@ static double through(double x, double y, double keep_x, double keep_y)
     return y * (keep_x - keep_y) / apart;
 }
 
-static struct step step_of(const struct sim_device *d, double h_s, double ref_A, double hand_nspm)
+/* Times are differences of sums: a millionth over a step is none. */
+static int steps_in(const struct sim_device *d, double dt_s)
 {
-    const double x = TWO_PI * d->current_hz * h_s;
-    struct step s;
+    return (int)(0.999999 * dt_s / d->substep_s) + 1;
+}
+
+static struct plant_piece piece_of(const struct sim_device *d, double dt_s, int n, double hand_nspm)
+{
+    const double h_s = dt_s / n, x = TWO_PI * d->current_hz * h_s;
+    struct plant_piece s;
+    s.n = n;
     s.h_s = h_s;
     s.half_s = h_s / 2;
-    s.ref_A = ref_A;
     s.keep_cur = s.cur_to_mon = sim_exp_neg(x);
     s.keep_mon = 0;
     if (d->mon_lag_s > 0) {
@@ -67,11 +65,11 @@ static struct step step_of(const struct sim_device *d, double h_s, double ref_A,
     return s;
 }
 
-static void step_current(struct plant *p, const struct step *s)
+static void step_current(struct plant *p, const struct plant_piece *s, double ref_A)
 {
-    const double off_A = p->cur_A - s->ref_A;
-    p->mon_A = s->ref_A + (p->mon_A - s->ref_A) * s->keep_mon + off_A * s->cur_to_mon;
-    p->cur_A = s->ref_A + off_A * s->keep_cur;
+    const double off_A = p->cur_A - ref_A;
+    p->mon_A = ref_A + (p->mon_A - ref_A) * s->keep_mon + off_A * s->cur_to_mon;
+    p->cur_A = ref_A + off_A * s->keep_cur;
 }
 
 static double tension(const struct sim_device *d, double stretch_m, double opening_mps)
@@ -81,12 +79,12 @@ static double tension(const struct sim_device *d, double stretch_m, double openi
 }
 
 /* The hand NULL: there is none, and the mass has its weight; t_s: the middle of the step. */
-static inline void step_string(struct plant *p, const struct sim_device *d, const struct step *s,
-    const struct plant_hand *hand, double t_s)
+static inline void step_string(struct plant *p, const struct sim_device *d,
+    const struct plant_piece *s, double ref_A, const struct plant_hand *hand, double t_s)
 {
     const double x = p->x_m + s->half_s * p->v_mps, q = p->q_m + s->half_s * p->w_mps;
     const double half_mass = s->h_mass / 2, half_rotor = s->h_rotor / 2;
-    const double pull_N = d->kf_npa * (s->ref_A + (p->cur_A - s->ref_A) * s->mean_cur);
+    const double pull_N = d->kf_npa * (ref_A + (p->cur_A - ref_A) * s->mean_cur);
     double push_N = d->mass_kg * SIM_GRAVITY, T = tension(d, x - q, p->v_mps - p->w_mps), v, w;
     if (hand) {
         push_N = hand->k_Npm * (hand->x_m + t_s * hand->v_mps - x) + hand->b_Nspm * hand->v_mps;
@@ -103,19 +101,27 @@ static inline void step_string(struct plant *p, const struct sim_device *d, cons
     p->q_m = q + s->half_s * p->w_mps;
 }
 
-/* Times are differences of sums: a millionth over a step is none. */
-static int steps_in(const struct sim_device *d, double dt_s)
+struct plant_piece plant_piece_of(const struct sim_device *d, double dt_s)
 {
-    return (int)(0.999999 * dt_s / d->substep_s) + 1;
+    return piece_of(d, dt_s, steps_in(d, dt_s), 0);
+}
+
+void plant_advance_piece(
+    struct plant *p, const struct sim_device *d, const struct plant_piece *s, double ref_A)
+{
+    for (int i = 0; i < s->n; i++) {
+        step_string(p, d, s, ref_A, NULL, 0);
+        step_current(p, s, ref_A);
+    }
 }
 
 void plant_advance(struct plant *p, const struct sim_device *d, double dt_s, double ref_A, int held)
 {
-    const int n = held ? 1 : steps_in(d, dt_s);
-    const struct step s = step_of(d, dt_s / n, ref_A, 0);
-    for (int i = 0; i < n; i++) {
-        if (!held) { step_string(p, d, &s, NULL, 0); }
-        step_current(p, &s);
+    const struct plant_piece s = piece_of(d, dt_s, held ? 1 : steps_in(d, dt_s), 0);
+    if (held) {
+        step_current(p, &s, ref_A);
+    } else {
+        plant_advance_piece(p, d, &s, ref_A);
     }
 }
 
@@ -167,11 +173,10 @@ static inline void stop(double *x_m, double *v_mps, double end_m)
 void plant_advance_hand(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
     const struct plant_hand *hand)
 {
-    const int n = steps_in(d, dt_s);
-    const struct step s = step_of(d, dt_s / n, ref_A, hand->b_Nspm);
-    for (int i = 0; i < n; i++) {
-        step_string(p, d, &s, hand, (i + 0.5) * s.h_s);
-        step_current(p, &s);
+    const struct plant_piece s = piece_of(d, dt_s, steps_in(d, dt_s), hand->b_Nspm);
+    for (int i = 0; i < s.n; i++) {
+        step_string(p, d, &s, ref_A, hand, (i + 0.5) * s.h_s);
+        step_current(p, &s, ref_A);
         stop(&p->x_m, &p->v_mps, hand->end_m);
         stop(&p->q_m, &p->w_mps, hand->end_m);
     }

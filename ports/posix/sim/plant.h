@@ -31,6 +31,19 @@ struct plant {
 void plant_advance(
     struct plant *p, const struct sim_device *d, double dt_s, double ref_A, int held);
 
+/* The same for whoever has pieces of one length again and again: what hangs on length and device
+ * alone is worked out once. */
+struct plant_piece {
+    int n; /* sub-steps of h_s */
+    double h_s, half_s;
+    double keep_cur, keep_mon, cur_to_mon, mean_cur; /* shares of what was off the reference */
+    double h_mass, h_rotor;                          /* of a force, the change of speed */
+    double damp_mass, damp_rotor; /* what linear friction leaves in half a step, implicit */
+};
+struct plant_piece plant_piece_of(const struct sim_device *d, double dt_s);
+void plant_advance_piece(
+    struct plant *p, const struct sim_device *d, const struct plant_piece *s, double ref_A);
+
 /* A hand moves the mass, which is then a finger: instead of its weight the force
  *   k (target - x) + b (target' - x').
  * The target is at x_m when the piece begins and moves at v_mps. Neither

@@ -10,10 +10,10 @@
 #define FORCE_N   4.0
 #define WINDOW_S  0.5
 #define STUCK_S   0.01 /* standing so long, and the force too: it is over */
+#define SAME_N    1e-6
 #define GIVE_UP_S 3.0
 #define RANGE_M   1.99
 #define OUTPUTS   256 /* on their way to the drive */
-#define TICKS_MAX 16
 
 struct span {
     double low, high;
@@ -27,8 +27,9 @@ struct run {
     double now_s, tick_s, servo_s, contact_s; /* < 0: no contact yet */
     double grid, ref_A, latched_A, force_N, start_cnt;
     /* the controller */
-    double cnt[TICKS_MAX], turn_m;
-    int at, inward, touching;
+    struct estimate velocity;
+    double cnt, turn_m, lim_m;
+    int inward, touching;
     /* outputs under way */
     double out_s[OUTPUTS], out_A[OUTPUTS];
     unsigned head, queued;
@@ -39,14 +40,14 @@ struct run {
 
 struct settle_case settle_case_at(int i)
 {
-    static const double step[4] = {
-        0.85667488385450287, 0.73389185662712, 0.6287067210378087, 0.53859725722361089};
-    double v[4];
-    for (int k = 0; k < 4; k++) {
+    static const double step[5] = {0.88127146163356962, 0.77663938908976826, 0.68443012958534266,
+        0.60316874068572834, 0.53155539771579141};
+    double v[5];
+    for (int k = 0; k < 5; k++) {
         v[k] = 0.5 + i * step[k];
         v[k] -= (double)sim_floor(v[k]);
     }
-    return (struct settle_case){v[0], v[1], v[2], v[3]};
+    return (struct settle_case){v[0], v[1], v[2], v[3], v[4]};
 }
 
 static double clamp(double v, double low, double high)
@@ -73,16 +74,15 @@ static double law(struct run *r, double cnt)
 {
     const struct settle_wall *w = r->w;
     const double step_m = r->d->step_m / r->d->decode;
-    const double pos_m = (cnt - r->start_cnt) * step_m, past_m = pos_m - r->d->height_m;
-    const double v_mps = (cnt - r->cnt[r->at]) * step_m / (w->window * w->T_s);
+    const double pos_m = (cnt - r->start_cnt) * step_m, past_m = pos_m - r->lim_m;
+    const double v_mps = estimate_step(&r->velocity, &w->velocity, w->T_s, cnt) * step_m / w->T_s;
     const double back_m = r->inward ? pos_m - r->turn_m : r->turn_m - pos_m;
     const double top_N = r->d->kf_npa * r->d->peak_a, slew_N = w->slew_Nps * w->T_s;
     double asked_N;
 
     if (back_m > w->f0_band_m) { r->inward = !r->inward; }
     if (back_m > w->f0_band_m || back_m < 0) { r->turn_m = pos_m; }
-    r->cnt[r->at] = cnt;
-    r->at = (r->at + 1) % w->window;
+    r->cnt = cnt;
     r->touching = past_m >= 0;
     asked_N = w->f0_N * r->inward + (r->touching ? w->k_Npm * past_m + w->b_Nspm * v_mps : 0);
     asked_N = clamp(asked_N, 0, w->f_max_N < top_N ? w->f_max_N : top_N);
@@ -101,7 +101,9 @@ static void tick(struct run *r)
         r->queued++;
     }
     if (r->touching && r->contact_s < 0) { r->contact_s = r->now_s; }
-    r->still = r->plant.v_mps == 0 && r->plant.w_mps == 0 && r->force_N == was_N ? r->still + 1 : 0;
+    r->still = r->plant.v_mps == 0 && r->plant.w_mps == 0 && size_of(r->force_N - was_N) < SAME_N
+                   ? r->still + 1
+                   : 0;
     r->tick_s += r->w->T_s;
 }
 
@@ -142,8 +144,10 @@ static void start(
     /* Where the count began and where this fall does: each may be off by the jitter. */
     r->plant.q_m += d->height_jitter_m * (4 * c.height - 2);
     r->plant.x_m = r->plant.q_m;
-    for (int i = 0; i < TICKS_MAX; i++) { r->cnt[i] = count(r); }
-    r->turn_m = (r->cnt[0] - r->start_cnt) * d->step_m / d->decode;
+    r->lim_m = sim_wall_m(d, c.wall);
+    r->cnt = count(r);
+    estimate_start(&r->velocity, r->cnt);
+    r->turn_m = (r->cnt - r->start_cnt) * d->step_m / d->decode;
     r->tick_s = c.tick * w->T_s;
     r->servo_s = c.servo / d->servo_hz;
     r->contact_s = -1;
@@ -154,7 +158,7 @@ static int stuck(const struct run *r)
 {
     const double T_s = r->w->T_s,
                  late_s = r->d->delay_tick * T_s + r->d->delay_s + 1 / r->d->servo_hz;
-    return r->still > r->w->window + 1 && r->still * T_s > late_s + STUCK_S + T_s &&
+    return r->still > ESTIMATE_TICKS + 1 && r->still * T_s > late_s + STUCK_S + T_s &&
            size_of(r->plant.cur_A - r->ref_A) * r->d->kf_npa < 1e-3;
 }
 
@@ -185,7 +189,7 @@ enum settle_end settle_run(
         if (stuck(&r)) { return r.touching ? SETTLE_REST : SETTLE_ASTRAY; }
         if (r.now_s >= end_s) { return judge(&r); }
         if (r.now_s >= end_s - window_s) {
-            widen(&r.way, r.cnt[(r.at + w->window - 1) % w->window] * d->step_m / d->decode);
+            widen(&r.way, r.cnt * d->step_m / d->decode);
             widen(&r.force, d->kf_npa * r.plant.mon_A);
             r.touched |= r.touching;
         }

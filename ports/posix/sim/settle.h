@@ -3,24 +3,26 @@
  *
  * The model of the stability advisor: rotor, string, mass and their friction as plant.h has them,
  * the wall in doubles (no codes, no noise, no I2t), and what is chance in the box handed in as a
- * case: where the encoder's count changes, when the tick and the drive's own clock come, from how
- * high the mass falls. + - x / only: the same answer on every machine. */
+ * case: where the wall lies between two counts, where the encoder's count changes, when the tick
+ * and the drive's own clock come, from how high the mass falls. + - x / only: the same answer on
+ * every machine. */
 #ifndef SIM_SETTLE_H
 #define SIM_SETTLE_H
 
 #include "device.h"
+#include "estimate.h"
 
 struct settle_wall {
     double T_s, k_Npm, b_Nspm;
     double f0_N, f0_band_m; /* pull-back force and what reverses it */
     double f_max_N, slew_Nps;
-    int window; /* ticks of the velocity, 1..16 */
+    struct estimate_par velocity;
 };
 
-/* All in 0..1: the encoder's phase in counts, the first tick in ticks, the drive's first sample in
- * its periods, and the height between its least and its largest. */
+/* All in 0..1: the wall's place and the encoder's phase in counts, the first tick in ticks, the
+ * drive's first sample in its periods, and the height between its least and its largest. */
 struct settle_case {
-    double grid, tick, servo, height;
+    double wall, grid, tick, servo, height;
 };
 
 enum settle_end {
@@ -29,8 +31,8 @@ enum settle_end {
     SETTLE_ASTRAY /* no contact, or gone where nobody measures */
 };
 
-/* The i-th case of a sequence that fills all four evenly, however many are taken (the fractions of
- * i times the powers of the root of x^5 = x + 1). */
+/* The i-th case of a sequence that fills all five evenly, however many are taken (the fractions of
+ * i times the powers of the root of x^6 = x + 1). */
 struct settle_case settle_case_at(int i);
 
 /* observe_s of the device is how long it is watched from the first contact; what has stuck before

@@ -3,8 +3,8 @@
 # bits.sh DIR LOGS EXHAND...: every EXHAND (other compilers, optimisations, CPUs) must
 # make the same tables and logs as those in LOGS, and replay these bit for bit from
 # the start and from keyframes. Works in DIR; ends with `N passed, N failed`.
-# Environment: JOBS (1), of them at a time; FAULTS, what `exhand-lab faults --rate 100` says, when
-# it is to be compared, too.
+# Environment: JOBS (1), of them at a time; TABLE2, the table of `exhand drop --runs 3`; FAULTS,
+# what `exhand-lab faults --rate 100` says, when it is to be compared, too.
 
 # one EXHAND: what it says, and its `N of N` at the end
 one()
@@ -12,9 +12,9 @@ one()
     exe=$1 passed=0 failed=0
     work=$(mktemp -d "$dir/XXXXXX") || exit 3
     out=$work/out
-    "$exe" drop --out "$out" >"$work/table.txt" 2>&1
+    "$exe" drop --runs 3 --out "$out" >"$work/table.txt" 2>&1
     verdict drop $?
-    cmp "$logs/table2.csv" "$out/table2.csv"
+    cmp "$TABLE2" "$out/table2.csv"
     verdict table2.csv $?
     "$exe" calibrate --out "$out/calibration" >"$work/calibration.txt" 2>&1 &&
         cmp "$logs/calibration/calibration.csv" "$out/calibration/calibration.csv"

@@ -309,6 +309,7 @@ TEST(speed_is_limited)
 TEST(the_balance_must_read_what_was_commanded)
 {
     struct bringup_run_cfg c = config(1);
+    const struct sim_device d = sim_device_default();
     char boot[160];
     snprintf(boot, sizeof boot, "stage=4 shown=%lu", (unsigned long)shown_before(4, 0));
     c.boot = boot;
@@ -316,7 +317,7 @@ TEST(the_balance_must_read_what_was_commanded)
     CHECK(r.result == BRINGUP_READING && r.number == 0, "%s", bringup_result_text(r.result));
     /* What it reads is the device's: less by the motor's friction on the way up. */
     for (int k = 0; k < BRINGUP_LEVELS; k++) {
-        const double F_N = 0.5 * (k + 1), T_N = (F_N - 0.0505) / 1.1297;
+        const double F_N = 0.5 * (k + 1), T_N = (F_N - d.coulomb_n) / (1 + d.mu_motor);
         CHECK(r.balance_N[k] > T_N - 0.02 && r.balance_N[k] < T_N + 0.02, "%.3f N of %.3f",
             r.balance_N[k], T_N);
     }

@@ -216,7 +216,7 @@ TEST(nobody_after_a_finished_step_is_no_calibration)
     } row[] = {{1, CALIBRATE_ZERO}, {1300, CALIBRATE_MASS + 2}};
     for (size_t i = 0; i < LEN(row); i++) {
         const struct calibration_setting wait = {"wait_time", row[i].wait_ms};
-        struct calibration_cfg c = config(6); /* by its chance */
+        struct calibration_cfg c = config(9); /* by its chance */
         const struct calibration *r;
         c.setting = &wait;
         c.settings = 1;

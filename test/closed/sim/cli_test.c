@@ -9,7 +9,6 @@
 #include "base/param.h"
 #include "box/table2.h"
 #include "drop/print.h"
-#include "lab/drop/spread.h"
 
 #include "drop/drop.h"
 
@@ -56,7 +55,7 @@ TEST(bad_usage_is_refused_by_name)
         {{"--device", "mass=9"}, "--device: mass: 9 (allowed"},
         {{"--device", "none=9"}, "--device: none: no such value"},
         {{"--device", "rotor=0.0001", "--device", "substep=1e-4"}, "give --device substep=1e-05"},
-        {{"--device", "cable_k=1e6", "--device", "substep=0.001"}, "give --device substep=0.0002"},
+        {{"--device", "cable_k=1e6", "--device", "substep=0.001"}, "give --device substep=0.0001"},
         {{"--device", "cable_b=1000", "--device", "rotor=0.0001"}, "substep: none is short enough"},
         {{"--blackbox", "/nowhere/at/all", "--rate", "90"},
             "--blackbox: /nowhere/at/all: No such file"},
@@ -85,8 +84,8 @@ TEST(bad_usage_of_a_study)
         const char *word[4];
         const char *says;
     } row[] = {
-        {{"--k", "1e6", "--spread", "1"}, "k: 1500000 "},
-        {{"--sweep", "--let-go", "1"}, "leave out --k, --b, --scale, --spread, --pace, --let-go"},
+        {{"--k", "1e6", "--gates"}, "k: 1500000 "},
+        {{"--sweep", "--let-go", "1"}, "leave out --k, --b, --scale, --gates, --pace, --let-go"},
         {{"--k", "1e6", "--scale", "100"}, "k: 100000000 "},
     };
     const char *dir = said_dir();
@@ -110,8 +109,8 @@ TEST(a_stiff_device_is_integrated_in_shorter_steps)
     static struct said s[3];
     for (int i = 0; i < 3; i++) {
         said(&s[i], dir, cli_drop,
-            WORDS("drop", "--rate", "500", "--falls", "1", "--device", "observe=0.6", "--device",
-                "cable_k=1e6", "--device", given[i]));
+            WORDS("drop", "--rate", "200", "--falls", "1", "--device", "observe=0.6", "--device",
+                "cable_k=6e5", "--device", given[i]));
         CHECK(s[i].status == 0, "%s: %d %s", given[i], s[i].status, s[i].err);
     }
     CHECK(strcmp(s[0].out, s[1].out) == 0, "by itself %s, as named %s", s[0].out, s[1].out);
@@ -171,8 +170,8 @@ TEST(gains_are_the_nearest_rows)
     }
 }
 
-/* table2.csv's line of a result. */
-static void csv_line(char *to, size_t size, const struct table2_result *r)
+/* table2.csv's line of a row. */
+static void csv_line(char *to, size_t size, const struct table2_runs *r)
 {
     FILE *f = fmemopen(to, size, "w");
     CHECK(f != NULL, "no memory stream");
@@ -182,9 +181,11 @@ static void csv_line(char *to, size_t size, const struct table2_result *r)
 
 TEST(the_paper_stands_beside_its_own_gains_alone)
 {
-    struct table2_result r = {.done = 1,
+    struct table2_runs r = {.runs = 1,
         .rate_Hz = 1193182 / 597.0,
         .falls = 10,
+        .resting = -1,
+        .swing = -1,
         .b_Npm = 25002,
         .a_Npm = 9000,
         .r2 = 0.5,
@@ -192,14 +193,14 @@ TEST(the_paper_stands_beside_its_own_gains_alone)
         .b_Nspm = 60};
     char text[256];
     csv_line(text, sizeof text, &r);
-    CHECK(strstr(text, ",50004,0.5\n") != NULL, "%s", text);
+    CHECK(strstr(text, ",50004,0.5,\n") != NULL, "%s", text);
     r.k_Npm = 19999;
     csv_line(text, sizeof text, &r);
-    CHECK(strstr(text, ",0,10,,\n") != NULL, "%s", text);
+    CHECK(strstr(text, ",,0,,,,\n") != NULL, "%s", text);
     r.k_Npm = 20000;
     r.rate_Hz = 1990;
     csv_line(text, sizeof text, &r);
-    CHECK(strstr(text, ",0,10,,\n") != NULL, "%s", text);
+    CHECK(strstr(text, ",,0,,,,\n") != NULL, "%s", text);
 }
 
 static void check_no_zero_stiffness(const char *text)
@@ -216,20 +217,19 @@ TEST(no_line_is_no_number)
     char *dir = said_dir();
     static struct said s;
     static char text[SAID_B];
-    said(&s, dir, lab_drop,
-        WORDS("drop", "--rate", "90,2000", "--k", "0", "--b", "0", "--falls", "2", "--spread", "2",
+    said(&s, dir, cli_drop,
+        WORDS("drop", "--rate", "90,2000", "--k", "0", "--b", "0", "--falls", "2", "--runs", "2",
             "--out", dir));
     CHECK(s.status == 1 && strstr(s.err, "not seen to their end"), "%d: %s", s.status, s.err);
     check_no_zero_stiffness(s.out);
-    CHECK(strstr(s.out, "  2000      0      0           -                 -       -") != NULL, "%s",
-        s.out);
-    CHECK(strstr(s.out, "2000 Hz: no stiffness: too few pairs") != NULL, "%s", s.out);
-    CHECK(
-        strstr(s.out, "2000 Hz: of 2 runs 0 gave a line, 0 at the same tick") != NULL, "%s", s.out);
+    CHECK(strstr(s.out, "  2000      0      0          -               -               -") != NULL,
+        "%s", s.out);
+    CHECK(strstr(s.out, "2000 Hz: blank: the box stopped: encoder+speed.") != NULL, "%s", s.out);
     said_read(text, said_path(dir, "table2.csv"));
-    CHECK(strstr(text, "\n2000,0,0,,,,,,0,2,,\n") != NULL, "%s", text);
-    said_read(text, said_path(dir, "spread.csv"));
-    CHECK(strstr(text, "\n2000,0,0,2,,,,,,,0.0000,0.0000,0,0\n") != NULL, "%s", text);
+    CHECK(strstr(text, "\n2000,0,0,2,4,,,,,,,,,,,,,the box stopped: encoder+speed\n") != NULL, "%s",
+        text);
+    said_read(text, said_path(dir, "runs.csv"));
+    CHECK(strstr(text, "\n2000,0,0,1,0.") && strstr(text, "\n2000,0,0,2,0."), "%s", text);
     said_read(text, said_path(dir, "pictures.gp"));
     check_no_zero_stiffness(text);
     CHECK(strstr(text, "b_stiffness=''") && strstr(text, "stiffnesses='- -'"), "%s", text);
@@ -238,22 +238,90 @@ TEST(no_line_is_no_number)
 
 TEST(medians_are_of_runs_with_a_line)
 {
-    static struct table2_result r[5], none[5];
-    struct table2_spread s;
+    static struct table2_result r[5];
+    struct table2_runs s;
     for (int i = 0; i < 5; i++) {
         r[i] = (struct table2_result){.done = i < 4,
             .falls = 10,
             .b_Npm = i < 3 ? 100 + i : 0,
             .a_Npm = i < 3 ? 50 + i : 0,
-            .b_same_Npm = i < 2 ? 10 : 0,
-            .a_same_Npm = i < 2 ? 5 : 0};
+            .phase = 0.1 * i,
+            .line = i < 3 ? FALL_OK : FALL_TOO_FEW};
     }
-    s = table2_spread(r, none, 5);
-    CHECK(s.runs == 4 && s.lines == 3 && s.lines_same == 2, "%d %d %d", s.runs, s.lines,
-        s.lines_same);
+    s = table2_runs(r, NULL, 5);
+    CHECK(s.runs == 4 && s.lines == 3 && s.line == FALL_TOO_FEW && s.places, "%d %d", s.runs,
+        s.lines);
     CHECK(s.b_Npm == 101 && s.a_Npm == 51, "%g %g", s.b_Npm, s.a_Npm);
-    CHECK(s.b_same_Npm == 0 && s.a_same_Npm == 0, "of 2 in 4: %g", s.b_same_Npm);
-    CHECK(s.rest == 1 && s.oscillates < 0, "%g %g", s.rest, s.oscillates);
+    CHECK(s.low_Npm == 0, "three runs have no interval: %g", s.low_Npm);
+    CHECK(s.rest == 1 && s.swing < 0, "%g %g", s.rest, s.swing);
+    r[1].b_Npm = r[2].b_Npm = 0;
+    s = table2_runs(r, r, 5);
+    CHECK(s.b_Npm == 0 && s.swing == 0, "of one in four: %g, %g", s.b_Npm, s.swing);
+}
+
+/* A fault, or a fall that nobody saw the end of, is a reason and never a number. */
+TEST(a_row_that_was_not_seen_is_blank)
+{
+    for (int how = 0; how < 2; how++) {
+        static struct table2_result r[20];
+        struct table2_runs s;
+        char text[256];
+        for (int i = 0; i < 20; i++) {
+            r[i] = (struct table2_result){.done = 1, .falls = 10, .b_Npm = 1000, .a_Npm = 900};
+        }
+        r[13].faults = how == 0;
+        r[13].incomplete = how == 1;
+        s = table2_runs(r, NULL, 20);
+        csv_line(text, sizeof text, &s);
+        CHECK(s.b_Npm == 0 && s.rest < 0, "%d: %g %g", how, s.b_Npm, s.rest);
+        CHECK(strstr(text, ",20,200,,,,,,,,,,,,") &&
+                  strstr(text, how ? "1 of 200 falls were not seen" : "the box stopped: estop"),
+            "%s", text);
+    }
+}
+
+/* The distribution-free interval of a median, by printed tables of the sign test. */
+TEST(the_interval_of_a_median_is_the_binomial_one)
+{
+    static const int row[][2] = {{1, 0}, {5, 0}, {6, 1}, {8, 1}, {9, 2}, {10, 2}, {15, 4}, {20, 6},
+        {25, 8}, {50, 18}, {100, 40}, {1000, 469}};
+    for (size_t i = 0; i < LEN(row); i++) {
+        CHECK_EQ_I64(table2_median_rank(row[i][0]), row[i][1]);
+    }
+}
+
+/* Where the wall lies between two counts, by what a run says of itself. */
+TEST(the_wall_is_drawn_or_fixed)
+{
+    struct run_cfg c = {.rate_Hz = 90, .k_Npm = 1500, .b_Nspm = 0};
+    const double step_m = sim_device_default().step_m, height_m = sim_device_default().height_m;
+    double sum = 0;
+    int part[4] = {0};
+    c.board = posix_config_default();
+    c.board.device.observe_s = 0.6;
+    for (int i = 0; i < 400; i++) {
+        struct run r;
+        c.wall = i < 390 ? RUN_WALL_DRAWN : i < 399 ? RUN_WALL_AT_PHASE : RUN_WALL_AT_HEIGHT;
+        c.phase = 0.1 * (i - 390);
+        c.board.seed = (uint64_t)i;
+        CHECK_EQ_I64(run_drop(&c, &r), 0);
+        if (i < 390) {
+            sum += r.phase;
+            part[(int)(4 * r.phase)]++;
+        } else if (i > 390 && i < 399) {
+            CHECK(r.phase > c.phase - 1e-4 && r.phase < c.phase + 1e-4, "%g, told %g", r.phase,
+                c.phase);
+        }
+        CHECK(r.q_lim_m > height_m - 0.51 * step_m && r.q_lim_m < height_m + 0.51 * step_m, "%.9g",
+            r.q_lim_m);
+        CHECK(i < 399 || (r.q_lim_m > height_m - 2e-9 && r.q_lim_m < height_m + 2e-9), "%.9g",
+            r.q_lim_m);
+        run_free(&r);
+    }
+    for (int i = 0; i < 4; i++) {
+        CHECK(part[i] > 65 && part[i] < 130, "%d in part %d", part[i], i);
+    }
+    CHECK(sum / 390 > 0.44 && sum / 390 < 0.56, "mean place %g", sum / 390);
 }
 
 /* --device observe=... is how long the fall is seen; the judge must ask for no more. */
@@ -343,7 +411,7 @@ TEST(an_interruption_ends_all_runs)
             jobs[i % 3]);
         CHECK(s.status == 130, "jobs %s: status %d: %s", jobs[i % 3], s.status, s.err);
         CHECK(s.out[0] == '\0', "a row of nothing: %s", s.out);
-        CHECK(strstr(s.err, "interrupted: 0 of 4 rates") != NULL, "%s", s.err);
+        CHECK(strstr(s.err, "interrupted: 0 of 80 runs") != NULL, "%s", s.err);
         CHECK(said_size(said_path(dir, "drop_19997Hz.exh")) < 0, "jobs %s: a new job began",
             jobs[i % 3]);
         CHECK_EQ_I64(logfile_open(&l, said_path(dir, "drop_20000Hz.exh")), 0);
@@ -362,7 +430,7 @@ TEST(what_was_finished_is_kept)
         static struct said s;
         static char text[SAID_B];
         const pid_t pid = said_start(dir, lab_drop,
-            WORDS("drop", "--rate", "90,20000", "--falls", "200", "--spread", "1000", "--jobs",
+            WORDS("drop", "--rate", "90,20000", "--falls", "200", "--runs", "1000", "--jobs",
                 jobs[i], "--out", dir));
         for (int n = 0; n < 2000 && said_size(said_path(dir, "drop_90Hz.csv")) <= 0; n++) {
             nap_ms(5);
@@ -371,7 +439,7 @@ TEST(what_was_finished_is_kept)
         CHECK_EQ_I64(kill(pid, SIGINT), 0);
         said_end(&s, dir, pid);
         CHECK(s.status == 130, "jobs %s: status %d: %s", jobs[i], s.status, s.err);
-        CHECK(strstr(s.err, "interrupted: 1 of 2 rates") != NULL, "%s", s.err);
+        CHECK(strstr(s.err, " of 2000 runs were finished") != NULL, "%s", s.err);
         CHECK(strstr(s.out, "\n    90   1500 ") && !strstr(s.out, "\n     0 ") &&
                   !strstr(s.out, "\n 20000 "),
             "%s", s.out);
@@ -409,6 +477,8 @@ TEST_MAIN("cli", bad_usage_of_a_study, bad_usage_is_refused_by_name,
     a_stiff_device_is_integrated_in_shorter_steps, what_ends_the_ramp_is_named,
     printed_ranges_are_the_true_ones, gains_are_the_nearest_rows,
     the_paper_stands_beside_its_own_gains_alone, no_line_is_no_number,
-    medians_are_of_runs_with_a_line, the_judge_observes_as_long_as_the_device,
-    any_directory_name_will_do, what_cannot_be_written_is_named, an_interruption_ends_all_runs,
-    what_was_finished_is_kept, a_job_that_dies_is_an_error);
+    medians_are_of_runs_with_a_line, a_row_that_was_not_seen_is_blank,
+    the_interval_of_a_median_is_the_binomial_one, the_wall_is_drawn_or_fixed,
+    the_judge_observes_as_long_as_the_device, any_directory_name_will_do,
+    what_cannot_be_written_is_named, an_interruption_ends_all_runs, what_was_finished_is_kept,
+    a_job_that_dies_is_an_error);

@@ -28,8 +28,8 @@ TEST(refusals)
     dir = said_dir();
     refused(2, "--gpio: without --pace", WORDS("drop", "--rate", "200", "--gpio", LINES));
     refused(2, "--gpio: one rate and one run", WORDS("drop", "--pace", "--gpio", LINES));
-    refused_by(lab_drop, 2, "--gpio: one rate and one run",
-        WORDS("drop", "--rate", "200", "--pace", "--spread", "2", "--gpio", LINES));
+    refused(2, "--gpio: one rate and one run",
+        WORDS("drop", "--rate", "200", "--pace", "--runs", "2", "--gpio", LINES));
     refused_by(lab_drop, 2, "--gpio: one rate and one run",
         WORDS("drop", "--rate", "200", "--pace", "--sweep", "--gpio", LINES));
     refused(2, "--gpio: given twice",

@@ -13,7 +13,26 @@
  * f_max. */
 #define ROUND 1.09
 
-static struct table2_result run(double rate_Hz, double k, double b, double on, FILE *log)
+/* A device whose oscillations carry energy: a heavier rotor, less friction with the tension, a
+ * faster drive. Those of the default device chatter by a count or two, well within any bound. */
+static struct sim_device lively(void)
+{
+    static const struct {
+        const char *name;
+        double value;
+    } row[] = {{"rotor", 0.0609}, {"cable_k", 2875}, {"cable_b", 5.56}, {"mu_motor", 0.1297},
+        {"mu_mass", 0.1031}, {"coulomb", 0.0505}, {"viscous", 3.557}, {"current_bw", 1427},
+        {"delay_tick", 0.343}, {"delay", 126.7e-6}};
+    struct sim_device d = sim_device_default();
+    const struct sim_device_row *ignored;
+    for (size_t i = 0; i < LEN(row); i++) {
+        CHECK_EQ_I64(sim_device_set(&d, row[i].name, row[i].value, &ignored), 0);
+    }
+    return d;
+}
+
+static struct table2_result run_on(
+    struct sim_device d, double rate_Hz, double k, double b, double on, FILE *log)
 {
     const struct run_setting setting = {"passivity", on};
     struct run_cfg c;
@@ -25,11 +44,16 @@ static struct table2_result run(double rate_Hz, double k, double b, double on, F
     c.setting = &setting;
     c.settings = 1;
     c.board = posix_config_default();
-    c.board.device = sim_device_default();
+    c.board.device = d;
     c.board.device.observe_s = 2;
     c.board.falls = 4;
     c.board.log = log;
     return table2_measure(&c, NULL, TABLE2_SAME);
+}
+
+static struct table2_result run(double rate_Hz, double k, double b, double on, FILE *log)
+{
+    return run_on(sim_device_default(), rate_Hz, k, b, on, log);
 }
 
 /* Up to 16 times the paper's gains, at each of its rates. Without the controller the bound is
@@ -42,11 +66,11 @@ TEST(no_contact_gives_out_more_than_the_bound)
         const struct table2_row *p = &table2_paper[i];
         for (size_t s = 0; s < LEN(scale); s++) {
             const double k = scale[s][0] * p->k_Npm, b = scale[s][1] * p->b_Nspm;
-            const struct guard off = run(p->rate_Hz, k, b, 0, NULL).guard;
+            const struct guard off = run_on(lively(), p->rate_Hz, k, b, 0, NULL).guard;
             runs++;
             beyond += off.out_J > ROUND * off.bound_J;
             for (int on = 1; on <= 2; on++) {
-                const struct table2_result r = run(p->rate_Hz, k, b, on, NULL);
+                const struct table2_result r = run_on(lively(), p->rate_Hz, k, b, on, NULL);
                 CHECK(r.done && r.guard.ticks > 0 && r.guard.out_J <= ROUND * r.guard.bound_J,
                     "%g Hz, k %g, b %g, on %d: %g of %g mJ", p->rate_Hz, k, b, on,
                     1e3 * r.guard.out_J, 1e3 * r.guard.bound_J);
@@ -79,9 +103,9 @@ TEST(it_damps_what_oscillates)
     static const struct table2_row cell[] = {{2000, 30000, 90, 0}, {2000, 40000, 60, 0}};
     for (size_t i = 0; i < LEN(cell); i++) {
         const struct table2_result off =
-            run(cell[i].rate_Hz, cell[i].k_Npm, cell[i].b_Nspm, 0, NULL);
+            run_on(lively(), cell[i].rate_Hz, cell[i].k_Npm, cell[i].b_Nspm, 0, NULL);
         const struct table2_result on =
-            run(cell[i].rate_Hz, cell[i].k_Npm, cell[i].b_Nspm, 2, NULL);
+            run_on(lively(), cell[i].rate_Hz, cell[i].k_Npm, cell[i].b_Nspm, 2, NULL);
         CHECK(off.oscillating >= 3 && on.oscillating <= 1, "%zu: %d, with it %d of %d", i,
             off.oscillating, on.oscillating, on.falls);
     }

@@ -5,7 +5,7 @@
 #include "check.h"
 
 #include "box/table2.h"
-#include "lab/drop/spread.h"
+#include "lab/drop/readings.h"
 #include "drop/drop.h"
 #include "posix.h"
 

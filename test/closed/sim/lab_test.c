@@ -12,7 +12,7 @@ static const struct {
     const char *name, *option[9];
 } moved[] = {
     {cli_drop, lab_drop, "drop",
-        {"spread", "readings", "sweep", "grid", "shard", "border-check", "friction", "preset"}},
+        {"gates", "readings", "sweep", "grid", "shard", "border-check", "friction", "preset"}},
     {cli_bilateral, lab_bilateral, "bilateral", {"preset", "sweep", "check", "hands", "crisp"}},
     {cli_glove, lab_glove, "glove",
         {"selftest", "skew", "log", "from", "to", "span", "travel", "span-current"}},

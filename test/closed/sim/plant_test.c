@@ -431,6 +431,37 @@ TEST(a_quarter_of_the_error_with_half_the_substep)
     }
 }
 
+/* Both bodies slide one way on a taut string that damps, each with a friction of its own: also what
+ * friction takes is of second order. */
+TEST(friction_is_of_second_order)
+{
+    static const double mu[][2] = {{0.4, 0}, {0, 0.4}, {0.3, 0.1}};
+    for (size_t n = 0; n < LEN(mu); n++) {
+        const struct plant start = {0.002, 0.5, 0, 0.3, 0, 0};
+        struct sim_device d = smooth();
+        struct plant exact = start;
+        double last = 0;
+        d.cable_nspm = 20;
+        d.mu_mass = mu[n][0];
+        d.mu_motor = mu[n][1];
+        d.substep_s = 1e-7;
+        plant_advance(&exact, &d, 0.004, 0, 0);
+        CHECK(exact.v_mps > 0.1 && exact.w_mps > 0.1 && exact.x_m > exact.q_m, "a body stops");
+        for (int i = 0; i < 4; i++) {
+            struct plant p = start;
+            double err;
+            d.substep_s = 2.5e-4 / (1 << i) * 1.0000001;
+            plant_advance(&p, &d, 0.004, 0, 0);
+            err = fabs(p.q_m - exact.q_m);
+            if (i > 0) {
+                CHECK(last / err > 3.4 && last / err < 4.6,
+                    "row %zu, substep %.3g s: falls by %.3f", n, d.substep_s, last / err);
+            }
+            last = err;
+        }
+    }
+}
+
 /* ---- Steps that are short enough ------------------------------------------------ */
 
 /* By how many times its first deviation a taut string's force is off after 2000 steps, that of its
@@ -567,5 +598,5 @@ TEST_MAIN("plant", impact_speed_is_that_of_a_free_fall, a_rotor_slows_the_fall_b
     current_loop_is_exact_at_any_substep, monitor_lags_behind_the_current,
     a_monitor_as_fast_as_the_current, exp_neg_is_good_to_1e_12,
     energy_never_grows_with_the_motor_off, a_quarter_of_the_error_with_half_the_substep,
-    steps_that_will_do_are_stable, friction_beside_strong_damping_takes_what_it_takes,
-    the_step_that_is_named_will_do);
+    friction_is_of_second_order, steps_that_will_do_are_stable,
+    friction_beside_strong_damping_takes_what_it_takes, the_step_that_is_named_will_do);

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* The fidelity gate of the simulated experiment: the paper's six points come to rest,
- * 1.5 times both gains does not, and the stiffness is what it must be. The seeds were
- * not used to fit the device. */
+/* The fidelity gate of the simulated experiment, wherever the wall lies between two encoder counts:
+ * the paper's six points come to rest, 1.5 times both gains does not. The seeds were not used to
+ * fit the device. */
 #include "check.h"
 
 #include "base/jobs.h"
-#include "box/table2.h"
-#include "lab/drop/spread.h"
+#include "box/table2_runs.h"
 
 #include <string.h>
 
@@ -32,6 +31,7 @@ static void work(const void *ctx, int i, void *to)
     c.board = posix_config_default();
     c.board.seed = SEED + (uint64_t)(i % RUNS);
     c.board.falls = FALLS;
+    c.wall = RUN_WALL_DRAWN;
     r = table2_measure(&c, NULL, TABLE2_SAME);
     memcpy(to, &r, sizeof r);
 }
@@ -46,10 +46,10 @@ static void measure(void)
     done = 1;
 }
 
-static struct table2_spread spread_of(int row)
+static struct table2_runs runs_of(int row)
 {
     const struct table2_result *first = &result[row * 2 * RUNS];
-    return table2_spread(first, first + RUNS, RUNS);
+    return table2_runs(first, first + RUNS, RUNS);
 }
 
 TEST(every_run_is_complete)
@@ -64,11 +64,11 @@ TEST(every_run_is_complete)
             r->incomplete);
     }
     for (int i = 0; i < TABLE2_ROWS; i++) {
-        const struct table2_spread s = spread_of(i);
+        const struct table2_runs s = runs_of(i);
         check_note("%5g Hz: at rest %5.1f %%, 1.5x oscillates %5.1f %%, B %6.0f N/m = %.2f k "
                    "(5 %%..95 %%: %.0f..%.0f)",
-            table2_paper[i].rate_Hz, 100 * s.rest, 100 * s.oscillates, s.b_Npm,
-            s.b_Npm / table2_paper[i].k_Npm, s.b_low_Npm, s.b_high_Npm);
+            table2_paper[i].rate_Hz, 100 * s.rest, 100 * s.swing, s.b_Npm,
+            s.b_Npm / table2_paper[i].k_Npm, s.low_5_Npm, s.high_5_Npm);
     }
 }
 
@@ -76,9 +76,9 @@ TEST(the_papers_points_come_to_rest)
 {
     measure();
     for (int i = 0; i < TABLE2_ROWS; i++) {
-        const double rest = spread_of(i).rest;
-        CHECK(rest >= 0.95 && rest <= 1, "%g Hz: %.1f %% at rest", table2_paper[i].rate_Hz,
-            100 * rest);
+        const double rest = runs_of(i).rest;
+        CHECK(rest >= TABLE2_REST_MIN && rest <= 1, "%g Hz: %.1f %% at rest",
+            table2_paper[i].rate_Hz, 100 * rest);
     }
 }
 
@@ -86,23 +86,22 @@ TEST(one_and_a_half_times_both_gains_oscillates)
 {
     measure();
     for (int i = 0; i < TABLE2_ROWS; i++) {
-        const double share = spread_of(i).oscillates;
-        CHECK(share >= 0.75 && share <= 1, "%g Hz: %.1f %% oscillate", table2_paper[i].rate_Hz,
-            100 * share);
+        const double share = runs_of(i).swing;
+        CHECK(share >= TABLE2_SWING_MIN && share <= 1, "%g Hz: %.1f %% oscillate",
+            table2_paper[i].rate_Hz, 100 * share);
     }
 }
 
-/* Without damping the command is k q, so k is what an estimator must return. With it, the
- * excess over k is the damper's share, of which theory says only where it lies. */
-TEST(stiffness_is_k_or_above)
+/* Without damping the command is k q, so k is what an estimator must return. What it returns with
+ * damping is beside a model of its own: test/closed/model. */
+TEST(without_damping_the_stiffness_is_k)
 {
     measure();
     for (int i = 0; i < TABLE2_ROWS; i++) {
         const struct table2_row *row = &table2_paper[i];
-        const double ratio = spread_of(i).b_Npm / row->k_Npm;
-        const double lo = row->b_Nspm > 0 ? 1 : 0.95, hi = row->b_Nspm > 0 ? 4 : 1.05;
-        CHECK(ratio >= lo && ratio <= hi, "%g Hz: median B %.3f k, want %.2f..%.2f", row->rate_Hz,
-            ratio, lo, hi);
+        const double ratio = runs_of(i).b_Npm / row->k_Npm;
+        if (row->b_Nspm > 0) { continue; }
+        CHECK(ratio >= 0.97 && ratio <= 1.03, "%g Hz: median B %.3f k", row->rate_Hz, ratio);
     }
 }
 
@@ -123,4 +122,5 @@ TEST(runs_differ_by_seed_alone)
 }
 
 TEST_MAIN("table2", every_run_is_complete, the_papers_points_come_to_rest,
-    one_and_a_half_times_both_gains_oscillates, stiffness_is_k_or_above, runs_differ_by_seed_alone);
+    one_and_a_half_times_both_gains_oscillates, without_damping_the_stiffness_is_k,
+    runs_differ_by_seed_alone);

@@ -68,7 +68,9 @@ class Drive:
         self.cont2 = (self.cont >> 10) ** 2
         self.budget = ((self.peak >> 10) ** 2 - self.cont2) * ticks
         self.sh = max(0, self.budget.bit_length() - 31)
-        self.fold = gain(self.peak - self.cont, self.budget >> self.sh >> 2)
+        # Currents that are one in q16 have no budget, and nothing is above i_cont.
+        self.fold = (gain(self.peak - self.cont, self.budget >> self.sh >> 2) if self.budget
+                     else (0, 1))
         self.amp = gain(1 << 42, self.dac)
         self.force = self.fall = self.heat = 0
 

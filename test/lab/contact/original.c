@@ -4,7 +4,7 @@
 
 #include "base/option.h"
 #include "lab/drop/preset.h"
-#include "lab/drop/quantile.h"
+#include "falls/quantile.h"
 #include "box/table2.h"
 
 #include <stdlib.h>

@@ -6,6 +6,7 @@
 #include "box/table2.h"
 
 #include "sim/linear.h"
+#include "lab/drop/reach.h"
 #include "sim/plant.h"
 
 #include <errno.h>
@@ -56,28 +57,6 @@ struct check {
     double k_Npm, b_Nspm, rho;
     int stable;
 };
-
-/* The largest k and b with rho < 1: where the grids end. Whether there are any. */
-static int linear_top(const struct sweep_opt *o, double rate_Hz, double *k_top, double *b_top)
-{
-    const struct sim_device *d = &o->base.board.device;
-    const int window = sweep_window(&o->base);
-    int any = 0;
-    *k_top = *b_top = 1;
-    for (double k = 10; k <= 1e6; k *= 1.1) {
-        double b = 0;
-        for (int j = 0; j < 80 && b <= 1e3; j++) {
-            const double rho = linear_rho(d, 1 / rate_Hz, k, b, window);
-            if (rho >= 0 && rho < 1) {
-                any = 1;
-                *k_top = k > *k_top ? k : *k_top;
-                *b_top = b > *b_top ? b : *b_top;
-            }
-            b = b == 0 ? 0.5 : b * 1.1;
-        }
-    }
-    return any;
-}
 
 /* The device with only these parts of it switched on. */
 static void switch_parts(struct run_cfg *c, unsigned parts, struct run_setting *set)
@@ -154,6 +133,7 @@ static void work(const void *ctx, int i, void *result)
     c.k_Npm = x.k_Npm;
     c.b_Nspm = x.b_Nspm;
     c.board.falls = DROPS;
+    c.board.seed = study_seed(c.board.seed, c.rate_Hz, x.k_Npm, x.b_Nspm, i);
     switch_parts(&c, variant[x.variant].parts, set);
     if (x.start == LET_GO) { let_go(&c, set); }
     if (x.agreement) {
@@ -304,7 +284,11 @@ static int plan_rates(struct plan *p)
                 o->rate_Hz[r], TICKS, OBSERVE_MAX_S, TICKS / OBSERVE_MAX_S);
             return 2;
         }
-        if (!linear_top(o, o->rate_Hz[r], &p->k_top[r], &p->b_top[r])) {
+        const struct reach reach =
+            reach_of(&o->base.board.device, o->rate_Hz[r], sweep_window(&o->base));
+        p->k_top[r] = reach.k_Npm;
+        p->b_top[r] = reach.b_Nspm;
+        if (!(reach.k_Npm > 0)) {
             cli_complain(
                 "--border-check: %.6g Hz: no linear border, rho < 1 nowhere, or the delay is too "
                 "long to tell: another --rate or --device",
@@ -326,7 +310,7 @@ int border_check(const struct sweep_opt *o)
     int status, agree = 0;
 
     if (x == NULL) {
-        cli_complain("out of memory: a smaller --grid");
+        cli_complain("out of memory");
         return 1;
     }
     if (plan_rates(&p) || (o->dir != NULL && sweep_open_dir(o->dir, "border-check"))) {

@@ -12,10 +12,7 @@
 
 #define LINE_B 4096 /* the settings are the longest */
 
-static const char header[] =
-    "rate_hz,k_n_per_m,b_ns_per_m,stable_falls,falls,stiffness_n_per_m,rho\n";
-
-int cell_stable(const struct cell *c) { return 10 * c->stable_falls >= 9 * c->falls; }
+static const char header[] = "rate_hz,ray,gain,k_n_per_m,b_ns_per_m,resting_falls,falls,rho\n";
 
 /* --- in memory --- */
 
@@ -27,8 +24,8 @@ static int same(double a, double b)
 
 static int compare(const struct cell *a, const struct cell *b)
 {
-    const double left[] = {a->rate_Hz, a->k_Npm, a->b_Nspm};
-    const double right[] = {b->rate_Hz, b->k_Npm, b->b_Nspm};
+    const double left[] = {a->rate_Hz, a->ray, a->gain};
+    const double right[] = {b->rate_Hz, b->ray, b->gain};
     for (int i = 0; i < 3; i++) {
         if (!same(left[i], right[i])) { return left[i] < right[i] ? -1 : 1; }
     }
@@ -50,9 +47,9 @@ static int place(const struct cells *c, const struct cell *key)
     return low;
 }
 
-const struct cell *cells_find(const struct cells *c, double rate_Hz, double k_Npm, double b_Nspm)
+const struct cell *cells_find(const struct cells *c, double rate_Hz, int ray, double gain)
 {
-    const struct cell key = {rate_Hz, k_Npm, b_Nspm, 0, 0, 0, 0};
+    const struct cell key = {rate_Hz, ray, gain, 0, 0, 0, 0, 0};
     const int i = place(c, &key);
     return i < c->n && compare(&c->at[i], &key) == 0 ? &c->at[i] : NULL;
 }
@@ -95,12 +92,8 @@ void cells_free(struct cells *c)
 
 static void format(char line[LINE_B], const struct cell *c)
 {
-    int n = snprintf(line, LINE_B, "%.9g,%.9g,%.9g,%d,%d,", c->rate_Hz, c->k_Npm, c->b_Nspm,
-        c->stable_falls, c->falls);
-    if (c->stiffness_Npm > 0) {
-        n += snprintf(line + n, LINE_B - (size_t)n, "%.6g", c->stiffness_Npm);
-    }
-    n += snprintf(line + n, LINE_B - (size_t)n, ",");
+    int n = snprintf(line, LINE_B, "%.9g,%d,%.9g,%.9g,%.9g,%d,%d,", c->rate_Hz, c->ray, c->gain,
+        c->k_Npm, c->b_Nspm, c->resting, c->falls);
     if (c->rho >= 0) { n += snprintf(line + n, LINE_B - (size_t)n, "%.6f", c->rho); }
     snprintf(line + n, LINE_B - (size_t)n, "\n");
 }
@@ -120,21 +113,22 @@ static int take(const char **at, char end, double none, double *v)
     return 1;
 }
 
+static int within(double v, double lo, double hi) { return v >= lo && v <= hi; }
+
 static int parse(const char *line, struct cell *c)
 {
-    double stable, falls;
-    const int ok = take(&line, ',', -1, &c->rate_Hz) && take(&line, ',', -1, &c->k_Npm) &&
-                   take(&line, ',', -1, &c->b_Nspm) && take(&line, ',', -1, &stable) &&
-                   take(&line, ',', -1, &falls) && take(&line, ',', 0, &c->stiffness_Npm) &&
-                   take(&line, '\n', -1, &c->rho) && *line == '\0';
-    if (!ok || !(c->rate_Hz >= 1 && c->rate_Hz <= 20000) || !(c->k_Npm >= 0 && c->k_Npm <= 1e6) ||
-        !(c->b_Nspm >= 0 && c->b_Nspm <= 1e3) || !(falls >= 1 && falls < 1e6) ||
-        !(stable >= 0 && stable <= falls) ||
-        !(c->stiffness_Npm >= 0 && c->stiffness_Npm <= DBL_MAX) ||
-        !(c->rho >= -1 && c->rho <= DBL_MAX)) {
+    double ray, resting, falls;
+    const int ok = take(&line, ',', -1, &c->rate_Hz) && take(&line, ',', -1, &ray) &&
+                   take(&line, ',', -1, &c->gain) && take(&line, ',', -1, &c->k_Npm) &&
+                   take(&line, ',', -1, &c->b_Nspm) && take(&line, ',', -1, &resting) &&
+                   take(&line, ',', -1, &falls) && take(&line, '\n', -1, &c->rho) && *line == '\0';
+    if (!ok || !within(c->rate_Hz, 1, 20000) || !within(ray, 0, 1e6) || !within(c->gain, 0, 1e6) ||
+        !within(c->k_Npm, 0, 1e6) || !within(c->b_Nspm, 0, 1e3) || !within(falls, 1, 1e6) ||
+        !within(resting, 0, falls) || !within(c->rho, -1, DBL_MAX)) {
         return 0;
     }
-    c->stable_falls = (int)stable;
+    c->ray = (int)ray;
+    c->resting = (int)resting;
     c->falls = (int)falls;
     return 1;
 }

@@ -9,17 +9,16 @@
 #define CLI_CELLS_H
 
 struct cell {
-    double rate_Hz, k_Npm, b_Nspm;
-    int stable_falls, falls;
-    double stiffness_Npm; /* 0: none worth the name */
-    double rho;           /* of the linear test; < 0: not computed */
+    double rate_Hz;
+    int ray;     /* of the plane, from k alone */
+    double gain; /* along it */
+    double k_Npm, b_Nspm;
+    int resting, falls;
+    double rho; /* of the linear test; < 0: not computed */
 };
 
-/* Stable: at least nine falls in ten came to rest. */
-int cell_stable(const struct cell *c);
-
 struct cells {
-    struct cell *at; /* sorted by rate, k, b */
+    struct cell *at; /* sorted by rate, ray, gain */
     int n, cap;
     const char *settings; /* what a file must have been made with */
 };
@@ -30,7 +29,7 @@ struct cells {
 int cells_load(struct cells *c, const char *path);
 
 /* NULL: not known. */
-const struct cell *cells_find(const struct cells *c, double rate_Hz, double k_Npm, double b_Nspm);
+const struct cell *cells_find(const struct cells *c, double rate_Hz, int ray, double gain);
 
 /* 0, or 1 after a line on stderr: out of memory. Found only after cells_sort(), which
  * also leaves each cell once. */

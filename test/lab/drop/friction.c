@@ -4,6 +4,7 @@
 #include "base/jobs.h"
 #include "base/option.h"
 #include "box/table2.h"
+#include "lab/drop/ray.h"
 
 #include "sim/linear.h"
 
@@ -11,19 +12,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define GAIN_FIRST 0.1 /* of the paper's gains: the ray is climbed from here */
-#define GAIN_STEP  1.25
-#define GAIN_MOST  20
-#define K_MAX_NPM  1e6 /* what the scene takes */
-#define B_MAX_NSPM 1e3
-#define HALVINGS   3
+#define GAIN_FIRST 0.1 /* of the paper's gains */
+#define GAIN_MOST  20  /* of the linear test */
 
 enum kind { BOTH, DRY, VISCOUS, KINDS };
 static const char *const kind_name[] = {"all", "dry", "viscous"};
 static const char *const kind_text[] = {
     "all friction", "dry friction alone, viscous as it is", "viscous friction alone, dry as it is"};
 
-struct ray {
+struct plan {
     const struct sweep_opt *o;
     int points;
 };
@@ -31,9 +28,8 @@ struct ray {
 struct limit {
     int done, error, kind, rate_i;
     double scale;
-    double stable, unstable; /* gains, of the paper's; 0: at rest at none tried */
-    int open;                /* the ray ended first: there is no unstable */
-    double linear;           /* the largest with rho < 1 */
+    struct ray_border border; /* gains, of the paper's */
+    double linear;            /* the largest with rho < 1 */
 };
 
 static struct sim_device with_friction(const struct sim_device *d, int kind, double scale)
@@ -48,49 +44,12 @@ static struct sim_device with_friction(const struct sim_device *d, int kind, dou
     return f;
 }
 
-/* 1, 0, or < 0: interrupted, or a run failed. */
-static int rests(const struct run_cfg *base, double rate_Hz, double gain, struct limit *x)
+static int run_at(void *ctx, const struct ray *r, double gain, int *rest, int *falls)
 {
-    const struct table2_row *row = table2_gains(rate_Hz);
-    int error;
-    const struct cell c = sweep_cell(base, rate_Hz, gain * row->k_Npm, gain * row->b_Nspm, &error);
-    if (error > 0) { x->error = 1; }
-    return error ? -1 : cell_stable(&c);
-}
-
-/* The ray ends where the scene would refuse k or b. */
-static double gain_most(double rate_Hz)
-{
-    const struct table2_row *row = table2_gains(rate_Hz);
-    double most = GAIN_MOST;
-    if (row->k_Npm * most > K_MAX_NPM) { most = K_MAX_NPM / row->k_Npm; }
-    if (row->b_Nspm * most > B_MAX_NSPM) { most = B_MAX_NSPM / row->b_Nspm; }
-    return most;
-}
-
-/* As on a line of the sweep: from the first gain at rest up to the first that is not. */
-static void climb(const struct run_cfg *base, double rate_Hz, struct limit *x)
-{
-    const double most = gain_most(rate_Hz);
-    double gain = GAIN_FIRST;
-    int stable = 0;
-    for (; gain < most; gain *= GAIN_STEP) {
-        stable = rests(base, rate_Hz, gain, x);
-        if (stable < 0 || (stable == 0 && x->stable > 0)) { break; }
-        if (stable == 1) { x->stable = gain; }
-    }
-    x->unstable = gain;
-    x->open = gain >= most;
-    for (int i = 0; i < HALVINGS && x->stable > 0 && stable >= 0 && !x->open; i++) {
-        const double mid = (x->stable + x->unstable) / 2;
-        stable = rests(base, rate_Hz, mid, x);
-        if (stable == 1) {
-            x->stable = mid;
-        } else {
-            x->unstable = mid;
-        }
-    }
-    x->done = stable >= 0;
+    const struct run_cfg *base = ctx;
+    *falls = base->board.falls;
+    *rest = study_rest(base, r->rate_Hz, gain * r->k_Npm, gain * r->b_Nspm);
+    return *rest < 0 ? *rest : 0;
 }
 
 static double linear_limit(const struct run_cfg *base, double rate_Hz)
@@ -110,16 +69,21 @@ static double linear_limit(const struct run_cfg *base, double rate_Hz)
 
 static void work(const void *ctx, int i, void *result)
 {
-    const struct ray *ray = ctx;
-    const struct sweep_opt *o = ray->o;
+    const struct plan *plan = ctx;
+    const struct sweep_opt *o = plan->o;
     struct run_cfg base = o->base;
+    const struct table2_row *row = table2_gains(o->rate_Hz[i / plan->points % o->rates]);
+    const struct ray through = {o->rate_Hz[i / plan->points % o->rates], row->k_Npm, row->b_Nspm,
+        GAIN_FIRST, o->per_octave};
     struct limit x;
     memset(&x, 0, sizeof x);
-    x.kind = i / (o->rates * ray->points);
-    x.rate_i = i / ray->points % o->rates;
-    x.scale = 2.0 * (i % ray->points) / (ray->points - 1);
+    x.kind = i / (o->rates * plan->points);
+    x.rate_i = i / plan->points % o->rates;
+    x.scale = 2.0 * (i % plan->points) / (plan->points - 1);
     base.board.device = with_friction(&o->base.board.device, x.kind, x.scale);
-    climb(&base, o->rate_Hz[x.rate_i], &x);
+    x.border = ray_border(&through, run_at, &base);
+    x.done = x.border.error == 0;
+    x.error = x.border.error == -1;
     x.linear = linear_limit(&base, o->rate_Hz[x.rate_i]);
     memcpy(result, &x, sizeof x);
 }
@@ -128,10 +92,11 @@ static void work(const void *ctx, int i, void *result)
 
 static void print(const struct sweep_opt *o, const struct limit *x, int points)
 {
-    printf("\nThe border along the ray through the paper's point, in its gains, against friction\n"
-           "(%d falls a cell; -: at rest at no gain from %.1f up; >=: at rest at the last gain "
-           "tried)\n",
-        o->base.board.falls, GAIN_FIRST);
+    printf(
+        "\nThe border along the ray through the paper's point, in its gains, against friction\n"
+        "(where half of the falls rest, %d falls at each of %d gains an octave; -: at no gain from "
+        "%.1f up; >=: at\nthe last gain that the scene takes; 95 %% intervals: friction.csv)\n",
+        o->base.board.falls, o->per_octave, GAIN_FIRST);
     for (int kind = 0; kind < KINDS; kind++) {
         printf("\n%-38s", kind_text[kind]);
         for (int r = 0; r < o->rates; r++) { printf(" %6.6g Hz", o->rate_Hz[r]); }
@@ -141,8 +106,9 @@ static void print(const struct sweep_opt *o, const struct limit *x, int points)
             for (int r = 0; r < o->rates; r++) {
                 const struct limit *l = &x[(kind * o->rates + r) * points + p];
                 char text[16];
-                snprintf(text, sizeof text, "%s%.2f", l->open ? ">= " : "", l->stable);
-                if (l->stable > 0) {
+                snprintf(text, sizeof text, "%s%.2f",
+                    l->border.status == LOGISTIC_OPEN ? ">= " : "", l->border.gain);
+                if (l->border.status != LOGISTIC_NONE) {
                     printf(" %9s", text);
                 } else {
                     printf("         -");
@@ -155,12 +121,15 @@ static void print(const struct sweep_opt *o, const struct limit *x, int points)
 
 static int write_csv(FILE *f, const struct sweep_opt *o, const struct limit *x, int n)
 {
-    fprintf(f, "friction,rate_hz,times,gain_stable,gain_unstable,gain_linear\n");
+    fprintf(f, "friction,rate_hz,times,gain,gain_low,gain_high,open,gain_linear\n");
     for (int i = 0; i < n; i++) {
-        char unstable[24] = "";
-        if (!x[i].open) { snprintf(unstable, sizeof unstable, "%.6g", x[i].unstable); }
-        fprintf(f, "%s,%.9g,%.6g,%.6g,%s,%.6g\n", kind_name[x[i].kind], o->rate_Hz[x[i].rate_i],
-            x[i].scale, x[i].stable, unstable, x[i].linear);
+        const struct ray_border *b = &x[i].border;
+        char border[64] = ",,";
+        if (b->status != LOGISTIC_NONE) {
+            snprintf(border, sizeof border, "%.6g,%.6g,%.6g", b->gain, b->low, b->high);
+        }
+        fprintf(f, "%s,%.9g,%.6g,%s,%d,%.6g\n", kind_name[x[i].kind], o->rate_Hz[x[i].rate_i],
+            x[i].scale, border, b->status == LOGISTIC_OPEN, x[i].linear);
     }
     return ferror(f);
 }
@@ -199,10 +168,10 @@ static int write_files(const struct sweep_opt *o, const struct limit *x, int n)
 
 int friction_run(const struct sweep_opt *o, int points)
 {
-    const struct ray ray = {o, points};
+    const struct plan plan = {o, points};
     const int n = KINDS * o->rates * points;
     struct limit *x = calloc((size_t)n, sizeof *x);
-    const struct jobs jobs = {n, o->jobs, sizeof *x, x, work, &ray, "rays", posix_interrupt};
+    const struct jobs jobs = {n, o->jobs, sizeof *x, x, work, &plan, "rays", posix_interrupt};
     int status;
 
     if (x == NULL) {

@@ -92,7 +92,7 @@ static int column(double *v, const struct run_cfg *c, const char *dir, int n)
     int err = r.error || !r.done || run_drop(c, &run) < 0;
     if (r.error || !r.done) { return 1; }
     if (err == 0 && run.log.falls > 0) {
-        const double wall_m = c->board.device.height_m;
+        const double wall_m = run.q_lim_m;
         const size_t end = run.log.falls > 1 ? run.log.start[1] : run.log.samples;
         fill(v, &r);
         fill_contacts(v, &run.log, wall_m, &first);

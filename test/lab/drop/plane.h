@@ -1,22 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-/* Plane: which cells of the k-b plane a sweep still wants, and what they say. */
-#ifndef CLI_PLANE_H
-#define CLI_PLANE_H
+/* Plane: the rays of a map, and what its cells say. */
+#ifndef LAB_DROP_PLANE_H
+#define LAB_DROP_PLANE_H
 
-#include "lab/drop/cells.h"
-#include "lab/drop/study.h"
+#include "lab/drop/ray.h"
+#include "lab/drop/reach.h"
 
-struct plane_want {
-    double rate_Hz, k_Npm, b_Nspm;
-};
+/* Ray j of o->rays at a rate: from k alone towards b alone, which no ray is, since without k
+ * nothing holds a mass. At gain 1 it meets the line from the linear test's largest k to its largest
+ * b. */
+struct ray plane_ray(const struct sweep_opt *o, double rate_Hz, struct reach reach, int j);
 
-/* Cells to be run before more can be said (a shard's: of octaves and rows), each once, into a list
- * that the caller frees. How many: 0 when the sweep is done; -1 after a line on stderr. Once
- * interrupted it returns early, with any number. */
-int plane_wants(const struct cells *cells, const struct sweep_opt *o, struct plane_want **want);
-
-/* A finished sweep: border.csv, rho.csv and sweep.gp in o->dir, a table on stdout. 0, or
- * 1 after a line on stderr. */
-int plane_report(const struct cells *cells, const struct sweep_opt *o);
+/* A finished sweep: border.csv, rho.csv, stiffness.csv and sweep.gp in o->dir, a table on stdout.
+ * 0, or 1 after a line on stderr. reach: one a rate. */
+int plane_report(const struct cells *cells, const struct sweep_opt *o, const struct reach *reach);
 
 #endif

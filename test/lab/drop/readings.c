@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "lab/drop/spread.h"
+#include "lab/drop/readings.h"
 
-#include "lab/drop/quantile.h"
+#include "falls/quantile.h"
 #include "lab/drop/reading.h"
 
 #define RUNS_MAX 1000
@@ -9,7 +9,7 @@
 static double median(const struct table2_readings *t, int row, int reading)
 {
     double v[RUNS_MAX];
-    const struct table2_result *r = t->r + t->first + row * t->stride;
+    const struct table2_result *r = t->r + row * t->stride;
     int n = 0;
     for (int i = 0; i < t->runs && i < RUNS_MAX; i++) {
         if (r[i].done && r[i].reading_Npm[reading] > 0) { v[n++] = r[i].reading_Npm[reading]; }
@@ -31,12 +31,10 @@ void table2_readings_print(FILE *f, const struct table2_readings *t)
         "  q(n); with q(n-1), which it answers. all contacts; the first of each fall; while the\n"
         "  motor moves; the whole fall, in contact or not.\n\n  %-17s",
         t->runs > 1 ? "median of " : "", t->runs, t->runs > 1 ? "s" : "", "Hz");
-    for (int row = 0; row < t->rows; row++) {
-        fprintf(f, " %8.6g", t->r[t->first + row * t->stride].rate_Hz);
-    }
+    for (int row = 0; row < t->rows; row++) { fprintf(f, " %8.6g", t->r[row * t->stride].rate_Hz); }
     fprintf(f, "\n  %-17s", "paper");
     for (int row = 0; row < t->rows; row++) {
-        const struct table2_row *paper = compared(&t->r[t->first + row * t->stride]);
+        const struct table2_row *paper = compared(&t->r[row * t->stride]);
         if (paper != NULL) {
             fprintf(f, " %8.0f", paper->stiffness_Npm);
         } else {
@@ -62,7 +60,7 @@ void table2_readings_csv(FILE *f, const struct table2_readings *t)
 {
     fprintf(f, "rate_hz,k_n_per_m,b_ns_per_m,reading,runs,stiffness_n_per_m,paper_n_per_m\n");
     for (int row = 0; row < t->rows; row++) {
-        const struct table2_result *r = &t->r[t->first + row * t->stride];
+        const struct table2_result *r = &t->r[row * t->stride];
         const struct table2_row *paper = compared(r);
         for (int i = 0; i < READINGS; i++) {
             const double v = median(t, row, i);

@@ -6,15 +6,13 @@
 #include "base/param.h"
 #include "box/table2.h"
 
-#include "sim/linear.h"
+#include "sim/random.h"
 
 #include "drop/drop.h"
 
 #include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
-
-#define R2_MIN 0.3 /* a fit below |r| = 0.55 has no slope worth the name */
 
 int sweep_take_shard(const char *text, int *shard, int *shards)
 {
@@ -38,22 +36,35 @@ int sweep_window(const struct run_cfg *base)
     return 1 << (int)(p + 0.5);
 }
 
-struct cell sweep_cell(
-    const struct run_cfg *base, double rate_Hz, double k_Npm, double b_Nspm, int *error)
+uint64_t study_seed(uint64_t seed, double rate_Hz, double k_Npm, double b_Nspm, int number)
+{
+    struct sim_random r = {seed};
+    const double v[] = {rate_Hz, k_Npm, b_Nspm, number};
+    uint64_t out = 0;
+    for (size_t i = 0; i < sizeof v / sizeof v[0]; i++) {
+        r.state ^= (uint64_t)(v[i] * 1024 + 0.5); /* a file's nine digits are the same number */
+        out = sim_random_u64(&r);
+    }
+    return out >> 16;
+}
+
+int study_rest(const struct run_cfg *base, double rate_Hz, double k_Npm, double b_Nspm)
 {
     struct run_cfg c = *base;
-    struct table2_result r;
-    struct cell cell = {rate_Hz, k_Npm, b_Nspm, 0, base->board.falls, 0, -1};
+    int rest = 0;
     c.rate_Hz = (uint32_t)(rate_Hz + 0.5);
     c.k_Npm = k_Npm;
     c.b_Nspm = b_Nspm;
-    r = table2_measure(&c, NULL, TABLE2_LINE);
-    *error = r.error ? 1 : r.done ? 0 : -1;
-    cell.stable_falls = r.falls - r.oscillating - r.incomplete;
-    if (r.faults) { cell.stable_falls = 0; } /* the box stopped: nothing held the mass */
-    if (r.b_Npm > 0 && r.r2 >= R2_MIN) { cell.stiffness_Npm = r.b_Npm; }
-    cell.rho = linear_rho(&base->board.device, 1 / rate_Hz, k_Npm, b_Nspm, sweep_window(base));
-    return cell;
+    c.board.falls = 1;
+    for (int i = 0; i < base->board.falls; i++) {
+        struct table2_result r;
+        c.board.seed = study_seed(base->board.seed, rate_Hz, k_Npm, b_Nspm, i);
+        r = table2_measure(&c, NULL, TABLE2_REST);
+        if (r.error || !r.done) { return r.error ? -1 : -2; }
+        /* A box that stopped holds no mass. */
+        rest += r.faults == 0 && r.falls == 1 && r.oscillating + r.incomplete == 0;
+    }
+    return rest;
 }
 
 int sweep_open_dir(const char *dir, const char *option)

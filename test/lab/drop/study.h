@@ -9,8 +9,9 @@
 struct sweep_opt {
     const double *rate_Hz;
     int rates;
-    int columns, rows; /* of the grid: k and b */
-    int shard, shards; /* 1/1: all of it */
+    int rays, per_octave; /* of the map: directions in the plane, nodes of each */
+    int columns, rows;    /* of the check of the border: k and b */
+    int shard, shards;    /* 1/1: all of it */
     int jobs;
     struct run_cfg base; /* device, settings of the scene, seed, falls */
     const char *dir;
@@ -19,9 +20,13 @@ struct sweep_opt {
 /* "2/3". 0, or 2 after a line on stderr. */
 int sweep_take_shard(const char *text, int *shard, int *shards);
 
-/* Falls at one cell, judged. *error: 0, 1 after a line on stderr, -1 interrupted. */
-struct cell sweep_cell(
-    const struct run_cfg *base, double rate_Hz, double k_Npm, double b_Nspm, int *error);
+/* base->board.falls falls at one pair of gains, each a run of its own whose chance, the wall's
+ * place too, follows from seed, rate, gains and number: how many rest. -1 after a line on stderr,
+ * -2 interrupted. */
+int study_rest(const struct run_cfg *base, double rate_Hz, double k_Npm, double b_Nspm);
+
+/* The chance of a run that is one of many: the same wherever it is run. */
+uint64_t study_seed(uint64_t seed, double rate_Hz, double k_Npm, double b_Nspm, int number);
 
 /* Ticks of the scene's velocity window under these settings. */
 int sweep_window(const struct run_cfg *base);

@@ -5,16 +5,13 @@
 #include "base/option.h"
 #include "base/param.h"
 #include "lab/drop/plane.h"
-#include "box/table2.h"
+#include "drop/options.h"
 
 #include "sim/linear.h"
-
-#include "drop/drop.h"
 
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -35,11 +32,11 @@ static void settings_of(char to[SETTINGS_B], const struct sweep_opt *o)
     const unsigned char *device = (const unsigned char *)&o->base.board.device;
     to[0] = '\0';
     strcpy(to, "# exhand drop --sweep");
-    add(to, "version", 1);
+    add(to, "version", 2);
     add(to, "falls", o->base.board.falls);
     add(to, "seed", (double)o->base.board.seed);
-    add(to, "columns", o->columns);
-    add(to, "rows", o->rows);
+    add(to, "rays", o->rays);
+    add(to, "per_octave", o->per_octave);
     for (int i = 0; i < sim_device_rows; i++) {
         double v;
         memcpy(&v, device + (size_t)i * sizeof v, sizeof v);
@@ -50,76 +47,77 @@ static void settings_of(char to[SETTINGS_B], const struct sweep_opt *o)
     }
 }
 
-/* --- running cells --- */
+/* --- running rays --- */
 
 struct batch {
     const struct sweep_opt *o;
-    const struct plane_want *want;
+    const struct cells *known;
+    const struct reach *reach;
     const char *path;
     int fd;
 };
 
+/* One ray on its way. */
+struct on_ray {
+    const struct batch *b;
+    int ray;
+};
+
+static int known_or_run(void *ctx, const struct ray *r, double gain, int *rest, int *falls)
+{
+    const struct on_ray *x = ctx;
+    const struct sweep_opt *o = x->b->o;
+    const struct cell *known = cells_find(x->b->known, r->rate_Hz, x->ray, gain);
+    struct cell c = {
+        r->rate_Hz, x->ray, gain, gain * r->k_Npm, gain * r->b_Nspm, 0, o->base.board.falls, -1};
+    if (known == NULL) {
+        c.resting = study_rest(&o->base, c.rate_Hz, c.k_Npm, c.b_Nspm);
+        if (c.resting < 0) { return c.resting; }
+        c.rho = linear_rho(
+            &o->base.board.device, 1 / c.rate_Hz, c.k_Npm, c.b_Nspm, sweep_window(&o->base));
+        if (cells_append(x->b->fd, x->b->path, &c)) { return -1; }
+    }
+    *rest = known ? known->resting : c.resting;
+    *falls = known ? known->falls : c.falls;
+    return 0;
+}
+
+/* The i-th ray of this shard: they are dealt in turn, so all take about as long. */
+static int ours(const struct sweep_opt *o, int i) { return o->shard - 1 + i * o->shards; }
+
+static int how_many(const struct sweep_opt *o)
+{
+    return (o->rates * o->rays - o->shard + o->shards) / o->shards;
+}
+
 struct ran {
     int done, error;
-    struct cell cell;
 };
 
 static void work(const void *ctx, int i, void *result)
 {
     const struct batch *b = ctx;
-    const struct plane_want *w = &b->want[i];
-    struct ran ran;
-    int error;
-    memset(&ran, 0, sizeof ran);
-    ran.cell = sweep_cell(&b->o->base, w->rate_Hz, w->k_Npm, w->b_Nspm, &error);
-    ran.error = error > 0;
-    ran.done = error == 0 && cells_append(b->fd, b->path, &ran.cell) == 0;
+    const int n = ours(b->o, i), rate_i = n / b->o->rays;
+    struct on_ray x = {b, n % b->o->rays};
+    const struct ray r = plane_ray(b->o, b->o->rate_Hz[rate_i], b->reach[rate_i], x.ray);
+    const struct ray_border border = ray_border(&r, known_or_run, &x);
+    const struct ran ran = {border.error == 0, border.error == -1};
     memcpy(result, &ran, sizeof ran);
 }
 
-/* All cells wanted. 0, or an exit status. */
-static int run_batch(const struct batch *b, int n, struct cells *cells)
+static int run_rays(const struct batch *b)
 {
-    struct ran *ran = calloc((size_t)n, sizeof *ran);
-    const struct jobs jobs = {n, b->o->jobs, sizeof *ran, ran, work, b, "cells", posix_interrupt};
-    int no_memory = 0, status = ran == NULL ? 1 : jobs_run(&jobs);
-    if (status == 0 && posix_interrupted()) {
-        status = JOBS_INTERRUPTED;
-    } /* before jobs listened */
-    for (int i = 0; ran != NULL && i < n; i++) {
-        if (ran[i].done) { no_memory |= cells_add(cells, &ran[i].cell); }
-        if (!ran[i].done && status == 0) { status = 1; }
-    }
-    cells_sort(cells);
+    const int n = how_many(b->o);
+    struct ran *ran = calloc((size_t)n + 1, sizeof *ran);
+    const struct jobs jobs = {n, b->o->jobs, sizeof *ran, ran, work, b, "rays", posix_interrupt};
+    int status = ran == NULL ? 1 : jobs_run(&jobs);
+    if (status == 0 && posix_interrupted()) { status = JOBS_INTERRUPTED; }
+    for (int i = 0; i < n && status == 0; i++) { status = !ran[i].done; }
     free(ran);
-    return no_memory ? 1 : status;
+    return status;
 }
 
 /* --- the sweep --- */
-
-/* Between two batches nobody else listens. */
-static void on_signal(int sig)
-{
-    (void)sig;
-    posix_interrupt();
-}
-
-static void take_signals(struct sigaction was[2])
-{
-    struct sigaction a;
-    memset(&a, 0, sizeof a);
-    sigemptyset(&a.sa_mask);
-    a.sa_handler = on_signal;
-    a.sa_flags = SA_RESTART;
-    sigaction(SIGINT, &a, &was[0]);
-    sigaction(SIGTERM, &a, &was[1]);
-}
-
-static void give_signals_back(const struct sigaction was[2])
-{
-    sigaction(SIGINT, &was[0], NULL);
-    sigaction(SIGTERM, &was[1], NULL);
-}
 
 static int load_shards(struct cells *cells, const char *dir)
 {
@@ -147,42 +145,44 @@ static int load_shards(struct cells *cells, const char *dir)
     return err;
 }
 
-static int sweep(const struct sweep_opt *o, struct cells *cells, const char *path)
+static int sweep(
+    const struct sweep_opt *o, struct cells *cells, const struct reach *reach, const char *path)
 {
-    struct batch b = {o, NULL, path, -1};
-    int n, err = 0, known = cells->n;
-    struct sigaction was[2];
-
+    struct batch b = {o, cells, reach, path, -1};
+    int err, again;
     if (cells_save(cells, path)) { return 1; } /* without a line that was cut off */
     b.fd = open(path, O_WRONLY | O_APPEND);
     if (b.fd < 0) {
         cli_complain("%s: %s", path, strerror(errno));
         return 1;
     }
-    if (known > 0) { fprintf(stderr, "%s: goes on from %d cells\n", path, known); }
-    take_signals(was);
-    while (err == 0) {
-        struct plane_want *want = NULL;
-        n = plane_wants(cells, o, &want);
-        b.want = want;
-        err = n < 0 ? 1 : posix_interrupted() ? JOBS_INTERRUPTED : 0;
-        if (n > 0 && err == 0) { err = run_batch(&b, n, cells); }
-        free(want);
-        if (n <= 0) { break; }
-    }
-    give_signals_back(was);
+    if (cells->n > 0) { fprintf(stderr, "%s: goes on from %d cells\n", path, cells->n); }
+    err = run_rays(&b);
     close(b.fd);
+    again = cells_load(cells, path);
     if (err == JOBS_INTERRUPTED) {
         cli_complain(
             "interrupted: %d cells are kept in %s: the same command goes on", cells->n, path);
         return err;
     }
-    return err ? err : cells_save(cells, path);
+    return err || again ? 1 : cells_save(cells, path);
+}
+
+/* Nowhere linear, as with a delay of ticks: the paper's gains are a measure, too. */
+static void reaches(const struct sweep_opt *o, struct reach *reach)
+{
+    for (int i = 0; i < o->rates; i++) {
+        const struct table2_row *row = table2_gains(o->rate_Hz[i]);
+        reach[i] = reach_of(&o->base.board.device, o->rate_Hz[i], sweep_window(&o->base));
+        if (reach[i].k_Npm > 0) { continue; }
+        reach[i] = (struct reach){row->k_Npm, row->b_Nspm > 10 ? row->b_Nspm : 10};
+    }
 }
 
 int sweep_run(const struct sweep_opt *o)
 {
     static char settings[SETTINGS_B];
+    static struct reach reach[DROP_RATES_MAX];
     char path[TABLE2_PATH_B];
     struct cells cells = {NULL, 0, 0, settings};
     int err;
@@ -196,8 +196,9 @@ int sweep_run(const struct sweep_opt *o)
         err = load_shards(&cells, o->dir);
     }
     if (err == 0) { err = cells_load(&cells, path); }
-    if (err == 0) { err = sweep(o, &cells, path); }
-    if (err == 0 && o->shards == 1) { err = plane_report(&cells, o); }
+    if (err == 0) { reaches(o, reach); }
+    if (err == 0) { err = sweep(o, &cells, reach, path); }
+    if (err == 0 && o->shards == 1) { err = plane_report(&cells, o, reach); }
     cells_free(&cells);
     return err;
 }

@@ -1,52 +1,37 @@
 /* SPDX-License-Identifier: MIT */
-/* Score: a plant is run at the paper's six points and at 1.5 times both gains, and read
- * in every way at once. */
+/* Score: falls of a plant at the paper's six points and at 1.5 times both gains, from places of the
+ * wall, the counts and the clocks that fill all there are evenly (sim/settle.h). */
 #ifndef FIT_SCORE_H
 #define FIT_SCORE_H
 
 #include "lab/fit/space.h"
 
-#include "lab/drop/reading.h"
-#include "box/table2.h"
+#include "box/table2_runs.h"
 
 struct score_plan {
-    int runs;                         /* of ten falls a row, at the gains */
-    int falls_at_15;                  /* one run of so many at 1.5 times both */
-    double observe_s, observe_slow_s; /* the latter at 100 Hz and below */
-    uint64_t seed;
-    int fixed_wall; /* 0: the wall lies anywhere between two encoder counts,
-                       elsewhere in each run; 1: where q_lim and step put it */
+    int falls, falls_at_15; /* of each row */
+    int first;              /* case of the sequence */
 };
 
 struct score {
-    int done;                 /* 0: given up, its unrest alone was above the bound */
-    float unrest;             /* 0 if all six rest and all six at 1.5x oscillate */
+    int done;                 /* 0: given up, its cost was above the bound */
+    float cost;               /* 0: all that is wanted; below 0 never */
     float rest[TABLE2_ROWS];  /* share of falls that come to rest */
-    float swing[TABLE2_ROWS]; /* share that oscillates at 1.5x */
-    /* mean of ln(stiffness / k) over the runs; SCORE_NONE: no line in some run */
-    float ln_k[TABLE2_ROWS][READINGS];
+    float swing[TABLE2_ROWS]; /* share that does not at 1.5x */
 };
-#define SCORE_NONE 99.0f
 
-/* Gives up once the unrest is above bound. */
-struct score score_plant(const struct plant_point *p, const struct score_plan *plan, double bound);
+/* The cost is the sum of the squares of what rows lack of 99.5 % and 95 %, in parts of the room
+ * between gate and 100 %: more than the gates ask for, so that what is found is inside of them.
+ * Gives up once it must be above bound. */
+struct score score_plant(const struct plant_point *p, enum estimate_kind kind,
+    const struct score_plan *plan, double bound);
 
-/* What the search makes small: unrest plus the sum of squares of ln(ours / paper). */
-double score_cost(const struct score *s, int reading);
+/* How far inside both gates the worst row is: 1 all falls do as wanted, 0 on a gate, < 0 outside.
+ */
+double score_margin(const struct score *s);
 
-/* One run. 0, or -1: it failed. r is freed by run_free(). */
-struct score_gains {
-    int row; /* whose rate */
-    double k_Npm, b_Nspm;
-    int falls;
-    uint64_t seed;
-};
-int score_run(const struct plant_point *p, const struct score_plan *plan, struct score_gains at,
-    struct run *r);
-double score_step_m(const struct plant_point *p);
-
-/* Falls of the run that oscillate; *soft is their sum judged by how far. */
-int score_oscillating(
-    const struct run *r, double step_m, double observe_s, int wanted, double *soft);
+/* Share of the falls at k and b of a row's rate that come to rest. */
+double score_rest(const struct plant_point *p, enum estimate_kind kind, int row, double k_Npm,
+    double b_Nspm, const struct score_plan *plan);
 
 #endif

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #define BEST     5    /* children go towards one of these */
+#define GIVE_UP  100  /* a start that lacks more is no ancestor */
 #define TOO_NEAR 0.01 /* in every row: the better of the two stays */
 
 void search_init(struct search *s, uint64_t seed)
@@ -12,7 +13,7 @@ void search_init(struct search *s, uint64_t seed)
     s->rng.state = seed;
     s->start = space_start();
     s->kept = SEARCH_MEMBERS;
-    for (int i = 0; i < READINGS; i++) { s->used[i] = 1; }
+    for (int i = 0; i < ESTIMATES; i++) { s->used[i] = 1; }
 }
 
 /* Normal enough: deviation 1, within +-3.5. */
@@ -33,15 +34,21 @@ static void tidy(const struct search *s, struct plant_point *p)
     }
 }
 
-/* Every other one is anywhere, every other one near the start. */
-struct plant_point search_first(struct search *s, int i)
+/* The start itself, then every other one anywhere, every other one near the start. */
+int search_first(struct search *s, struct search_child *child)
 {
-    struct plant_point p = s->start;
-    for (int k = 0; i > 0 && k < SPACE_ROWS; k++) {
-        p.u[k] = i % 2 ? sim_random_unit(&s->rng) : p.u[k] + 0.1 * bell(&s->rng);
+    int n = 0;
+    for (int i = 0; i < SEARCH_STARTS; i++) {
+        struct plant_point p = s->start;
+        for (int k = 0; i > 0 && k < SPACE_ROWS; k++) {
+            p.u[k] = i % 2 ? sim_random_unit(&s->rng) : p.u[k] + 0.1 * bell(&s->rng);
+        }
+        tidy(s, &p);
+        for (int k = 0; k < ESTIMATES; k++) {
+            if (s->used[k]) { child[n++] = (struct search_child){p, (enum estimate_kind)k}; }
+        }
     }
-    tidy(s, &p);
-    return p;
+    return n;
 }
 
 static int pick(struct sim_random *r, int n) { return (int)(sim_random_unit(r) * n); }
@@ -75,33 +82,25 @@ static struct plant_point nudge(struct search *s, const struct search_population
     return p;
 }
 
-int search_round(struct search *s, struct plant_point child[READINGS])
+int search_round(struct search *s, struct search_child *child)
 {
     int n = 0;
-    for (int i = 0; i < READINGS; i++) {
-        const struct search_population *of = &s->of[i];
-        if (!s->used[i]) { continue; }
-        if (of->members == 0) { /* nothing has come through yet */
-            child[n] = search_first(s, 1);
-        } else {
-            const int best = pick(&s->rng, of->members < BEST ? of->members : BEST);
-            child[n] = pick(&s->rng, 2) ? evolve(s, of, best) : nudge(s, of, best);
-        }
-        tidy(s, &child[n++]);
+    for (int i = 0; i < ESTIMATES * SEARCH_BROOD; i++) {
+        const int k = i / SEARCH_BROOD;
+        const struct search_population *of = &s->of[k];
+        if (!s->used[k] || of->members == 0) { continue; }
+        const int best = pick(&s->rng, of->members < BEST ? of->members : BEST);
+        child[n].p = pick(&s->rng, 2) ? evolve(s, of, best) : nudge(s, of, best);
+        child[n].kind = (enum estimate_kind)k;
+        tidy(s, &child[n++].p);
     }
     return n;
 }
 
-double search_bound(const struct search *s)
+double search_bound(const struct search *s, enum estimate_kind kind)
 {
-    double bound = 0;
-    for (int i = 0; i < READINGS; i++) {
-        const struct search_population *of = &s->of[i];
-        if (!s->used[i]) { continue; }
-        if (of->members < s->kept) { return 1e9; }
-        if (of->member[of->members - 1].cost > bound) { bound = of->member[of->members - 1].cost; }
-    }
-    return bound;
+    const struct search_population *of = &s->of[kind];
+    return of->members < s->kept ? GIVE_UP : (double)of->member[of->members - 1].s.cost;
 }
 
 static int near(const struct plant_point *a, const struct plant_point *b)
@@ -119,13 +118,13 @@ static void insert(struct search_population *of, int kept, const struct search_m
     int at;
     for (int i = 0; i < of->members; i++) {
         if (!near(&of->member[i].p, &m->p)) { continue; }
-        if (of->member[i].cost <= m->cost) { return; }
+        if (of->member[i].s.cost <= m->s.cost) { return; }
         memmove(&of->member[i], &of->member[i + 1],
             (size_t)(of->members - 1 - i) * sizeof of->member[0]);
         of->members--;
         i--;
     }
-    for (at = of->members; at > 0 && m->cost < of->member[at - 1].cost; at--) {}
+    for (at = of->members; at > 0 && m->s.cost < of->member[at - 1].s.cost; at--) {}
     if (at >= kept) { return; }
     if (of->members == kept) { of->members--; }
     memmove(
@@ -134,34 +133,21 @@ static void insert(struct search_population *of, int kept, const struct search_m
     of->members++;
 }
 
-void search_offer(struct search *s, const struct plant_point *p, const struct score *score)
+void search_offer(struct search *s, const struct search_child *c, const struct score *score)
 {
-    struct search_member m = {*p, *score, 0};
-    if (!score->done) { return; }
-    for (int i = 0; i < READINGS; i++) {
-        m.cost = score_cost(score, i);
-        insert(&s->of[i], s->kept, &m);
-    }
+    const struct search_member m = {c->p, *score};
+    if (score->done) { insert(&s->of[c->kind], s->kept, &m); }
 }
 
-int search_cull(struct search *s, struct plant_point kept[SEARCH_BATCH])
+int search_cull(struct search *s, struct search_child *child)
 {
     int n = 0;
-    for (int i = 0; i < READINGS; i++) {
-        for (int k = 0; k < s->of[i].members && k < SEARCH_KEPT; k++) {
-            int seen = 0;
-            for (int j = 0; j < n && !seen; j++) {
-                seen = memcmp(&kept[j], &s->of[i].member[k].p, sizeof kept[j]) == 0;
-            }
-            if (!seen && s->used[i]) { kept[n++] = s->of[i].member[k].p; }
+    for (int k = 0; k < ESTIMATES; k++) {
+        for (int i = 0; i < s->of[k].members && i < SEARCH_KEPT; i++) {
+            child[n++] = (struct search_child){s->of[k].member[i].p, (enum estimate_kind)k};
         }
-        s->of[i].members = 0;
+        s->of[k].members = 0;
     }
     s->kept = SEARCH_KEPT;
     return n;
-}
-
-const struct search_member *search_best(const struct search *s, int reading)
-{
-    return s->of[reading].members ? &s->of[reading].member[0] : NULL;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "lab/fit/space.h"
 
+#include "sim/ln.h"
 #include "sim/plant.h"
 
 #include <string.h>
@@ -30,40 +31,17 @@ const struct space_row space_row[SPACE_ROWS] = {
         "from no filter to one of 50 Hz behind the monitor"},
     {"step", SPACE_DEVICE, 31.4e-6, 94.2e-6, SPACE_LOG, 66.32e-6,
         "1000 lines on pulleys of 5..15 mm"},
-    {"f0", SPACE_SCENE, 0.02, 1.5, SPACE_LOG, 0.107,
+    {"f0", SPACE_F0, 0.02, 1.5, SPACE_LOG, 0.107,
         "enough to pull the string back; the paper tuned it, value unknown"},
-    {"vel_p", SPACE_SCENE, 0, 3, SPACE_WHOLE, 1, "difference over 1, 2 or 4 ticks"},
-    {"kf_gain", SPACE_KF, 0.7, 1.43, SPACE_LOG, 1,
-        "calibrated by lifted masses, so friction is in it: e^(mu theta) either way"},
-    {"mon_gain", SPACE_MONITOR, 0.7, 1.43, SPACE_LOG, 1,
-        "the monitor's table is a second calibration, with the friction of its own"},
+    {"vel_p", SPACE_WINDOW, 0, 5, SPACE_WHOLE, 1, "1, 2, 4, 8 or 16 ticks, what the library has"},
+    {"vel_tau", SPACE_TAU, 1e-4, 5e-3, SPACE_LOG, 5e-4,
+        "0.1 ms: nothing at 2 kHz; 5 ms: half a tick of 90 Hz"},
 };
-
-/* ln x = e ln 2 + 2 artanh((m - 1)/(m + 1)), m in 0.7..1.4: |z| < 0.18, z^25 < 1e-18. */
-double space_ln(double x)
-{
-    double e = 0, z, sum = 0, power;
-    while (x > 1.4) {
-        x /= 2;
-        e++;
-    }
-    while (x < 0.7) {
-        x *= 2;
-        e--;
-    }
-    z = (x - 1) / (x + 1);
-    power = z;
-    for (int i = 1; i < 25; i += 2) {
-        sum += power / i;
-        power *= z * z;
-    }
-    return e * 0.69314718055994531 + 2 * sum;
-}
 
 double space_value(int row, double u)
 {
     const struct space_row *r = &space_row[row];
-    if (r->scale == SPACE_LOG) { return r->hi * sim_exp_neg((1 - u) * space_ln(r->hi / r->lo)); }
+    if (r->scale == SPACE_LOG) { return r->hi * sim_exp_neg((1 - u) * sim_ln(r->hi / r->lo)); }
     if (r->scale == SPACE_WHOLE) { /* the upper end is not reached */
         const double v = (double)(int)(r->lo + u * (r->hi - r->lo));
         return v < r->hi ? v : r->hi - 1;
@@ -74,7 +52,7 @@ double space_value(int row, double u)
 double space_unit(int row, double value)
 {
     const struct space_row *r = &space_row[row];
-    if (r->scale == SPACE_LOG) { return 1 - space_ln(r->hi / value) / space_ln(r->hi / r->lo); }
+    if (r->scale == SPACE_LOG) { return 1 - sim_ln(r->hi / value) / sim_ln(r->hi / r->lo); }
     if (r->scale == SPACE_WHOLE) { return (value + 0.5 - r->lo) / (r->hi - r->lo); }
     return (value - r->lo) / (r->hi - r->lo);
 }
@@ -92,22 +70,24 @@ struct plant_point space_start(void)
     return p;
 }
 
-void space_apply(const struct plant_point *p, struct run_cfg *c, struct run_setting *setting)
+int space_apply(const struct plant_point *p, enum estimate_kind kind, struct sim_device *d,
+    struct settle_wall *w)
 {
     const struct sim_device_row *ignored;
-    struct sim_device *d = &c->board.device;
-    c->setting = setting;
-    c->settings = 0;
+    const struct settle_wall scene = {
+        .f0_band_m = 200e-6, .f_max_N = 40, .slew_Nps = 200000, .velocity = {.kind = kind}};
+    *d = sim_device_default();
+    *w = scene;
     for (int i = 0; i < SPACE_ROWS; i++) {
-        const struct space_row *r = &space_row[i];
         const double v = space_value(i, p->u[i]);
-        switch (r->kind) {
-        case SPACE_DEVICE: sim_device_set(d, r->name, v, &ignored); break;
-        case SPACE_SCENE: setting[c->settings++] = (struct run_setting){r->name, v}; break;
-        case SPACE_KF: setting[c->settings++] = (struct run_setting){"kf", d->kf_npa * v}; break;
-        case SPACE_MONITOR: c->mon_gain = v; break;
+        switch (space_row[i].kind) {
+        case SPACE_DEVICE: sim_device_set(d, space_row[i].name, v, &ignored); break;
+        case SPACE_F0: w->f0_N = v; break;
+        case SPACE_WINDOW: w->velocity.window = 1 << (int)v; break;
+        case SPACE_TAU: w->velocity.tau_s = v; break;
         }
     }
+    return plant_take_step(d, 0, 0);
 }
 
 int space_find(const char *name)

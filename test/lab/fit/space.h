@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* Space: which values of the simulated device and the box are searched, and how far. */
+/* Space: which values of the simulated device and the box are searched, and how far; what they make
+ * of the model that judges them. */
 #ifndef FIT_SPACE_H
 #define FIT_SPACE_H
 
-#include "box/run.h"
+#include "sim/settle.h"
 
 enum space_kind {
     SPACE_DEVICE, /* a value of the device, by its name */
-    SPACE_SCENE,  /* a parameter of the scene, by its name */
-    SPACE_KF,     /* times the device's: what the box believes of it */
-    SPACE_MONITOR
+    SPACE_F0,     /* pull-back force of the scene */
+    SPACE_WINDOW, /* of the velocity, 2^p ticks: window and FOAW */
+    SPACE_TAU     /* of the velocity: pole and observer */
 };
 
 struct space_row {
@@ -21,7 +22,7 @@ struct space_row {
     const char *why;
 };
 
-#define SPACE_ROWS 17
+#define SPACE_ROWS 16
 extern const struct space_row space_row[SPACE_ROWS];
 
 /* A plant: one number 0..1 a row. */
@@ -38,13 +39,12 @@ int space_exact(int row, double value);
 /* Where every search starts. */
 struct plant_point space_start(void);
 
-/* Writes device and settings (room for SPACE_ROWS of them) to c. */
-void space_apply(const struct plant_point *p, struct run_cfg *c, struct run_setting *setting);
+/* Device and wall of the model, with a velocity estimator of this kind; gains and rate are the
+ * caller's. < 0: no integration step will do. */
+int space_apply(const struct plant_point *p, enum estimate_kind kind, struct sim_device *d,
+    struct settle_wall *w);
 
 /* Row by name, or -1. */
 int space_find(const char *name);
-
-/* The natural logarithm of x > 0, from + - * /. */
-double space_ln(double x);
 
 #endif

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* Winners: those of a search, by the whole experiment and seeds they never saw. */
+/* Winners: those of a search, by more falls from places that they never saw. */
 #ifndef FIT_WINNERS_H
 #define FIT_WINNERS_H
 
 #include "lab/fit/search.h"
 
-/* Prints a table and writes fit.csv and plants.csv to the folder. 0, or as jobs_run(). */
-int winners_judge(const struct search *s, int runs, int further, int jobs, const char *out);
+/* The best plants of each velocity by `falls` falls a row: a table, and plants.csv in the folder.
+ * Says which is the most robust, or, if none is inside both gates, what stands in the way. 0, or
+ * as jobs_run(). */
+int winners_judge(const struct search *s, int falls, int jobs, const char *out);
 
 #endif

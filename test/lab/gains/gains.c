@@ -39,7 +39,7 @@ static int begin(struct gains_options *a)
 
 static int rate(struct gains_rate *r, int i)
 {
-    if (is.judge) { is.share[i] = gains_judge(&r->region, &r->rule, &is.map); }
+    if (is.judge) { is.share[i] = gains_judge(r, &is.map); }
     return is.share[i].unstable > 0;
 }
 

@@ -9,39 +9,19 @@
 
 static double si(int32_t raw, int frac) { return (double)raw / (double)(INT32_C(1) << frac); }
 
-static void nodes(FILE *f, struct gains_rate *r, int n, const struct gains_map *map)
-{
-    (void)map;
-    fprintf(f, "rate_hz,k_n_per_m,b_ns_per_m,holds\n");
-    for (; n > 0; n--, r++) {
-        const struct region *g = &r->region;
-        for (int j = 0; j <= g->o.rows; j++) {
-            for (int i = 0; i <= g->o.columns; i++) {
-                fprintf(f, "%.9g,%.9g,%.9g,%d\n", r->rate_Hz, region_k(g, i), region_b(g, j),
-                    g->node[j * (g->o.columns + 1) + i]);
-            }
-        }
-    }
-}
-
-/* Along each row of pieces, from where to where k is allowed. */
+/* Along each row from where to where k is allowed, halfway to the rows beside it. */
 static void allowed(FILE *f, struct gains_rate *r, int n, const struct gains_map *map)
 {
     (void)map;
     fprintf(f, "rate_hz,b_low_ns_per_m,b_high_ns_per_m,k_low_n_per_m,k_high_n_per_m\n");
     for (; n > 0; n--, r++) {
-        struct region *g = &r->region;
-        for (int j = 0; j < g->o.rows; j++) {
-            int from = -1;
-            for (int i = 0; i <= g->o.columns; i++) {
-                const int is = region_piece(g, i, j);
-                if (is && from < 0) { from = i; }
-                if (!is && from >= 0) {
-                    fprintf(f, "%.9g,%.9g,%.9g,%.9g,%.9g\n", r->rate_Hz, region_b(g, j),
-                        region_b(g, j + 1), region_k(g, from), region_k(g, i));
-                    from = -1;
-                }
-            }
+        const struct region_row *row = r->region.row;
+        const double half = (row[1].b_Nspm - row[0].b_Nspm) / 2;
+        for (int j = 0; j <= REGION_ROWS; j++) {
+            if (row[j].high_Npm <= 0) { continue; }
+            fprintf(f, "%.9g,%.9g,%.9g,%.9g,%.9g\n", r->rate_Hz,
+                j ? row[j].b_Nspm - half : row[j].b_Nspm, row[j].b_Nspm + half, row[j].low_Npm,
+                row[j].high_Npm);
         }
     }
 }
@@ -51,7 +31,7 @@ static void rules(FILE *f, struct gains_rate *r, int n, const struct gains_map *
     (void)map;
     fprintf(f, "rate_hz,knot,b_ns_per_m,k_n_per_m,k_min_n_per_m\n");
     for (; n > 0; n--, r++) {
-        for (int i = 0; r->has_rule && i < r->rule.knots; i++) {
+        for (int i = 0; i < r->rule.knots; i++) {
             fprintf(f, "%.9g,%d,%.9g,%.9g,%.9g\n", r->rate_Hz, i,
                 si(r->rule.b_Nspm_q20[i], EXH_Q_B), si(r->rule.k_Npm_q10[i], EXH_Q_K),
                 si(r->rule.k_min_Npm_q10, EXH_Q_K));
@@ -61,14 +41,16 @@ static void rules(FILE *f, struct gains_rate *r, int n, const struct gains_map *
 
 static void judged(FILE *f, const struct gains_share *s, int n)
 {
-    fprintf(f,
-        "rate_hz,cells,stable,at_rest,allowed_stable,allowed_at_rest,rule_stable,linear_stable,"
-        "linear_unstable,energy_stable,energy_unstable,inside,unstable,falls,restless\n");
+    fprintf(f, "rate_hz,stable,at_rest,allowed_stable,allowed_at_rest,linear_stable,"
+               "linear_unstable,energy_stable,energy_unstable,inside,unstable,falls,restless\n");
     for (; n > 0; n--, s++) {
-        fprintf(f, "%.9g,%d,%d,%d,%d,%d,%d,%d,%d,%d,%d,%d,%d,%ld,%ld\n", s->rate_Hz, s->cells,
-            s->stable, s->at_rest, s->allowed_stable, s->allowed_at_rest, s->rule_stable,
-            s->linear_stable, s->linear_unstable, s->energy_stable, s->energy_unstable, s->inside,
-            s->unstable, s->falls, s->restless);
+        const double area[] = {s->stable, s->at_rest, s->allowed_stable, s->allowed_at_rest,
+            s->linear_stable, s->linear_unstable, s->energy_stable, s->energy_unstable};
+        fprintf(f, "%.9g", s->rate_Hz);
+        for (size_t i = 0; i < sizeof area / sizeof area[0]; i++) {
+            fprintf(f, ",%.4f", area[i] / s->all);
+        }
+        fprintf(f, ",%d,%d,%ld,%ld\n", s->inside, s->unstable, s->falls, s->restless);
     }
 }
 
@@ -76,12 +58,18 @@ static void cells(FILE *f, struct gains_rate *r, int n, const struct gains_map *
 {
     (void)r;
     (void)n;
-    fprintf(f, "rate_hz,k_n_per_m,b_ns_per_m,stable_falls,falls\n");
+    fprintf(f, "rate_hz,k_n_per_m,b_ns_per_m,resting_falls,falls\n");
     for (int i = 0; map != NULL && i < map->n; i++) {
         const struct cell *c = &map->at[i];
-        fprintf(f, "%.9g,%.9g,%.9g,%d,%d\n", c->rate_Hz, c->k_Npm, c->b_Nspm, c->stable_falls,
-            c->falls);
+        fprintf(f, "%.9g,%.9g,%.9g,%d,%d\n", c->rate_Hz, c->k_Npm, c->b_Nspm, c->resting, c->falls);
     }
+}
+
+static double k_top(const struct region *r)
+{
+    double k = 0;
+    for (int j = 0; j <= REGION_ROWS; j++) { k = r->row[j].high_Npm > k ? r->row[j].high_Npm : k; }
+    return 1.3 * k;
 }
 
 static void picture(FILE *f, struct gains_rate *r, int n, const struct gains_map *map)
@@ -93,9 +81,11 @@ static void picture(FILE *f, struct gains_rate *r, int n, const struct gains_map
         map != NULL);
     for (int i = 0; i < n; i++) { fprintf(f, "%s%.6g", i ? " " : "", r[i].rate_Hz); }
     fprintf(f, "'; k_tops='");
-    for (int i = 0; i < n; i++) { fprintf(f, "%s%.6g", i ? " " : "", r[i].region.k_top_Npm); }
+    for (int i = 0; i < n; i++) { fprintf(f, "%s%.6g", i ? " " : "", k_top(&r[i].region)); }
     fprintf(f, "'; b_tops='");
-    for (int i = 0; i < n; i++) { fprintf(f, "%s%.6g", i ? " " : "", r[i].region.b_top_Nspm); }
+    for (int i = 0; i < n; i++) {
+        fprintf(f, "%s%.6g", i ? " " : "", 1.3 * r[i].region.row[REGION_ROWS].b_Nspm);
+    }
     fprintf(f, "'; paper_ks='");
     for (int i = 0; i < n; i++) {
         const struct table2_row *row = table2_at(r[i].rate_Hz);
@@ -115,8 +105,8 @@ int gains_write(const char *dir, struct gains_rate *r, const struct gains_share 
     static const struct {
         const char *name;
         int of_map;
-    } file[] = {{"gains.csv", 0}, {"allowed.csv", 0}, {"rule.csv", 0}, {"gains.gp", 0},
-        {"map.csv", 1}, {"judge.csv", 1}};
+    } file[] = {
+        {"allowed.csv", 0}, {"rule.csv", 0}, {"gains.gp", 0}, {"map.csv", 1}, {"judge.csv", 1}};
     for (size_t i = 0; i < sizeof file / sizeof file[0]; i++) {
         char path[TABLE2_PATH_B];
         FILE *f;
@@ -129,11 +119,10 @@ int gains_write(const char *dir, struct gains_rate *r, const struct gains_share 
             return 1;
         }
         switch (i) {
-        case 0: nodes(f, r, n, map); break;
-        case 1: allowed(f, r, n, map); break;
-        case 2: rules(f, r, n, map); break;
-        case 3: picture(f, r, n, map); break;
-        case 4: cells(f, r, n, map); break;
+        case 0: allowed(f, r, n, map); break;
+        case 1: rules(f, r, n, map); break;
+        case 2: picture(f, r, n, map); break;
+        case 3: cells(f, r, n, map); break;
         default: judged(f, s, n); break;
         }
         bad = ferror(f);

@@ -26,10 +26,11 @@ SCOPES = ("lib", "ports/pc104", "ports/cards", "ports/posix")
 PROGRAM = "ports/posix/exhand"
 # What every room of the program may include: the rooms below it, which other programs share, too.
 COMMON = (PROGRAM, "ports/posix", "ports/cards",
-          *("ports/posix/" + r for r in ("base", "box", "falls", "slave", "sim", "emu", "world")))
+          *("ports/posix/" + r for r in ("base", "box", "falls", "identify", "slave", "sim", "emu",
+                                         "world")))
 # Folders between which no circle may be.
 FOLDERS = (r"lib/src/[a-z]+", r"ports/posix/exhand/[a-z]+",
-           r"ports/posix/(?:base|box|falls|slave|sim|emu|world)")
+           r"ports/posix/(?:base|box|falls|identify|slave|sim|emu|world)")
 
 # Circles that may be: (a source, another one): the reason.
 CIRCLES = {}
@@ -49,7 +50,8 @@ ALLOWED = (
     (r"ports/posix/box/glove_line\.c", r"examples/glove/glove\.h"),
     (r"ports/posix/world/live\.c", r"examples/bilateral/bilateral\.h"),
     (r"ports/posix/exhand/glove/.*", r"examples/glove/glove\.h"),
-    (r"ports/posix/exhand/bench/.*", r"examples/(bringup|calibrate)/\w+\.h"),
+    (r"ports/posix/exhand/bench/.*", r"examples/(bringup|calibrate|identify)/\w+\.h"),
+    (r"ports/posix/identify/.*", r"examples/identify/identify\.h"),
 )
 
 

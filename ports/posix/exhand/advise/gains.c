@@ -37,7 +37,9 @@ static int take_rates(void *ctx, const char *text)
 static int take_device(void *ctx, const char *text)
 {
     struct gains_options *a = ctx;
-    return assign_device(&a->o.device, "drop", text);
+    if (strchr(text, '=') != NULL) { return assign_device(&a->o.device[0], "drop", text); }
+    a->has_file = 1;
+    return result_read(&a->file, text);
 }
 
 /* What the drop scene has when nobody says otherwise. */
@@ -47,29 +49,44 @@ static double of_scene(const char *name)
     return cli_signal_value(row, row->dflt);
 }
 
-static void defaults(struct gains_options *a)
+void gains_defaults(struct gains_options *a)
 {
     memset(a, 0, sizeof *a);
     exh_scene_drop.defaults();
-    a->o.device = sim_device_default();
+    a->o.device[0] = sim_device_default();
+    a->o.devices = 1;
     a->o.wall.f0_N = of_scene("f0");
     a->o.wall.f0_band_m = of_scene("f0_band");
     a->o.wall.f_max_N = of_scene("f_max");
     a->o.wall.slew_Nps = of_scene("slew_up");
     a->window = INT64_C(1) << (int)of_scene("vel_p");
     a->cases = 32;
+    a->o.spare = getenv("SPARE") ? atoi(getenv("SPARE")) : 1;
     a->margin_percent = 3;
-    a->k_Npm = a->b_Nspm = -1;
+    a->k_Npm = a->b_Nspm = a->phase = -1;
     a->rate_Hz[0] = 2000;
     a->rates = 1;
     a->jobs = jobs_cores();
 }
 
-static int refuse(struct gains_options *a)
+/* Beside the device as told a heavier and a lighter mass, both with less friction. */
+static void around(struct region_opt *o, double off)
 {
-    struct sim_device *d = &a->o.device;
+    for (int i = -1; i <= 1; i += 2) {
+        struct sim_device *d = &o->device[o->devices++];
+        *d = o->device[0];
+        d->mass_kg *= 1 + i * off;
+        d->viscous_nspm *= 1 - off;
+        d->mu_motor *= 1 - off;
+        d->mu_mass *= 1 - off;
+        d->coulomb_n *= 1 - off;
+    }
+}
+
+int gains_refuse(struct gains_options *a)
+{
+    struct sim_device *d = &a->o.device[0];
     if (assign_step(d, 0, 0)) { return 2; }
-    if (assign_grid(a->grid ? a->grid : "64x48", &a->o.columns, &a->o.rows)) { return 2; }
     if ((a->k_Npm >= 0) != (a->b_Nspm >= 0)) {
         cli_complain("--k and --b: a pair is judged: give both");
         return 2;
@@ -87,111 +104,138 @@ static int refuse(struct gains_options *a)
             return 2;
         }
     }
-    a->o.off = a->off_percent / 100;
+    if (a->has_file && a->off_percent > 0) {
+        cli_complain("--off: a file has its own intervals: --off is for --device NAME=VALUE");
+        return 2;
+    }
+    if (a->off_percent > 0) { around(&a->o, a->off_percent / 100); }
     a->o.margin = a->margin_percent / 100;
     a->o.cases = (int)a->cases;
-    a->o.wall.window = (int)a->window;
+    a->o.at_phase = a->phase >= 0;
+    a->o.phase = a->phase;
+    a->o.wall.velocity.window = (int)a->window;
     a->o.jobs = (int)a->jobs;
     return 0;
 }
 
 /* --- what is said of a rate --- */
 
-/* How far pieces from i, j on are allowed, so many at a time along k or b: the last one. */
-static int along(struct region *r, int i, int j, int di, int dj)
+static double si(int32_t raw, int frac) { return (double)raw / (double)(INT32_C(1) << frac); }
+
+static double k_min(const struct exh_gains_par *r) { return si(r->k_min_Npm_q10, EXH_Q_K); }
+static double b_of(const struct exh_gains_par *r, int i) { return si(r->b_Nspm_q20[i], EXH_Q_B); }
+
+/* The smallest of the largest k from b0 to b1; 0: not all of these b are inside. */
+static double least_k(const struct exh_gains_par *r, double b0, double b1)
 {
-    int n = 0;
-    while (region_piece(r, i + di, j + dj)) {
-        i += di;
-        j += dj;
-        n++;
+    const double k0 = gains_k_max(r, b0), k1 = gains_k_max(r, b1);
+    double least = k0 < k1 ? k0 : k1;
+    for (int i = 0; i < r->knots; i++) {
+        const double k = si(r->k_Npm_q10[i], EXH_Q_K);
+        if (b_of(r, i) > b0 && b_of(r, i) < b1 && k < least) { least = k; }
     }
-    return n;
+    return least;
 }
 
-/* Whether everything from k/room to k room and b/room to b room is allowed. */
-static int has_room(struct region *r, int i, int j, double room)
+#define STEPS 400 /* of b, where something is looked for along it */
+
+/* The stiffest k so that all from k/room to k room and b/room to b room is allowed, and its b. */
+static double stiffest(const struct exh_gains_par *r, double room, double *b)
 {
-    const double k = region_k(r, i + 1), b = (region_b(r, j) + region_b(r, j + 1)) / 2;
-    int i0, j0, i1, j1;
-    if (!region_find(r, k / room, b / room, &i0, &j0) ||
-        !region_find(r, k * room, b * room, &i1, &j1)) {
-        return 0;
+    double best = 0;
+    for (int i = 0; i <= STEPS; i++) {
+        const double at = b_of(r, 0) + (b_of(r, r->knots - 1) - b_of(r, 0)) * i / STEPS;
+        const double k = least_k(r, at / room, at * room) / room;
+        if (k <= best || k / room < k_min(r)) { continue; }
+        best = k;
+        *b = at;
     }
-    for (int m = j0; m <= j1; m++) {
-        for (int n = i0; n <= i1; n++) {
-            if (!region_piece(r, n, m)) { return 0; }
-        }
-    }
-    return 1;
+    return best;
 }
 
-static void print_best(struct region *r)
+static void print_rule(const struct exh_gains_par *r)
+{
+    printf("  allowed: k from %.5g N/m up to, straight in between:\n    b, Ns/m", k_min(r));
+    for (int i = 0; i < r->knots; i++) { printf(" %8.4g", b_of(r, i)); }
+    printf("\n    k, N/m ");
+    for (int i = 0; i < r->knots; i++) { printf(" %8.5g", si(r->k_Npm_q10[i], EXH_Q_K)); }
+    printf("\n");
+}
+
+static void print_best(const struct exh_gains_par *r)
 {
     static const double room[] = {1, 1.25, 1.5};
     printf("  stiffest pairs, allowed as far as k and b both times and by so much:");
     for (size_t n = 0; n < sizeof room / sizeof room[0]; n++) {
-        int found = 0;
-        for (int i = r->o.columns - 1; i >= 0 && !found; i--) {
-            for (int j = 0; j < r->o.rows && !found; j++) {
-                found = has_room(r, i, j, room[n]);
-                if (!found) { continue; }
-                printf("%s x%.4g: k %.5g b %.3g", n ? "," : "", room[n], region_k(r, i + 1),
-                    (region_b(r, j) + region_b(r, j + 1)) / 2);
-            }
+        double b = 0;
+        const double k = stiffest(r, room[n], &b);
+        printf("%s x%.4g: ", n ? "," : "", room[n]);
+        if (k > 0) {
+            printf("k %.5g b %.3g", k, b);
+        } else {
+            printf("none");
         }
-        if (!found) { printf("%s x%.4g: none", n ? "," : "", room[n]); }
     }
     printf("\n");
 }
 
+/* How far b may go from an allowed pair, in steps of its whole range. */
+static double as_far(const struct exh_gains_par *r, double k, double b, int up)
+{
+    const double step = (b_of(r, r->knots - 1) - b_of(r, 0)) / STEPS * (up ? 1 : -1);
+    while (gains_allows(r, k, b + step)) { b += step; }
+    return b;
+}
+
 /* Both gains raised together, by hundredths. */
-static double together(struct region *r, double k, double b)
+static double together(const struct exh_gains_par *r, double k, double b)
 {
     double g = 1;
-    while (region_allows(r, (g + 0.01) * k, (g + 0.01) * b)) { g += 0.01; }
+    while (gains_allows(r, (g + 0.01) * k, (g + 0.01) * b)) { g += 0.01; }
     return g;
 }
 
-/* The lowest piece of a row or column that is allowed, and the end of what hangs together with it.
- */
-static double first_run(struct region *r, int i, int j, int of_k)
+static void print_margin(const struct exh_gains_par *r, double k, double b)
 {
-    const int n = of_k ? r->o.columns : r->o.rows;
-    for (int m = 0; m < n; m++) {
-        const int at_i = of_k ? m : i, at_j = of_k ? j : m;
-        if (!region_piece(r, at_i, at_j)) { continue; }
-        m += along(r, at_i, at_j, of_k, !of_k);
-        return of_k ? region_k(r, m + 1) : region_b(r, m + 1);
+    const double k_up = gains_k_max(r, b);
+    printf("  margin: k %.6g .. %.6g N/m (x%.2f) at this b; b %.4g .. %.4g Ns/m at this k; both "
+           "together x%.2f\n",
+        k_min(r), k_up, k_up / k, as_far(r, k, b, 0), as_far(r, k, b, 1), together(r, k, b));
+}
+
+/* Why the rule does not have it: what such falls do. */
+static void print_reason(const struct gains_rate *x, double k, double b)
+{
+    const struct region_opt *o = &x->region.o;
+    const struct region_pair p = region_try(o, k, b);
+    if (p.rest == p.falls) {
+        printf(
+            "  why: all %d falls of the model rest at it; weaker gains next to it do not, or the "
+            "rule's straight pieces leave it out\n",
+            p.falls);
+    } else {
+        printf("  why: %d of %d falls of the model do not come to rest; the first has the wall "
+               "%.2f counts above a count%s\n",
+            p.falls - p.rest, p.falls, p.at.wall,
+            p.device ? ", on a device that is off by what was said" : "");
     }
-    return 0;
+    printf("  largest k at this b: %.6g N/m (0: none)\n", gains_k_max(&x->rule, b));
 }
 
 /* Whether it is allowed. */
-static int print_pair(const struct gains_options *a, struct region *r)
+static int print_pair(const struct gains_options *a, const struct gains_rate *x)
 {
+    const struct region_opt *o = &x->region.o;
     const double k = a->k_Npm, b = a->b_Nspm;
-    const double rho = linear_rho(&r->o.device, r->o.wall.T_s, k, b, r->o.wall.window);
-    int i, j, ok;
-    ok = region_find(r, k, b, &i, &j) && region_piece(r, i, j);
+    const double rho = linear_rho(&o->device[0], o->wall.T_s, k, b, o->wall.velocity.window);
+    const int ok = gains_allows(&x->rule, k, b);
     printf("  k %.6g N/m, b %.6g Ns/m: %s (linear test alone: rho %.4f, %s; energy: %s)\n", k, b,
         ok ? "allowed" : "NOT allowed", rho, rho >= 0 && rho < 1 ? "stable" : "not stable",
-        region_energy(&r->o, k, b) ? "stable" : "not stable");
+        region_energy(o, k, b) ? "stable" : "not stable");
     if (ok) {
-        const double k_up = region_k(r, i + 1 + along(r, i, j, 1, 0));
-        const double b_up = region_b(r, j + 1 + along(r, i, j, 0, 1));
-        printf("  margin: k %.6g .. %.6g N/m (x%.2f) at this b; b %.6g .. %.6g Ns/m (+%.3g) at "
-               "this k; both "
-               "together x%.2f\n",
-            region_k(r, i - along(r, i, j, -1, 0)), k_up, k > 0 ? k_up / k : 0,
-            region_b(r, j - along(r, i, j, 0, -1)), b_up, b_up - b, together(r, k, b));
-        printf("  largest k at this b %.6g N/m, largest b at this k %.6g Ns/m\n", k_up, b_up);
-    } else if (region_find(r, k < region_k(r, 0) ? region_k(r, 0) : k, b, &i, &j)) {
-        printf("  largest k at this b %.6g N/m, largest b at this k %.6g Ns/m (0: none)\n",
-            first_run(r, i, j, 1), first_run(r, i, j, 0));
+        print_margin(&x->rule, k, b);
     } else {
-        printf("  beyond all that comes to rest: k < %.6g N/m, b < %.6g Ns/m\n", r->k_top_Npm,
-            r->b_top_Nspm);
+        print_reason(x, k, b);
     }
     return ok;
 }
@@ -203,20 +247,19 @@ static int do_rate(const struct gains_options *a, struct gains_rate *x, int i,
     struct region_opt o = a->o;
     int err, ok = 1;
     o.wall.T_s = 1 / x->rate_Hz;
-    err = region_open(&x->region, &o);
-    if (err == 0) { err = region_fill(&x->region); }
+    if (a->has_file && gains_told(&o, &a->file, x->rate_Hz)) { return 2; }
+    err = region_fill(&x->region, &o);
+    if (err == 0) { err = gains_proved(x); }
     if (err) { return err; }
-    x->has_rule = gains_rule(&x->rule, &x->region) == 0;
     if (study->rate) { *restless |= study->rate(x, i); }
     if (a->rule) {
-        if (x->has_rule) { gains_rule_print(stdout, &x->rule); }
-        return !x->has_rule;
+        gains_rule_print(stdout, &x->rule);
+        return 0;
     }
-    printf("%.6g Hz: k < %.6g N/m, b < %.6g Ns/m looked at, in pieces of %.4g N/m by %.3g Ns/m\n",
-        x->rate_Hz, x->region.k_top_Npm, x->region.b_top_Nspm, x->region.k_top_Npm / o.columns,
-        x->region.b_top_Nspm / o.rows);
-    if (a->k_Npm >= 0) { ok = print_pair(a, &x->region); }
-    print_best(&x->region);
+    printf("%.6g Hz\n", x->rate_Hz);
+    print_rule(&x->rule);
+    if (a->k_Npm >= 0) { ok = print_pair(a, x); }
+    print_best(&x->rule);
     return !ok;
 }
 
@@ -240,7 +283,6 @@ static int advise(struct gains_options *a, const struct gains_study *study)
     if (worst == JOBS_INTERRUPTED) {
         cli_complain("interrupted: gains keeps nothing of what it has run");
     }
-    for (int i = 0; i < a->rates; i++) { region_free(&rate[i].region); }
     return worst ? worst : !inside || restless;
 }
 
@@ -254,33 +296,36 @@ int gains_command(int argc, char **argv, const struct gains_study *study)
         {"k", CLI_REAL, &a.k_Npm, 0, 1e6, "N/M",
             "judge this stiffness, with --b: exit 1 if not allowed"},
         {"b", CLI_REAL, &a.b_Nspm, 0, 1e3, "NS/M", "and this damping"},
+        {"phase", CLI_REAL, &a.phase, 0, 1, "P",
+            "the wall lies P counts above an encoder count (anywhere)"},
         {"window", CLI_INT, &a.window, 1, 16, "N", "ticks of the velocity (2)"},
-        {"device", CLI_CALL, &device, 0, 0, "NAME=VALUE",
-            "mass, rotor, step, decode, delay, mu_motor, ...: exhand drop --params"},
+        {"device", CLI_CALL, &device, 0, 0, "FILE | NAME=VALUE",
+            "what exhand identify wrote, all its intervals; or mass, rotor, step, ...: exhand drop "
+            "--params"},
         {"off", CLI_REAL, &a.off_percent, 0, 50, "PERCENT",
             "also with masses so much more and less, and friction so much less (0)"},
         {"margin", CLI_REAL, &a.margin_percent, 0, 50, "PERCENT",
             "every second fall with so much less friction (3)"},
-        {"cases", CLI_INT, &a.cases, 2, 1000, "N", "falls of each node; more allow less (32)"},
-        {"grid", CLI_TEXT, &a.grid, 0, 0, "KxB", "pieces along k and b (64x48)"},
+        {"cases", CLI_INT, &a.cases, 2, 1000, "N", "falls of each pair; more allow less (32)"},
         {"rule", CLI_FLAG, &a.rule, 0, 0, NULL, "print only the rule, as --set takes it and as C"},
         {"jobs", CLI_INT, &a.jobs, 1, 1024, "N", "processes at a time (one a core)"},
     };
     const struct cli_command c = {"advise", "gains [options]",
-        "Which stiffness k and damping b come to rest at a rate, margins, the best pairs. A model "
-        "of the\n"
-        "device (string, rotor, dry friction in proportion to the tension, encoder steps, delay, "
-        "current\n"
-        "lag) lets the mass fall onto the wall at nodes over k and b, from phases that fill all "
-        "there are\n"
-        "evenly; what lies between four nodes of which every fall comes to rest is allowed. It "
-        "holds for\n"
-        "the mass, friction and height told (--off: for some around them) and for nothing else.",
+        "Which stiffness k and damping b come to rest at a rate: the rule that a scene refuses all "
+        "others\nby, margins, the stiffest pairs. A model of the device (string, rotor, dry "
+        "friction, "
+        "encoder steps,\ndelay, current lag) lets the mass fall onto ever stiffer walls, from "
+        "phases "
+        "that fill all there are\nevenly; allowed is what hangs together from weak walls up and "
+        "lies "
+        "inside of the rule. It holds for\nthe mass, friction and height told (--off: for some "
+        "around "
+        "them) and for nothing else.",
         option, (int)(sizeof option / sizeof option[0]), 1};
     int err;
-    defaults(&a);
+    gains_defaults(&a);
     err = cli_parse_more(&c, &study->more, argc, argv, about);
     if (err) { return err == 1 ? 0 : err; }
-    err = refuse(&a);
+    err = gains_refuse(&a);
     return err ? err : advise(&a, study);
 }

@@ -6,6 +6,7 @@
 #include "advise/region.h"
 
 #include "base/option.h"
+#include "identify/result.h"
 
 #include "exhand/gains.h"
 
@@ -15,10 +16,10 @@
 
 struct gains_options {
     struct region_opt o;
-    double rate_Hz[GAINS_RATES], k_Npm, b_Nspm, off_percent, margin_percent;
+    double rate_Hz[GAINS_RATES], k_Npm, b_Nspm, phase, off_percent, margin_percent;
     int64_t cases, window, jobs;
-    int rates, rates_given, rule;
-    const char *grid;
+    int rates, rates_given, rule, has_file;
+    struct result_file file; /* of exhand identify */
 };
 
 /* One rate of what was asked. */
@@ -26,7 +27,6 @@ struct gains_rate {
     double rate_Hz;
     struct region region;
     struct exh_gains_par rule;
-    int has_rule;
 };
 
 /* What the lab does besides. An exit status after a line on stderr, or 0; NULL: nothing. */
@@ -41,10 +41,28 @@ struct gains_study {
 int advise_command(int argc, char **argv, const struct gains_study *study);
 int gains_command(int argc, char **argv, const struct gains_study *study);
 
+/* What nobody asked to be otherwise; then what was asked, into o: 0, or 2 after a line on stderr.
+ */
+void gains_defaults(struct gains_options *a);
+int gains_refuse(struct gains_options *a);
+
+/* The devices of o, of a file, at a rate. 0, or 2 after a line on stderr. */
+int gains_told(struct region_opt *o, const struct result_file *f, double rate_Hz);
+
 /* --- the rule: straight pieces of k over b, inside of what is allowed (rule.c) --- */
 
 /* 0, or 1 after a line on stderr: too little is allowed for one. */
-int gains_rule(struct exh_gains_par *rule, struct region *r);
+int gains_rule(struct exh_gains_par *rule, const struct region *r);
+
+/* The same, and every pair that is then tried along its line and below it holds: what does not cuts
+ * the rows beside it (prove.c). */
+int gains_proved(struct gains_rate *x);
+
+/* As a scene with this rule answers: the one answer there is. */
+int gains_allows(const struct exh_gains_par *rule, double k_Npm, double b_Nspm);
+
+/* The largest k at this b; 0: none. */
+double gains_k_max(const struct exh_gains_par *rule, double b_Nspm);
 
 /* As `--set` takes it, and as C has it. */
 void gains_rule_print(FILE *f, const struct exh_gains_par *rule);

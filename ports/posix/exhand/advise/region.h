@@ -1,54 +1,51 @@
 /* SPDX-License-Identifier: MIT */
-/* Region: the gains that the stability advisor allows at one rate on one device.
+/* Region: the gains that the stability advisor allows at one rate, on one device or on all of some.
  *
- * A lattice of nodes over k and b. A node holds if in each of so many cases (sim/settle.h) the mass
- * comes to rest; what lies between four nodes that hold is allowed. So nothing is allowed that was
- * not looked at from all sides, and no border is drawn between nodes. */
+ * Rows over b. In each k is raised from weak to stiff; at a pair the mass has to come to rest in so
+ * many cases (sim/settle.h), which deal the devices in turn. Allowed is what hangs together from
+ * weak up: nothing beyond a pair that does not hold, whatever rests there. */
 #ifndef CLI_REGION_H
 #define CLI_REGION_H
 
 #include "sim/settle.h"
 
-#define REGION_MAX 200 /* pieces along k, along b */
+#define REGION_ROWS    40 /* steps of b */
+#define REGION_DEVICES 24
 
 struct region_opt {
-    struct sim_device device;
+    struct sim_device device[REGION_DEVICES]; /* the first is the one as told */
+    int devices;
     struct settle_wall wall; /* k and b are not looked at */
-    int columns, rows;       /* pieces along k and b */
-    int cases;               /* a node, and of each variant of the device */
+    int cases;               /* a pair; half as many again of several devices */
     double margin;           /* every second case with so much (a share) less friction */
-    double off; /* 0: the device as told; else also with masses so much more and less and with so
-                      much less friction */
+    int spare;
+    int at_phase; /* 1: the wall lies `phase` counts above a count; 0: anywhere */
+    double phase;
     int jobs;
+};
+
+struct region_row {
+    double b_Nspm, low_Npm, high_Npm; /* k allowed from and to; 0: none */
 };
 
 struct region {
     struct region_opt o;
-    double k_top_Npm, b_top_Nspm; /* whole columns and rows from here on hold nowhere */
-    int hint;                     /* the case that failed last */
-    signed char *node;            /* 1 holds, 0 does not, -1 not looked at */
+    struct region_row row[REGION_ROWS + 1]; /* equal steps of b, from 0 */
 };
 
-/* Finds how far it reaches. 0; 1 after a line on stderr: nothing holds, out of memory, or
- * interrupted (130). Free it in any case. */
-int region_open(struct region *r, const struct region_opt *o);
-void region_free(struct region *r);
+/* 0; 1 after a line on stderr: nothing holds; or interrupted (130). */
+int region_fill(struct region *r, const struct region_opt *o);
 
-/* Looks at all nodes, over the processes asked for. 0, 1 or 130. */
-int region_fill(struct region *r);
+/* How a pair fares in all cases of a row's end. */
+struct region_pair {
+    int falls, rest;
+    struct settle_case at; /* the first that does not rest */
+    int device;            /* and of which device */
+};
+struct region_pair region_try(const struct region_opt *o, double k_Npm, double b_Nspm);
 
-/* Of node i along k, j along b. The first k is a quarter of a step. */
-double region_k(const struct region *r, int i);
-double region_b(const struct region *r, int j);
-
-/* Whether the piece above and right of node i, j is allowed; nodes are looked at as needed. */
-int region_piece(struct region *r, int i, int j);
-
-/* The piece that a pair lies in, at an edge the lower one. 0: none has it. */
-int region_find(const struct region *r, double k_Npm, double b_Nspm, int *i, int *j);
-
-/* Whether all pieces are allowed that a pair lies in or on the edge of. */
-int region_allows(struct region *r, double k_Npm, double b_Nspm);
+/* Whether a pair holds in as many cases but one, of another draw than the rows' (draw > 0). */
+int region_holds(const struct region_opt *o, double k_Npm, double b_Nspm, int draw);
 
 /* mu > (pi/2) w (T/2 + delay + lag - (b + c)/k), w = sqrt(k / (mass + rotor)): what friction in
  * proportion to the tension takes out of a bounce, against what hold and delay put in. */

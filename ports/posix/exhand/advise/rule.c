@@ -6,36 +6,43 @@
 #include <string.h>
 
 #define LEVELS 12   /* heights of a knot that are tried: down to 1 - LEVEL * LEVELS */
-#define LEVEL  0.04 /* of what is allowed there */
+#define LEVEL  0.02 /* of what is allowed there */
 #define MARGIN 1.0  /* N/m, more than any rounding of a knot moves the line */
 
-/* Nodes 0..last of the rows: the largest k allowed on both sides of each. */
+/* Rows next to each other, from the first with an end. */
 struct profile {
-    double k[REGION_MAX + 1], b[REGION_MAX + 1];
+    double k[REGION_ROWS + 1], b[REGION_ROWS + 1], low_Npm;
     int last;
 };
 
-/* How far row j is allowed from column i0 up, N/m; 0: not at all. */
-static double row_top(struct region *r, int i0, int j)
+/* A row that ends farther than both beside it is cut: between rows nobody looked. */
+static void cut_spikes(struct profile *p)
 {
-    int i = i0;
-    while (region_piece(r, i, j)) { i++; }
-    return i > i0 ? region_k(r, i) : 0;
+    double before = p->k[0];
+    for (int j = 1; j < p->last; j++) {
+        const double most = before > p->k[j + 1] ? before : p->k[j + 1];
+        before = p->k[j];
+        if (p->k[j] > most) { p->k[j] = most; }
+    }
 }
 
-static void profile_of(struct profile *p, struct region *r, int i0)
+/* With all k from low_Npm on. */
+static void profile_of(struct profile *p, const struct region *r, double low_Npm)
 {
-    double below = row_top(r, i0, 0);
     memset(p, 0, sizeof *p);
+    p->low_Npm = low_Npm;
     p->last = -1;
-    for (int j = 0; j <= r->o.rows && below > 0; j++) {
-        const double above = j < r->o.rows ? row_top(r, i0, j) : 0;
-        const double least = above > 0 && above < below ? above : below;
-        p->b[j] = region_b(r, j);
-        p->k[j] = least > MARGIN ? least - MARGIN : 0;
-        p->last = j;
-        below = above;
+    for (int j = 0; j <= REGION_ROWS; j++) {
+        const struct region_row *row = &r->row[j];
+        const double k = row->high_Npm - MARGIN;
+        const int has = row->high_Npm > 0 && row->low_Npm <= low_Npm && k > low_Npm;
+        if (!has && p->last >= 0) { break; }
+        if (!has) { continue; }
+        p->last++;
+        p->b[p->last] = row->b_Nspm;
+        p->k[p->last] = k;
     }
+    cut_spikes(p);
 }
 
 /* --- the knots: of all lines through a few heights at each node, those of the largest area --- */
@@ -45,7 +52,7 @@ struct best {
     int j, level; /* where it comes from */
 };
 
-static struct best best[EXH_GAINS_KNOTS][REGION_MAX + 1][LEVELS];
+static struct best best[EXH_GAINS_KNOTS][REGION_ROWS + 1][LEVELS];
 
 static double height(const struct profile *p, int j, int level)
 {
@@ -64,10 +71,11 @@ static int below(const struct profile *p, int j0, double k0, int j1, double k1)
 static void extend(const struct profile *p, int n, int j0, int l0)
 {
     const double k0 = height(p, j0, l0), area = best[n - 1][j0][l0].area;
-    if (area < 0) { return; }
+    if (area < 0 || k0 <= p->low_Npm) { return; }
     for (int j = j0 + 1; j <= p->last; j++) {
         for (int l = 0; l < LEVELS; l++) {
             const double k = height(p, j, l), more = (k0 + k) / 2 * (p->b[j] - p->b[j0]);
+            if (k <= p->low_Npm) { break; }
             if (area + more <= best[n][j][l].area || !below(p, j0, k0, j, k)) { continue; }
             best[n][j][l] = (struct best){area + more, j0, l0};
         }
@@ -109,37 +117,62 @@ static void take(struct exh_gains_par *rule, const struct profile *p, int knots,
     rule->knots = knots;
     for (int n = knots - 1; n >= 0; n--) {
         const struct best from = best[n][j][level];
-        rule->b_Nspm_q20[n] = down(p->b[j], EXH_Q_B) - (n == knots - 1); /* not on the last edge */
+        const int inwards = n == knots - 1 ? -1 : n == 0 && p->b[0] > 0; /* not on an edge */
+        rule->b_Nspm_q20[n] = down(p->b[j], EXH_Q_B) + inwards;
         rule->k_Npm_q10[n] = down(height(p, j, level), EXH_Q_K);
         j = from.j;
         level = from.level;
     }
 }
 
-int gains_rule(struct exh_gains_par *rule, struct region *r)
+int gains_rule(struct exh_gains_par *rule, const struct region *r)
 {
-    const int starts = r->o.columns / 8 + 1;
     double most = 0;
     memset(rule, 0, sizeof *rule);
     rule->rate_Hz_q8 = (int32_t)(256 / r->o.wall.T_s + 0.5);
-    for (int i0 = 0; i0 < starts; i0++) {
+    for (int i = 0; i <= REGION_ROWS; i++) {
+        const double low = r->row[i].low_Npm;
         struct profile p;
-        int knots = 0, end = 0, level = 0;
+        int knots = 0, end = 0, level = 0, before = 0;
         double area;
-        profile_of(&p, r, i0);
+        for (int j = 0; j < i; j++) { before |= r->row[j].low_Npm == low; }
+        if (before || r->row[i].high_Npm <= 0) { continue; }
+        profile_of(&p, r, low);
         if (p.last < 1) { continue; }
-        area = search(&p, &knots, &end, &level) - region_k(r, i0) * p.b[end];
-        if (area <= most * 1.01) { continue; } /* nor is a least k without its worth */
+        area = search(&p, &knots, &end, &level) - low * (p.b[end] - p.b[0]);
+        if (area <= most * 1.01) { continue; } /* a larger least k has to be worth it */
         most = area;
-        rule->k_min_Npm_q10 = down(region_k(r, i0), EXH_Q_K) + 1;
+        rule->k_min_Npm_q10 = down(low, EXH_Q_K) + 1;
         take(rule, &p, knots, end, level);
     }
     if (most > 0) { return 0; }
-    cli_complain("%.6g Hz: too little is allowed for a rule: a finer --grid", 1 / r->o.wall.T_s);
+    cli_complain("%.6g Hz: too little is allowed for a rule", 1 / r->o.wall.T_s);
     return 1;
 }
 
+/* --- what it says --- */
+
 static double si(int32_t raw, int frac) { return (double)raw / (double)(INT32_C(1) << frac); }
+
+int gains_allows(const struct exh_gains_par *rule, double k_Npm, double b_Nspm)
+{
+    if (!(k_Npm >= 0 && k_Npm <= 1e6 && b_Nspm >= 0 && b_Nspm <= 1e3)) { return 0; }
+    return exh_gains_ok(rule, down(k_Npm, EXH_Q_K), down(b_Nspm, EXH_Q_B));
+}
+
+double gains_k_max(const struct exh_gains_par *rule, double b_Nspm)
+{
+    const double k_min = si(rule->k_min_Npm_q10, EXH_Q_K);
+    for (int i = 0; i + 1 < rule->knots; i++) {
+        const double b0 = si(rule->b_Nspm_q20[i], EXH_Q_B);
+        const double b1 = si(rule->b_Nspm_q20[i + 1], EXH_Q_B);
+        const double k0 = si(rule->k_Npm_q10[i], EXH_Q_K), k1 = si(rule->k_Npm_q10[i + 1], EXH_Q_K);
+        if (b_Nspm < b0 || b_Nspm > b1) { continue; }
+        const double k = k0 + (k1 - k0) * (b_Nspm - b0) / (b1 - b0);
+        return k >= k_min ? k : 0;
+    }
+    return 0;
+}
 
 void gains_rule_print(FILE *f, const struct exh_gains_par *rule)
 {

@@ -7,6 +7,7 @@
 #include "base/option.h"
 #include "box/hand_options.h"
 #include "box/hand_judge.h"
+#include "box/table2_runs.h"
 
 #include <stdio.h>
 
@@ -35,9 +36,9 @@ struct bilateral_result {
 };
 void bilateral_print_head(FILE *f);
 void bilateral_print(FILE *f, const struct bilateral_result *r);
-/* The paper's figures stand where the same thing was measured. local_Npm: 0 where there is none. */
+/* The paper's figures stand where the same thing was measured. local->b_Npm 0: there is none. */
 void bilateral_print_paper(FILE *f, const struct bilateral_options *o,
-    const struct bilateral_result *r, int n, double local_Npm);
+    const struct bilateral_result *r, int n, const struct table2_runs *local);
 void bilateral_csv_head(FILE *f);
 void bilateral_csv(FILE *f, const struct bilateral_result *r);
 /* Whether d_lim is far enough off for these speeds; and what it should be. */

@@ -5,12 +5,14 @@
 #include "base/names.h"
 #include "base/option.h"
 #include "box/hand_need.h"
-#include "box/table2.h"
 #include "box/world_line.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* As many as `exhand drop` runs by default. */
+#define LOCAL_RUNS 20
 
 static void judge(const struct bilateral_run_cfg *c, const struct bilateral_run *r, unsigned f,
     const char *plot, struct bilateral_result *out)
@@ -25,17 +27,22 @@ static void judge(const struct bilateral_run_cfg *c, const struct bilateral_run 
     out->drawn_Npm = out->count.line.k_Npm;
 }
 
-static double local_Npm(const struct bilateral_options *o)
+/* The drop experiment at the same rate and gains, its wall drawn anew in each run. */
+static struct table2_runs local_runs(const struct bilateral_options *o)
 {
     struct run_cfg c = {.rate_Hz = o->run.rate_Hz, .k_Npm = o->run.k_Npm, .b_Nspm = o->run.b_Nspm};
-    struct table2_result r;
-    if (o->udp || c.k_Npm < 0 || c.b_Nspm < 0) { return 0; } /* of what, is not known here */
+    static struct table2_result r[LOCAL_RUNS];
+    struct table2_runs none = {0};
+    if (o->udp || c.k_Npm < 0 || c.b_Nspm < 0) { return none; } /* of what, is not known here */
     c.board = posix_config_default();
     c.board.device = o->run.board.device;
-    c.board.seed = (uint64_t)o->seed;
     c.board.falls = 10;
-    r = table2_measure(&c, NULL, TABLE2_SAME);
-    return r.done && r.line == FALL_OK ? r.b_Npm : 0;
+    c.wall = RUN_WALL_DRAWN;
+    for (int i = 0; i < LOCAL_RUNS; i++) {
+        c.board.seed = (uint64_t)o->seed + (uint64_t)i;
+        r[i] = table2_measure(&c, NULL, TABLE2_SAME);
+    }
+    return table2_runs(r, NULL, LOCAL_RUNS);
 }
 
 /* The same approaches over a perfect link: which fingers had every bit of theirs. */
@@ -176,7 +183,7 @@ static int one_speed(
 int bilateral_experiment(const struct bilateral_options *o)
 {
     static struct bilateral_result result[BILATERAL_SPEEDS_MAX * BILATERAL_FINGERS];
-    const double local = local_Npm(o);
+    const struct table2_runs local = local_runs(o);
     FILE *csv;
     int n = 0, err = 0, heard = 0;
     memset(result, 0, sizeof result);
@@ -194,7 +201,7 @@ int bilateral_experiment(const struct bilateral_options *o)
     }
     if (err == 0 && n > 0) {
         bilateral_print_advice(stdout, o, result, n);
-        bilateral_print_paper(stdout, o, result, n, local);
+        bilateral_print_paper(stdout, o, result, n, &local);
     }
     if (err == 0 && o->out) {
         csv = bilateral_out_file(o->out, "contacts.csv");

@@ -103,17 +103,20 @@ static int seeds_of(const struct bilateral_options *o)
     return o->udp || o->record ? 1 : (int)o->seeds;
 }
 
-static void print_local(FILE *f, const struct bilateral_options *o, double local_Npm)
+static void print_local(FILE *f, const struct bilateral_options *o, const struct table2_runs *local)
 {
     fputc('\n', f);
-    if (local_Npm <= 0) { return; }
-    fprintf(f, "Local: ten falls of 0.5 kg at the same rate and gains, %.0f N/m", local_Npm);
+    if (local->b_Npm <= 0) { return; }
+    fprintf(f,
+        "Local: median of %d runs of ten falls of 0.5 kg, same rate and gains: %.0f N/m,\n"
+        "95 %% %.0f..%.0f over the wall's places",
+        local->runs, local->b_Npm, local->low_Npm, local->high_Npm);
     if (is_papers_wall(o)) { fprintf(f, " (paper %.0f)", PAPER_LOCAL_NPM); }
     fprintf(f, ".\n");
 }
 
 void bilateral_print_paper(FILE *f, const struct bilateral_options *o,
-    const struct bilateral_result *r, int n, double local_Npm)
+    const struct bilateral_result *r, int n, const struct table2_runs *local)
 {
     for (int i = 0; i < n; i++) {
         const int same = is_papers_run(o, &r[i]);
@@ -129,11 +132,11 @@ void bilateral_print_paper(FILE *f, const struct bilateral_options *o,
         beside(f, "stiffness, all approaches",
             (struct figure){l->k_Npm, l->lo_Npm, l->hi_Npm, l->r2}, same * PAPER_STIFFNESS_NPM,
             "N/m", 0);
-        if (local_Npm <= 0) { continue; }
-        beside(f, "bilateral / local stiffness", (struct figure){l->k_Npm / local_Npm, 0, 0, 0},
+        if (local->b_Npm <= 0) { continue; }
+        beside(f, "bilateral / local stiffness", (struct figure){l->k_Npm / local->b_Npm, 0, 0, 0},
             same * PAPER_STIFFNESS_NPM / PAPER_LOCAL_NPM, "", 3);
     }
-    print_local(f, o, local_Npm);
+    print_local(f, o, local);
     fprintf(f,
         "settled: F_mon stays within 5 %% of its mean over the last 0.2 s of the hold; rest: "
         "position\n"

@@ -13,6 +13,8 @@
 #include <errno.h>
 #include <string.h>
 
+#define RUNS 20 /* at each rate, unless told */
+
 /* Before the run, whose fault comes once. What is there stays as it is, what is not stays away. */
 static int can_write(const char *path)
 {
@@ -51,16 +53,15 @@ static int refuse_pairs(const struct drop_options *o)
         cli_complain("--period and --rate: a period is a rate: give one of them");
         return 2;
     }
-    if (o->blackbox && (o->rates != 1 || o->plane)) {
-        cli_complain(
-            "--blackbox: one rate, and no plane of gains: --out names a dump for each rate");
+    if (o->blackbox && (o->rates != 1 || o->plane || o->runs != 1)) {
+        cli_complain("--blackbox: one rate and one run, no plane of gains: --out names a dump for "
+                     "each rate");
         return 2;
     }
     if (o->blackbox && !can_write(o->blackbox)) { return 2; }
-    if (o->gpio.given && (o->rates != 1 || o->further || o->plane)) {
-        cli_complain(
-            "--gpio: one rate and one run at a time, since lines are one program's: leave out "
-            "--spread and planes of gains");
+    if (o->gpio.given && (o->rates != 1 || o->runs != 1 || o->plane)) {
+        cli_complain("--gpio: one rate and one run, since lines are one program's: leave out "
+                     "--runs and planes of gains");
         return 2;
     }
     if (contacts_check(&o->gpio, o->pace)) { return 2; }
@@ -76,12 +77,19 @@ static int refuse_pairs(const struct drop_options *o)
     return 0;
 }
 
+/* Somebody looks at this one run. */
+static int watched(const struct drop_options *o)
+{
+    return o->pace || o->gpio.given || o->blackbox || o->let_go_s > 0 || o->guarded;
+}
+
 /* Whether what was asked for can be run at all: 0, or 2 after a line on stderr. */
 static int refuse(struct drop_options *o, const struct drop_study *study)
 {
     int err = assign_step(&o->device, 0, 0);
     if (err == 0 && study->refuse) { err = study->refuse(o); }
     if (err) { return err; }
+    if (o->runs == 0) { o->runs = watched(o) ? 1 : RUNS; }
     if (o->T.num != 0 && !o->rates_given) {
         o->rate_Hz[0] = (double)o->T.den / o->T.num;
         o->rates = 1;
@@ -94,7 +102,7 @@ static int refuse(struct drop_options *o, const struct drop_study *study)
         if (run_check(&c) < 0) { return 2; }
         if (o->params.save) { err = params_save_file(o->params.save, c.scene->params); }
         c = drop_run_cfg(o, i, 1.5, 1);
-        if (o->further && run_check(&c) < 0) { return 2; }
+        if (o->gates && run_check(&c) < 0) { return 2; }
     }
     if (err) { return err; }
     return o->out && !o->plane ? outdir_open(o->out) : 0;
@@ -106,6 +114,7 @@ static void defaults(struct drop_options *o)
     o->k_Npm = o->b_Nspm = -1;
     o->scale = 1;
     o->falls = -1;
+    o->phase = -1;
     o->seed = 1;
     o->jobs = jobs_cores();
     o->device = sim_device_default();
@@ -126,7 +135,7 @@ static int go(struct drop_options *o, const struct drop_study *study)
     err = refuse(o, study);
     if (err == 0) { err = contacts_begin(&o->gpio); }
     if (o->gpio.given && err == 0) { words_begin(1); }
-    if (err == 0) { err = study->run ? study->run(o) : drop_experiment(o); }
+    if (err == 0) { err = study->run ? study->run(o) : drop_experiment(o, NULL); }
     words_end();
     contacts_end();
     return err;
@@ -146,7 +155,12 @@ int drop_command(int argc, char **argv, struct drop_options *o, const struct dro
         {"b", CLI_REAL, &o->b_Nspm, 0, 1e3, "NS/M", "damping (the paper's at that rate)"},
         {"scale", CLI_REAL, &o->scale, 0, 100, "G", "multiplies both (1)"},
         {"falls", CLI_INT, &o->falls, 1, 1000, "N", "falls a run (10)"},
-        {"seed", CLI_INT, &o->seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
+        {"runs", CLI_INT, &o->runs, 1, TABLE2_RUNS_MAX, "N",
+            "runs at each rate (20; 1 with --pace, --gpio, --blackbox, --let-go or --guarded)"},
+        {"phase", CLI_REAL, &o->phase, 0, 1, "P",
+            "the wall lies P counts above an encoder count (each run draws it)"},
+        {"seed", CLI_INT, &o->seed, 0, 1e9, "N",
+            "of all chance in the first run, the next has the next (1)"},
         {"out", CLI_TEXT, &o->out, 0, 0, "DIR", "write logs, CSVs of the falls and tables there"},
         {"blackbox", CLI_TEXT, &o->blackbox, 0, 0, "FILE",
             "the last seconds before a fault, a log (with --out beside the others)"},
@@ -170,10 +184,11 @@ int drop_command(int argc, char **argv, struct drop_options *o, const struct dro
         {"params", CLI_FLAG, &list, 0, 0, NULL, "list both, with units and ranges"},
     };
     const struct cli_command c = {"drop", "[options]",
-        "The paper's experiment: 0.5 kg falls 7 cm onto a virtual wall, ten times, at each rate.\n"
+        "The paper's experiment: 0.5 kg falls 7 cm onto a virtual wall, ten times a run, at each "
+        "rate.\nEach run draws where the wall lies between two encoder counts. --out writes log, "
+        "CSV and pictures\nof the first run.\n"
         "A fall oscillates when in the last 0.5 s of its observation position moves by more than\n"
-        "0.25 mm or the monitored force by more than 4 N; else it has come to rest. Buzz is rest\n"
-        "in which the encoder still moves, by one or two counts.",
+        "0.25 mm or the monitored force by more than 4 N; else it has come to rest.",
         option, (int)(sizeof option / sizeof option[0]), 0};
 
     defaults(o);
@@ -190,6 +205,6 @@ int cli_drop(int argc, char **argv)
 {
     static struct drop_options o; /* too large for a stack to like */
     static const struct drop_study none = {
-        {NULL, 0, "spread readings sweep grid shard border-check friction preset"}, NULL, NULL};
+        {NULL, 0, "gates readings sweep grid shard border-check friction preset"}, NULL, NULL};
     return drop_command(argc, argv, &o, &none);
 }

@@ -10,6 +10,7 @@
 
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 struct run_cfg drop_run_cfg(const struct drop_options *o, int i, double scale, uint64_t seed)
@@ -32,6 +33,8 @@ struct run_cfg drop_run_cfg(const struct drop_options *o, int i, double scale, u
     }
     c.board = posix_config_default();
     c.board.device = o->device;
+    c.wall = o->phase < 0 ? RUN_WALL_DRAWN : RUN_WALL_AT_PHASE;
+    c.phase = o->phase;
     c.board.seed = seed;
     c.board.falls = o->falls < 0 ? 10 : (int)o->falls;
     c.board.T = o->T;
@@ -75,67 +78,98 @@ struct table2_result drop_shown(const struct drop_options *o, int i)
     return r;
 }
 
+/* Of each rate first the runs at its gains, then, for the gates, as many at 1.5 times both. The
+ * first of all is the one that is written. */
+static int runs_of_rate(const struct drop_options *o) { return (int)o->runs * (o->gates ? 2 : 1); }
+
 static void work(const void *ctx, int i, void *result)
 {
-    const struct table2_result r = drop_shown(ctx, i);
+    const struct drop_options *o = ctx;
+    const int rate_i = i / runs_of_rate(o), run = i % runs_of_rate(o);
+    struct table2_result r;
+    if (run == 0) {
+        r = drop_shown(o, rate_i);
+    } else {
+        const struct run_cfg c = drop_run_cfg(o, rate_i, run < o->runs ? 1 : 1.5,
+            (uint64_t)o->seed + (uint64_t)run % (uint64_t)o->runs);
+        r = table2_measure_more(&c, NULL, TABLE2_SAME, o->more);
+    }
     memcpy(result, &r, sizeof r);
 }
 
 /* --- reporting --- */
 
-/* What is wrong with the runs that were done: 1 if anything. */
-int drop_check(const struct drop_options *o, const struct table2_result *r, int n)
+static void complain_faults(const struct table2_result *r)
 {
-    int err = 0;
-    for (int i = 0; i < n; i++) {
+    char what[NAMES_B];
+    names_faults(what, sizeof what, r->faults);
+    cli_complain("%.6g Hz: the box stopped with faults %#x: %s", r->rate_Hz, r->faults, what);
+}
+
+/* What is wrong with the runs of a rate: 1 if anything. Each kind is told once. */
+static int check(const struct drop_options *o, const struct table2_result *r)
+{
+    int err = 0, falls = 0, incomplete = 0;
+    unsigned faults = 0;
+    for (int i = 0; i < runs_of_rate(o); i++) {
         err |= r[i].error != 0;
         if (!r[i].done) { continue; }
-        if (r[i].faults) {
-            char what[NAMES_B];
-            names_faults(what, sizeof what, r[i].faults);
-            cli_complain(
-                "%.6g Hz: the box stopped with faults %#x: %s", r[i].rate_Hz, r[i].faults, what);
-            err = 1;
-        }
-        if (i < o->rates && r[i].incomplete) {
-            cli_complain(
-                "%.6g Hz: %d of %d falls were not seen to their end: no contact, or the mass ran "
-                "away",
-                r[i].rate_Hz, r[i].incomplete, r[i].falls);
-            err = 1;
-        }
+        if (r[i].faults & ~faults) { complain_faults(&r[i]); }
+        faults |= r[i].faults;
+        falls += i < o->runs ? r[i].falls : 0;
+        incomplete += i < o->runs ? r[i].incomplete : 0;
     }
+    if (incomplete) {
+        cli_complain("%.6g Hz: %d of %d falls were not seen to their end: no contact, or the mass "
+                     "ran away",
+            r->rate_Hz, incomplete, falls);
+    }
+    return err || faults || incomplete;
+}
+
+static int check_all(const struct drop_options *o, const struct table2_result *r)
+{
+    int err = 0;
+    for (int i = 0; i < o->rates; i++) { err |= check(o, r + i * runs_of_rate(o)); }
     return err;
 }
 
-int drop_done(const struct table2_result *r, int n)
+static int done(const struct table2_result *r, int n)
 {
     int done = 0;
     for (int i = 0; i < n; i++) { done += r[i].done; }
     return done;
 }
 
-int drop_write(const struct drop_options *o, const struct table2_result *row, int rows)
+static int write_out(const struct drop_options *o, const struct table2_result *r,
+    const struct table2_runs *row, const struct table2_result *shown, int rows)
 {
     if (o->out == NULL) { return 0; }
-    return outdir_table(o->out, row, rows) | outdir_pictures(o->out, &o->device, row, rows);
+    return outdir_table(o->out, row, rows) | outdir_runs(o->out, r, o->rates * runs_of_rate(o)) |
+           outdir_pictures(o->out, &o->device, shown, rows);
 }
 
+/* Rates of which the first run was done. */
 static int report(const struct drop_options *o, const struct table2_result *r)
 {
-    struct table2_result row[DROP_RATES_MAX];
-    int rows = 0, err;
+    static struct table2_runs row[DROP_RATES_MAX];
+    static struct table2_result shown[DROP_RATES_MAX];
+    int rows = 0, err, failed = 0;
     for (int i = 0; i < o->rates; i++) {
-        if (r[i].done) { row[rows++] = r[i]; }
+        const struct table2_result *first = r + i * runs_of_rate(o);
+        if (!first->done) { continue; }
+        shown[rows] = *first;
+        row[rows++] = table2_runs(first, o->gates ? first + o->runs : NULL, (int)o->runs);
     }
     if (rows == 0) { return 0; }
-    err = drop_write(o, row, rows);
+    err = write_out(o, r, row, shown, rows);
+    if (o->gates) { failed = table2_print_gates(stdout, row, rows); }
     table2_print_runs(stdout, row, rows);
     table2_print_paper(stdout, row, rows);
-    return err;
+    return err || failed;
 }
 
-/* The same runs once more with passivity only observing. */
+/* The first runs once more with passivity only observing. */
 static struct table2_result observed(const struct drop_options *o, int i)
 {
     struct run_setting setting[DROP_SETTINGS_MAX + 1];
@@ -147,32 +181,37 @@ static struct table2_result observed(const struct drop_options *o, int i)
     return table2_measure(&c, NULL, TABLE2_SAME);
 }
 
-void drop_report_guard(const struct drop_options *o, const struct table2_result *r)
+static void report_guard(const struct drop_options *o, const struct table2_result *r)
 {
     struct guard_row row[DROP_RATES_MAX];
     int rows = 0;
     for (int i = 0; i < o->rates; i++) {
-        const struct table2_result off = observed(o, i);
-        if (!r[i].done || !off.done) { continue; }
-        row[rows++] = (struct guard_row){r[i].rate_Hz, r[i].k_Npm, r[i].b_Nspm, r[i].guard,
-            off.guard, r[i].b_Npm, off.b_Npm, r[i].falls, r[i].oscillating, off.oscillating};
+        const struct table2_result *on = r + i * runs_of_rate(o), off = observed(o, i);
+        if (!on->done || !off.done) { continue; }
+        row[rows++] = (struct guard_row){on->rate_Hz, on->k_Npm, on->b_Nspm, on->guard, off.guard,
+            on->b_Npm, off.b_Npm, on->falls, on->oscillating, off.oscillating};
     }
     guard_print(stdout, row, rows);
 }
 
-int drop_experiment(const struct drop_options *o)
+int drop_experiment(const struct drop_options *o, drop_after *after)
 {
-    static struct table2_result r[DROP_RATES_MAX];
-    const struct jobs jobs = {
-        o->rates, (int)o->jobs, sizeof *r, r, work, o, "runs", posix_interrupt};
+    const int n = o->rates * runs_of_rate(o);
+    struct table2_result *r = calloc((size_t)n, sizeof *r);
+    const struct jobs jobs = {n, (int)o->jobs, sizeof *r, r, work, o, "runs", posix_interrupt};
     int ran, err;
-    memset(r, 0, sizeof r);
-    ran = jobs_run(&jobs);
-    err = drop_check(o, r, o->rates) | report(o, r);
-    if (ran == 0 && o->guarded) { drop_report_guard(o, r); }
-    if (ran == JOBS_INTERRUPTED) {
-        cli_complain("interrupted: %d of %d rates were finished%s%s", drop_done(r, o->rates),
-            o->rates, o->out ? ", what they wrote is kept in " : "", o->out ? o->out : "");
+    if (r == NULL) {
+        cli_complain("out of memory: fewer --runs");
+        return 1;
     }
+    ran = jobs_run(&jobs);
+    err = check_all(o, r) | report(o, r);
+    if (ran == 0 && o->guarded) { report_guard(o, r); }
+    if (ran == 0 && after) { err |= after(o, r, runs_of_rate(o)); }
+    if (ran == JOBS_INTERRUPTED) {
+        cli_complain("interrupted: %d of %d runs were finished%s%s", done(r, n), n,
+            o->out ? ", what they wrote is kept in " : "", o->out ? o->out : "");
+    }
+    free(r);
     return ran ? ran : err;
 }

@@ -7,7 +7,7 @@
 #include "box/images.h"
 #include "base/option.h"
 #include "base/params_file.h"
-#include "box/table2.h"
+#include "box/table2_runs.h"
 
 #define DROP_RATES_MAX    64
 #define DROP_SETTINGS_MAX 64
@@ -16,8 +16,9 @@ struct drop_options {
     struct params_file params;
     double rate_Hz[DROP_RATES_MAX];
     int rates, rates_given;
-    double k_Npm, b_Nspm, scale; /* < 0: the paper's at that rate */
-    int64_t falls, seed, jobs;
+    double k_Npm, b_Nspm, scale;     /* < 0: the paper's at that rate */
+    int64_t falls, runs, seed, jobs; /* runs 0: not told */
+    double phase;                    /* of the wall between two encoder counts; < 0: drawn */
     int pace, cards, guarded, custom;
     const char *out, *blackbox;
     double let_go_s;
@@ -27,9 +28,9 @@ struct drop_options {
     struct images images;
     struct exh_period T;
     struct contacts gpio;
-    /* Of a study: it chooses the gains itself; makes further runs at 1 and 1.5 times both gains;
-     * judges each run besides. */
-    int plane, further;
+    /* Of a study: it chooses the gains itself; runs at 1.5 times both gains, too, and judges both
+     * gates; judges each run besides. */
+    int plane, gates;
     table2_judge *more;
 };
 
@@ -54,13 +55,9 @@ const struct exh_scene *drop_scene(const struct drop_options *o);
 /* experiment.c. The run of rate i at so many times both gains; run and written under its rate. */
 struct run_cfg drop_run_cfg(const struct drop_options *o, int i, double scale, uint64_t seed);
 struct table2_result drop_shown(const struct drop_options *o, int i);
-/* What is wrong with the runs that were done, and the rows that were, as tables and for people:
- * 0, or 1 after a line on stderr. The first returns how many rows; row has room for all rates. */
-int drop_check(const struct drop_options *o, const struct table2_result *r, int n);
-int drop_write(const struct drop_options *o, const struct table2_result *row, int rows);
-int drop_done(const struct table2_result *r, int n);
-/* What passivity takes away. */
-void drop_report_guard(const struct drop_options *o, const struct table2_result *r);
-int drop_experiment(const struct drop_options *o);
+/* Behind the tables: all results, `stride` a rate. 0, or 1 after a line on stderr. */
+typedef int drop_after(const struct drop_options *o, const struct table2_result *r, int stride);
+/* The runs at each rate, judged, printed, written. Exit status; 1 also where a gate fails. */
+int drop_experiment(const struct drop_options *o, drop_after *after);
 
 #endif

@@ -11,7 +11,7 @@
 #define NAME_B 64 /* room for the longest name of a file in the directory */
 
 static const char *const made[] = {
-    "table2.csv", "spread.csv", "pictures.gp", "force_position.png", "fall.png"};
+    "table2.csv", "runs.csv", "pictures.gp", "force_position.png", "fall.png"};
 
 static void path(char to[TABLE2_PATH_B], const char *dir, const char *name)
 {
@@ -69,7 +69,7 @@ void outdir_path(char to[TABLE2_PATH_B], const char *dir, double rate_Hz, const 
     snprintf(to, TABLE2_PATH_B, "%s/drop_%gHz%s", dir, rate_Hz, suffix);
 }
 
-int outdir_table(const char *dir, const struct table2_result *r, int rows)
+int outdir_table(const char *dir, const struct table2_runs *r, int rows)
 {
     FILE *f = outdir_create(dir, "table2.csv");
     int err = f == NULL;
@@ -81,10 +81,21 @@ int outdir_table(const char *dir, const struct table2_result *r, int rows)
     return err;
 }
 
+int outdir_runs(const char *dir, const struct table2_result *r, int n)
+{
+    FILE *f = outdir_create(dir, "runs.csv");
+    if (f == NULL) { return 1; }
+    table2_runs_csv_header(f);
+    for (int i = 0; i < n; i++) {
+        if (r[i].done) { table2_runs_csv_line(f, &r[i]); }
+    }
+    return outdir_finish(f, dir, "runs.csv");
+}
+
 /* --- pictures --- */
 
 /* Panel variables of plot/force_position.gp for one run. */
-static void panel(FILE *f, const char *name, const struct table2_result *r, double q0_m)
+static void panel(FILE *f, const char *name, const struct table2_result *r)
 {
     fprintf(f,
         "%s_raw='drop_%gHz_raw.csv'; %s_avg='drop_%gHz_averaged.csv'; "
@@ -93,7 +104,7 @@ static void panel(FILE *f, const char *name, const struct table2_result *r, doub
     fprintf(f, "%s_rate=%.6g; %s_k=%.6g; %s_b=%.6g; %s_stiffness='", name, r->rate_Hz, name,
         r->k_Npm, name, r->b_Nspm, name);
     if (r->b_Npm > 0) { fprintf(f, "%.0f", r->b_Npm); }
-    fprintf(f, "'; %s_q0=%.9g\n", name, q0_m);
+    fprintf(f, "'; %s_q0=%.9g\n", name, r->q_lim_m);
 }
 
 static void list(FILE *f, const char *name, const struct table2_result *r, int rows,
@@ -112,6 +123,7 @@ static void item_file(FILE *f, const struct table2_result *r)
     fprintf(f, "drop_%gHz_fall.csv", r->rate_Hz);
 }
 static void item_rate(FILE *f, const struct table2_result *r) { fprintf(f, "%.6g", r->rate_Hz); }
+static void item_q_lim(FILE *f, const struct table2_result *r) { fprintf(f, "%.9g", r->q_lim_m); }
 static void item_k(FILE *f, const struct table2_result *r) { fprintf(f, "%.6g", r->k_Npm); }
 static void item_b(FILE *f, const struct table2_result *r) { fprintf(f, "%.6g", r->b_Nspm); }
 static void item_stiffness(FILE *f, const struct table2_result *r)
@@ -132,14 +144,15 @@ int outdir_pictures(
                "#   gnuplot -c pictures.gp PLOTS\n"
                "plots=ARG1\n"
                "out='force_position.png'; fit='linear fit, position over force'\n");
-    panel(f, "a", &r[0], d->height_m);
-    panel(f, "b", &r[rows - 1], d->height_m);
+    panel(f, "a", &r[0]);
+    panel(f, "b", &r[rows - 1]);
     fprintf(f,
         "load plots.'/force_position.gp'\nreset\n"
-        "out='fall.png'; q_lim_m=%.9g; observe_s=%.9g\n",
-        d->height_m, d->observe_s);
+        "out='fall.png'; observe_s=%.9g\n",
+        d->observe_s);
     list(f, "files", r, rows, item_file);
     list(f, "rates", r, rows, item_rate);
+    list(f, "q_lims", r, rows, item_q_lim);
     list(f, "ks", r, rows, item_k);
     list(f, "bs", r, rows, item_b);
     list(f, "stiffnesses", r, rows, item_stiffness);

@@ -3,7 +3,7 @@
 #ifndef DROP_OUTDIR_H
 #define DROP_OUTDIR_H
 
-#include "box/table2.h"
+#include "box/table2_runs.h"
 
 #include <stdio.h>
 
@@ -18,10 +18,11 @@ void outdir_path(char to[TABLE2_PATH_B], const char *dir, double rate_Hz, const 
 FILE *outdir_create(const char *dir, const char *name);
 int outdir_finish(FILE *f, const char *dir, const char *name);
 
-/* table2.csv. 0, or 1 after a line on stderr. */
-int outdir_table(const char *dir, const struct table2_result *r, int rows);
+/* table2.csv of the rows, runs.csv of the results. 0, or 1 after a line on stderr. */
+int outdir_table(const char *dir, const struct table2_runs *r, int rows);
+int outdir_runs(const char *dir, const struct table2_result *r, int n);
 
-/* pictures.gp: what gnuplot needs to draw the pictures, run inside the directory.
+/* pictures.gp: what gnuplot needs to draw the pictures of one run a rate, run inside the directory.
  * 0, or 1 after a line on stderr. rows > 0. */
 int outdir_pictures(
     const char *dir, const struct sim_device *d, const struct table2_result *r, int rows);

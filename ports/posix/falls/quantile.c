@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "lab/drop/quantile.h"
+#include "falls/quantile.h"
 
 #include <stdlib.h>
 

@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: MIT */
+/* A rule is asked where nobody has looked: between the rows that made it, and below its line. */
+#include "advise/gains.h"
+
+#include "posix.h"
+
+#define PAIRS  64   /* every second one on the line */
+#define PASSES 40   /* far more than any device took */
+#define BEYOND 1.03 /* both gains, as a pair is tried where the device is not known exactly */
+#define LESS   0.99 /* of a k that does not hold: a row's new end */
+
+struct pair {
+    double b, share, proved_k; /* share: of the line's k */
+};
+
+static double b_of(const struct exh_gains_par *rule, double u)
+{
+    const double first = (double)rule->b_Nspm_q20[0] / 1048576;
+    const double last = (double)rule->b_Nspm_q20[rule->knots - 1] / 1048576;
+    return first + (last - first) * u;
+}
+
+/* Both rows beside b end below k. */
+static void cut(struct region *r, double k, double b)
+{
+    for (int j = 0; j <= REGION_ROWS; j++) {
+        struct region_row *row = &r->row[j];
+        const int left = j < REGION_ROWS && row[1].b_Nspm<b, right = j> 0 && row[-1].b_Nspm > b;
+        if (left || right || row->high_Npm <= k) { continue; }
+        row->high_Npm = k > row->low_Npm ? k : 0;
+    }
+}
+
+/* Pairs that do not hold. Not again what was proved. */
+static int pass(struct gains_rate *x, struct pair *pair)
+{
+    const double by = x->region.o.devices > 1 ? BEYOND : 1;
+    int failed = 0;
+    for (int i = 0; i < PAIRS && !posix_interrupted(); i++) {
+        const double b = pair[i].b, k = pair[i].share * gains_k_max(&x->rule, b);
+        if (!gains_allows(&x->rule, k, b) || k == pair[i].proved_k) { continue; }
+        if (region_holds(&x->region.o, by * k, by * b, i + 1)) {
+            pair[i].proved_k = k;
+        } else {
+            cut(&x->region, LESS * k, b);
+            failed++;
+        }
+    }
+    return failed;
+}
+
+int gains_proved(struct gains_rate *x)
+{
+    struct pair pair[PAIRS];
+    int err = gains_rule(&x->rule, &x->region), failed = 1;
+    for (int i = 0; i < PAIRS; i++) {
+        const double u = i * 0.61803398874989485;
+        pair[i].b = b_of(&x->rule, (i + 0.5) / PAIRS);
+        pair[i].share = i % 2 ? u - (double)(int)u : 1;
+        pair[i].proved_k = -1;
+    }
+    for (int n = 0; n < PASSES && err == 0 && failed && !posix_interrupted(); n++) {
+        failed = pass(x, pair);
+        if (failed) { err = gains_rule(&x->rule, &x->region); }
+    }
+    return err;
+}

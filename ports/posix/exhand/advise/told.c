@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: MIT */
+/* A device that exhand identify told apart, as the advisor takes it: its values, the corners of its
+ * intervals that are worst, and what lies between. */
+#include "advise/gains.h"
+
+#include "base/assign.h"
+
+#define TOLD 12
+#define ROOT \
+    0.93303299153680741 /* 2^(-1/10): as many steps, none of them a multiple of another \
+                         */
+
+/* Of its intervals, what is worse for rest: less inertia and friction, later, coarser. The delay
+ * holds the lag: of the two a run tells the sum, and the lag alone may be anything within it. */
+static struct model corner(const struct result_file *f, int stiff)
+{
+    struct model m = f->low;
+    m.value[MODEL_DELAY] = f->high.value[MODEL_DELAY];
+    m.value[MODEL_LAG] = f->value.value[MODEL_LAG];
+    m.value[MODEL_STEP] = f->high.value[MODEL_STEP];
+    m.value[MODEL_KF] = f->value.value[MODEL_KF];
+    if (stiff) { m.value[MODEL_CABLE_K] = f->high.value[MODEL_CABLE_K]; }
+    return m;
+}
+
+/* The n-th of a sequence that fills the box of its intervals evenly. */
+static struct model within(const struct result_file *f, int n)
+{
+    struct model m = f->value;
+    double step = 1;
+    for (int i = 0; i < MODEL_LAG; i++) {
+        double share;
+        step *= ROOT;
+        share = 0.5 + n * step;
+        share -= (double)(int)share;
+        m.value[i] = f->low.value[i] + share * (f->high.value[i] - f->low.value[i]);
+    }
+    return m;
+}
+
+static int is_corner(int n) { return n % 4 == 1; }
+
+/* Of four: the device as told, a corner, two of the box. What is likely has to hold as often as
+ * what is worst: chatter by one count comes and goes with no order that a corner would show. */
+static struct model told(const struct result_file *f, int n)
+{
+    return n % 4 == 0 ? f->value : is_corner(n) ? corner(f, n / 4 % 2) : within(f, n);
+}
+
+/* What of the delay goes with the tick is not known at another rate than the file's: none or all,
+ * and at a corner what is later. */
+int gains_told(struct region_opt *o, const struct result_file *f, double rate_Hz)
+{
+    const double more = f->rate_Hz / rate_Hz;
+    const int far = more > 1.01 || more < 0.99;
+    o->devices = 0;
+    for (int i = 0; i < TOLD; i++) {
+        const struct model m = told(f, i);
+        struct sim_device d = model_device(&m, 1 / rate_Hz, sim_device_default().servo_hz);
+        if (assign_step(&d, 0, 0)) { return 2; }
+        if (far && (is_corner(i) ? more > 1 : (i / 4 + i) % 2)) { d.delay_s *= more; }
+        o->device[o->devices++] = d;
+    }
+    return 0;
+}

@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: MIT */
+#include "identify/estimate.h"
+
+#include "identify/identify.h"
+#include "identify/result.h"
+
+#include "sim/random.h"
+#include <math.h>
+#include <string.h>
+
+/* Starts that are tried, the best of them first. */
+#define STARTS_MAX 128
+#define TRIED      6 /* at a time, */
+#define SHAKEN     8
+#define STARTS     6   /* and in all, while the model does not fit */
+#define GOOD       0.1 /* a start that came so far is the one */
+
+struct starts {
+    struct model m[STARTS_MAX];
+    double cost[STARTS_MAX];
+    int n;
+};
+
+static void add(struct starts *s, const struct model *m, double cost)
+{
+    int i = s->n < STARTS_MAX ? s->n++ : s->n - 1;
+    for (; i > 0 && s->cost[i - 1] > cost; i--) {
+        s->m[i] = s->m[i - 1];
+        s->cost[i] = s->cost[i - 1];
+    }
+    s->m[i] = *m;
+    s->cost[i] = cost;
+}
+
+/* The free rotor alone, which a few pulses tell. */
+static int rotor(struct fit *f, const struct identify_data *d)
+{
+    static const struct fit_how rough = {FIT_ROTOR, 2e-4, 15, 0, 1e-3, 0},
+                                fine = {FIT_ROTOR, 0, 10, 0, 1e-3, 0};
+    static const double heavier[] = {0.6, 1, 1.6}, stop_s[] = {0.01, 0.05, 0.3},
+                        late_s[] = {0.5e-3, 1e-3};
+    const struct model first = fit_start(d);
+    struct observations o;
+    struct starts s;
+    int err = observe(&o, d, 1u << IDENTIFY_SLACK, 0, 10);
+    s.n = 0;
+    for (int i = 0; i < 18 && err == 0; i++) {
+        struct model m = first;
+        m.value[MODEL_ROTOR] *= heavier[i % 3];
+        m.value[MODEL_VISCOUS] = m.value[MODEL_ROTOR] / stop_s[i / 3 % 3];
+        m.value[MODEL_DELAY] = late_s[i / 9] + d->T_s / 2;
+        add(&s, &m, fit_cost(&m, d, &o, 7e-4));
+    }
+    f->cost = (double)INFINITY;
+    for (int i = 0; i < 3 && err == 0; i++) {
+        struct fit one = *f;
+        one.at = s.m[i];
+        err = fit_run(&one, d, &o, rough);
+        if (err == 0) { err = fit_run(&one, d, &o, fine); }
+        if (one.cost < f->cost) { *f = one; }
+    }
+    observe_free(&o);
+    return err;
+}
+
+/* Where the string's stiffness, its damping and the place of the friction may be. */
+static void lattice(struct starts *s, const struct fit *f, const struct identify_data *d,
+    const struct observations *o)
+{
+    static const double cable_npm[] = {1000, 1800, 3200, 6000, 11000, 20000, 40000},
+                        share[] = {0.1, 0.3, 0.5, 0.7, 0.9};
+    s->n = 0;
+    for (int i = 0; i < 70; i++) {
+        struct model m = f->at;
+        m.value[MODEL_CABLE_K] = cable_npm[i % 7];
+        m.value[MODEL_CABLE_B] = i < 35 ? 4 : 20;
+        fit_split(&m, d, share[i / 7 % 5]);
+        add(s, &m, fit_cost(&m, d, o, 2e-3));
+    }
+}
+
+/* From the best of the next TRIED starts over two rounds of the mass, then of all. */
+static int from_starts(struct fit *best, const struct fit *rotor_told, const struct starts *s,
+    int first, const struct identify_data *d, const struct observations *few)
+{
+    static const struct fit_how rough = {FIT_MASS & ~(1u << MODEL_STEP), 2e-3, 12, 0, 1e-2, 1},
+                                finer = {FIT_MASS, 2e-4, 12, 0, 1e-2, 1},
+                                all = {FIT_ALL, 7e-5, 30, 0, 3e-3, 1};
+    int err = 0;
+    best->cost = (double)INFINITY;
+    for (int i = first; i < first + TRIED && err == 0 && best->cost > GOOD; i++) {
+        struct fit one = *rotor_told;
+        one.at = s->m[i];
+        err = fit_run(&one, d, few, rough);
+        if (err == 0) { err = fit_run(&one, d, few, finer); }
+        if (one.cost < best->cost) { *best = one; }
+    }
+    return err ? err : fit_run(best, d, few, all);
+}
+
+/* Down to where no step lowers the cost; from there the plain steps, which a rough cost does not
+ * hold, and down again, as long as that is worth it. At last the mean of plain steps. */
+int estimate_finish(struct fit *f, const struct identify_data *d, const struct observations *o)
+{
+    static const struct fit_how near = {FIT_ALL & ~(1u << MODEL_LAG), 5e-5, 20, 0, 3e-2, 1},
+                                down = {FIT_ALL, 0, 40, 0, 1e-4, 0},
+                                plain = {FIT_ALL, 0, 4, 1, 0, 0}, mean = {FIT_ALL, 0, 24, 2, 0, 0};
+    struct fit next;
+    int err = fit_run(f, d, o, near);
+    if (err == 0) { err = fit_run(f, d, o, down); }
+    for (int i = 0; i < 3 && err == 0; i++) {
+        next = *f;
+        err = fit_run(&next, d, o, plain);
+        if (err == 0) { err = fit_run(&next, d, o, down); }
+        if (!(next.cost < 0.98 * f->cost)) { break; }
+        *f = next;
+    }
+    if (err == 0 && next.cost < f->cost) { *f = next; }
+    next = *f;
+    if (err == 0) { err = fit_run(&next, d, o, mean); }
+    if (err == 0 && next.cost < 1.1 * f->cost) { *f = next; }
+    return err;
+}
+
+int identify_estimate(struct estimate_of *e, const struct identify_data *d)
+{
+    struct observations all, few;
+    struct fit told;
+    struct starts s;
+    struct sim_random chance = {1};
+    int err;
+    memset(e, 0, sizeof *e);
+    memset(&told, 0, sizeof told);
+    err = rotor(&told, d);
+    if (err) { return err; }
+    if (observe(&few, d, 1u << IDENTIFY_MASS, 2, 0.06) || observe(&all, d, 3, 0, 0.05)) {
+        return -1;
+    }
+    e->rounds = all.rounds;
+    e->counts = all.n;
+    e->fit.cost = (double)INFINITY;
+    lattice(&s, &told, d, &few);
+    for (int i = 0; i < STARTS && err == 0 && e->fit.cost > RESULT_RESIDUAL_MAX; i += TRIED) {
+        struct fit f;
+        err = from_starts(&f, &told, &s, i, d, &few);
+        if (err == 0) { err = estimate_finish(&f, d, &all); }
+        if (err == 0 && f.cost < e->fit.cost) { e->fit = f; }
+    }
+    for (int i = 0; i < SHAKEN && err == 0 && e->fit.cost > RESULT_RESIDUAL_MAX; i++) {
+        struct fit f = e->fit;
+        fit_shake(&f.at, &chance);
+        f.at.value[MODEL_LAG] = told.at.value[MODEL_LAG];
+        err = estimate_finish(&f, d, &all);
+        if (err == 0 && f.cost < e->fit.cost) { e->fit = f; }
+    }
+    observe_free(&few);
+    observe_free(&all);
+    return err;
+}

@@ -1,0 +1,327 @@
+/* SPDX-License-Identifier: MIT */
+#include "identify/fit.h"
+
+#include "sim/random.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define N     MODEL_PARS
+#define HUBER 4.0 /* deviations: farther ones count less */
+
+struct work {
+    const struct identify_data *d;
+    const struct observations *o;
+    float *q;         /* a run's positions */
+    double *at;       /* the model's positions at the observations, where the cost was seen last */
+    double *r;        /* residuals, centred in their groups */
+    double *j[N];     /* their derivatives */
+    double *w;        /* weights */
+    double *sum, *ws; /* of groups */
+    unsigned free;    /* bits of what is fitted */
+    double floor;     /* counts that no observation is better than */
+};
+
+static double *numbers(size_t n) { return calloc(n ? n : 1, sizeof(double)); }
+
+static void work_free(struct work *w)
+{
+    free(w->q);
+    free(w->at);
+    free(w->r);
+    free(w->w);
+    free(w->sum);
+    free(w->ws);
+    for (int i = 0; i < N; i++) { free(w->j[i]); }
+}
+
+static int work_open(struct work *w, const struct identify_data *d, const struct observations *o)
+{
+    int ok;
+    memset(w, 0, sizeof *w);
+    w->d = d;
+    w->o = o;
+    w->q = calloc(d->n ? d->n : 1, sizeof *w->q);
+    w->at = numbers(o->n);
+    w->r = numbers(o->n);
+    w->w = numbers(o->n);
+    w->sum = numbers(o->groups);
+    w->ws = numbers(o->groups);
+    ok = w->q && w->at && w->r && w->w && w->sum && w->ws;
+    for (int i = 0; i < N; i++) {
+        w->j[i] = numbers(o->n);
+        ok &= w->j[i] != NULL;
+    }
+    if (!ok) { work_free(w); }
+    return ok ? 0 : -1;
+}
+
+/* The model's mean over the ticks of each observation. */
+static void predict(struct work *w, const struct model *m, double *to)
+{
+    model_run(m, w->d, w->o->last, w->q);
+    for (size_t i = 0; i < w->o->n; i++) {
+        const struct observation *o = &w->o->o[i];
+        double sum = 0;
+        for (uint32_t k = 0; k < o->ticks; k++) { sum += (double)w->q[o->from + k]; }
+        to[i] = sum / o->ticks;
+    }
+}
+
+static void centre(struct work *w, double *v)
+{
+    memset(w->sum, 0, w->o->groups * sizeof *w->sum);
+    memset(w->ws, 0, w->o->groups * sizeof *w->ws);
+    for (size_t i = 0; i < w->o->n; i++) {
+        w->sum[w->o->o[i].group] += w->w[i] * v[i];
+        w->ws[w->o->o[i].group] += w->w[i];
+    }
+    for (size_t i = 0; i < w->o->n; i++) {
+        const unsigned g = w->o->o[i].group;
+        v[i] -= w->sum[g] / w->ws[g];
+    }
+}
+
+/* The cost, Huber's; residuals are left centred, weights those of the observations. */
+static double residuals(struct work *w, const struct model *m)
+{
+    double cost = 0;
+    predict(w, m, w->at);
+    for (size_t i = 0; i < w->o->n; i++) {
+        w->r[i] = (double)w->o->o[i].cnt - w->at[i];
+        w->w[i] = 1 / (1 / (double)w->o->o[i].weight + w->floor * w->floor);
+    }
+    centre(w, w->r);
+    for (size_t i = 0; i < w->o->n; i++) {
+        const double e = fabs(w->r[i]) * sqrt(w->w[i]);
+        cost += e < HUBER ? e * e : HUBER * (2 * e - HUBER);
+        if (!(e < HUBER)) { w->w[i] *= HUBER / e; }
+    }
+    return w->o->n ? cost / (double)w->o->n : (double)INFINITY;
+}
+
+/* --- coordinates: what the free rotor tells by itself comes first, in ratios --- */
+
+static double clamped(int i, double v)
+{
+    return v < model_row[i].min ? model_row[i].min : v > model_row[i].max ? model_row[i].max : v;
+}
+
+/* What lifts and what lets sink, as factors of the weight. */
+static void to_free(const struct model *m, double u[N])
+{
+    const double *v = m->value, kf = v[MODEL_KF];
+    u[MODEL_ROTOR] = log(kf / (v[MODEL_ROTOR] * v[MODEL_STEP]));
+    u[MODEL_COULOMB] = v[MODEL_COULOMB] / kf;
+    u[MODEL_VISCOUS] = v[MODEL_VISCOUS] / v[MODEL_ROTOR];
+    u[MODEL_DELAY] = v[MODEL_DELAY];
+    u[MODEL_KF] = log(kf);
+    u[MODEL_LAG] = log(v[MODEL_LAG]);
+    u[MODEL_STEP] = log(v[MODEL_STEP]);
+    u[MODEL_CABLE_K] = log(v[MODEL_CABLE_K] / kf);
+    u[MODEL_CABLE_B] = v[MODEL_CABLE_B] / kf;
+    u[MODEL_MU_MOTOR] = log((1 + v[MODEL_MU_MOTOR]) / (1 - v[MODEL_MU_MASS]) / kf);
+    u[MODEL_MU_MASS] = log((1 - v[MODEL_MU_MOTOR]) / (1 + v[MODEL_MU_MASS]) / kf);
+}
+
+static void from_free(const double u[N], struct model *m)
+{
+    double *v = m->value, kf, up, down, mu;
+    v[MODEL_KF] = kf = clamped(MODEL_KF, exp(u[MODEL_KF]));
+    v[MODEL_STEP] = clamped(MODEL_STEP, exp(u[MODEL_STEP]));
+    v[MODEL_ROTOR] = clamped(MODEL_ROTOR, kf / (v[MODEL_STEP] * exp(u[MODEL_ROTOR])));
+    v[MODEL_COULOMB] = clamped(MODEL_COULOMB, u[MODEL_COULOMB] * kf);
+    v[MODEL_VISCOUS] = clamped(MODEL_VISCOUS, u[MODEL_VISCOUS] * v[MODEL_ROTOR]);
+    v[MODEL_DELAY] = clamped(MODEL_DELAY, u[MODEL_DELAY]);
+    v[MODEL_CABLE_K] = clamped(MODEL_CABLE_K, exp(u[MODEL_CABLE_K]) * kf);
+    v[MODEL_CABLE_B] = clamped(MODEL_CABLE_B, u[MODEL_CABLE_B] * kf);
+    v[MODEL_LAG] = clamped(MODEL_LAG, exp(u[MODEL_LAG]));
+    /* The lag is part of the delay: with less delay nothing would change any more. */
+    if (v[MODEL_DELAY] < v[MODEL_LAG] + 0.5 / MODEL_SERVO_HZ) {
+        v[MODEL_DELAY] = v[MODEL_LAG] + 0.5 / MODEL_SERVO_HZ;
+    }
+    up = exp(u[MODEL_MU_MOTOR]) * kf;
+    down = exp(u[MODEL_MU_MASS]) * kf;
+    mu = up - down > 1e-9 ? (up + down - 2) / (up - down) : 0;
+    v[MODEL_MU_MASS] = mu > 0.9 ? 0.9 : clamped(MODEL_MU_MASS, mu);
+    mu = up * (1 - v[MODEL_MU_MASS]) - 1;
+    v[MODEL_MU_MOTOR] = mu > 0.9 ? 0.9 : clamped(MODEL_MU_MOTOR, mu);
+}
+
+/* A step that moves the model by more than rounding and less than what is curved. */
+static double grain(int i, const double u[N])
+{
+    static const double least[N] = {
+        0.006, 0.0004, 0.4, 20e-6, 0.01, 0.006, 0.006, 0.04, 0.002, 0.002, 0.1};
+    const double share = 0.006 * fabs(u[i]);
+    const int plain = i == MODEL_COULOMB || i == MODEL_VISCOUS || i == MODEL_CABLE_B;
+    return plain && share > least[i] ? share : least[i];
+}
+
+/* By differences: wide and two-sided, as the model is rough where something sticks or slackens; or,
+ * at half the price, from where the cost was seen last. */
+static void derivatives(struct work *w, const struct model *m, int two_sided, double *spare)
+{
+    double u[N];
+    to_free(m, u);
+    for (int i = 0; i < N; i++) {
+        double up[N], down[N], h = (two_sided ? 4 : 1) * grain(i, u);
+        struct model a, b;
+        if (!(w->free >> i & 1)) {
+            memset(w->j[i], 0, w->o->n * sizeof *w->j[i]);
+            continue;
+        }
+        memcpy(up, u, sizeof up);
+        memcpy(down, u, sizeof down);
+        up[i] += h;
+        down[i] -= h;
+        if (!model_row[i].in_log && down[i] < 0) { down[i] = 0; }
+        from_free(up, &a);
+        predict(w, &a, w->j[i]);
+        if (two_sided) {
+            from_free(down, &b);
+            predict(w, &b, spare);
+        } else {
+            down[i] = u[i];
+            memcpy(spare, w->at, w->o->n * sizeof *spare);
+        }
+        for (size_t k = 0; k < w->o->n; k++) {
+            w->j[i][k] = (w->j[i][k] - spare[k]) / (up[i] - down[i]);
+        }
+        centre(w, w->j[i]);
+    }
+}
+
+static void normal(const struct work *w, double a[N][N], double g[N])
+{
+    for (int i = 0; i < N; i++) {
+        g[i] = 0;
+        for (size_t k = 0; k < w->o->n; k++) { g[i] += w->w[k] * w->j[i][k] * w->r[k]; }
+        for (int l = 0; l <= i; l++) {
+            double s = 0;
+            for (size_t k = 0; k < w->o->n; k++) { s += w->w[k] * w->j[i][k] * w->j[l][k]; }
+            a[i][l] = a[l][i] = s;
+        }
+    }
+}
+
+/* x of A x = g, A's diagonal raised. 0; -1: not definite. */
+static int solve(double a[N][N], double raise, const double g[N], double x[N])
+{
+    double c[N][N];
+    for (int i = 0; i < N; i++) {
+        for (int l = 0; l <= i; l++) {
+            double s =
+                a[i][l] + (i == l ? raise * a[i][i] + 1e-12 * a[i][i] + (a[i][i] <= 0 ? 1 : 0) : 0);
+            for (int k = 0; k < l; k++) { s -= c[i][k] * c[l][k]; }
+            if (i == l) {
+                if (!(s > 0)) { return -1; }
+                c[i][i] = sqrt(s);
+            } else {
+                c[i][l] = s / c[l][l];
+            }
+        }
+    }
+    for (int i = 0; i < N; i++) {
+        x[i] = g[i];
+        for (int k = 0; k < i; k++) { x[i] -= c[i][k] * x[k]; }
+        x[i] /= c[i][i];
+    }
+    for (int i = N - 1; i >= 0; i--) {
+        for (int k = i + 1; k < N; k++) { x[i] -= c[k][i] * x[k]; }
+        x[i] /= c[i][i];
+    }
+    return 0;
+}
+
+static void move(struct model *m, const double x[N])
+{
+    double u[N];
+    to_free(m, u);
+    for (int i = 0; i < N; i++) {
+        static const double far[N] = {0.5, 1, 500, 1e-3, 0.1, 0.2, 0.5, 5, 0.1, 0.1, 0.5};
+        const double most = far[i];
+        u[i] += x[i] > most ? most : x[i] < -most ? -most : x[i];
+    }
+    from_free(u, m);
+}
+
+int fit_run(
+    struct fit *f, const struct identify_data *d, const struct observations *o, struct fit_how how)
+{
+    struct work w;
+    double *spare = numbers(o->n), a[N][N], g[N], x[N], mean[N] = {0}, sums = 0,
+           raise = how.bold ? 1e-6 : 1e-3;
+    if (spare == NULL || work_open(&w, d, o)) {
+        free(spare);
+        return -1;
+    }
+    w.free = how.free;
+    w.floor = how.floor_m / d->step_m;
+    f->good = 0;
+    f->cost = residuals(&w, &f->at);
+    for (f->steps = 0; f->steps < how.steps && !f->good; f->steps++) {
+        double was = f->cost;
+        /* Plain steps are short: their derivatives are those of the first. */
+        if (!how.bold || f->steps == 0) { derivatives(&w, &f->at, !how.one_sided, spare); }
+        normal(&w, a, g);
+        for (int tries = 0; tries < 8; tries++) {
+            struct model next = f->at;
+            double cost;
+            if (solve(a, raise, g, x) == 0) {
+                move(&next, x);
+                cost = residuals(&w, &next);
+                if (cost < f->cost || (how.bold && cost < 1.2 * f->cost)) {
+                    f->at = next;
+                    f->cost = cost;
+                    raise = raise > 1e-7 ? raise / 10 : raise;
+                    if (how.bold) { raise = 0; }
+                    break;
+                }
+            }
+            raise *= 10;
+        }
+        if (how.bold == 2 && f->steps >= 2) {
+            to_free(&f->at, x);
+            for (int i = 0; i < N; i++) { mean[i] += x[i]; }
+            sums++;
+        }
+        f->good = !how.bold && was - f->cost < how.enough * was;
+        if (!f->good) { (void)residuals(&w, &f->at); }
+    }
+    if (how.bold == 2 && sums > 0) {
+        for (int i = 0; i < N; i++) { mean[i] /= sums; }
+        from_free(mean, &f->at);
+        f->cost = residuals(&w, &f->at);
+    }
+    free(spare);
+    work_free(&w);
+    return 0;
+}
+
+void fit_shake(struct model *m, struct sim_random *chance)
+{
+    /* Shares of a value that is no logarithm, else of 1. */
+    static const double far[N] = {0.01, 0.05, 0.05, 0.05, 0.01, 0.01, 0.02, 0.1, 0.01, 0.01, 0.1};
+    double u[N];
+    to_free(m, u);
+    for (int i = 0; i < N; i++) {
+        const int plain =
+            i == MODEL_COULOMB || i == MODEL_VISCOUS || i == MODEL_CABLE_B || i == MODEL_DELAY;
+        u[i] += far[i] * (plain ? u[i] : 1) * (2 * sim_random_unit(chance) - 1);
+    }
+    from_free(u, m);
+}
+
+double fit_cost(const struct model *m, const struct identify_data *d, const struct observations *o,
+    double floor_m)
+{
+    struct work w;
+    double cost;
+    if (work_open(&w, d, o)) { return (double)INFINITY; }
+    w.floor = floor_m / d->step_m;
+    cost = residuals(&w, m);
+    work_free(&w);
+    return cost;
+}

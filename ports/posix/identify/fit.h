@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT */
+/* The fit: Levenberg and Marquardt over the model's parameters, by differences. */
+#ifndef IDENTIFY_FIT_H
+#define IDENTIFY_FIT_H
+
+#include "identify/model.h"
+#include "identify/observe.h"
+
+struct fit {
+    struct model at;
+    double cost;                              /* mean of weight residual^2 */
+    int steps;                                /* taken */
+    int good;                                 /* it came to its end */
+    double low[MODEL_PARS], high[MODEL_PARS]; /* 95 % */
+};
+
+#define FIT_ALL   ((1u << MODEL_PARS) - 1u)
+#define FIT_ROTOR 15u /* what the free rotor tells: the first four, in ratios */
+#define FIT_MASS  (FIT_ALL & ~FIT_ROTOR & ~(1u << MODEL_LAG))
+
+struct fit_how {
+    unsigned free;  /* bits of enum model_par */
+    double floor_m; /* no observation counts as better than this */
+    int steps;      /* at most */
+    int bold;       /* 1: takes its steps though the cost does not fall; 2: their mean, too */
+    double enough;  /* a step that lowers the cost by a smaller share is the last */
+    int one_sided;  /* differences at half the price, for far away */
+};
+
+/* From f->at. 0, or -1: out of memory. */
+int fit_run(
+    struct fit *f, const struct identify_data *d, const struct observations *o, struct fit_how how);
+/* Of a model as it is; infinite: out of memory. */
+double fit_cost(const struct model *m, const struct identify_data *d, const struct observations *o,
+    double floor_m);
+/* Moves it by chance, about as far as a start is that came near. */
+struct sim_random;
+void fit_shake(struct model *m, struct sim_random *chance);
+
+/* Where to begin, from currents and times of the run. */
+struct model fit_start(const struct identify_data *d);
+
+/* Force constant and frictions by the currents that lift and let sink, so much of it the motor's;
+ * what the rotor told stays. */
+void fit_split(struct model *m, const struct identify_data *d, double at_motor);
+
+#endif

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: MIT */
+/* The model that is fitted: rotor, string and mass as sim/plant.h has them, the commands of a run
+ * put in, the string at the motor as it would have moved. */
+#ifndef IDENTIFY_MODEL_H
+#define IDENTIFY_MODEL_H
+
+#include "identify/data.h"
+
+#include "sim/device.h"
+
+/* What is fitted, in this order. */
+enum model_par {
+    MODEL_ROTOR,   /* kg, log */
+    MODEL_COULOMB, /* N */
+    MODEL_VISCOUS, /* Ns/m */
+    MODEL_DELAY,   /* s: in all, from tick to current */
+    MODEL_KF,      /* N/A, log */
+    MODEL_STEP,    /* m per count, log */
+    MODEL_CABLE_K, /* N/m, log */
+    MODEL_CABLE_B, /* Ns/m */
+    MODEL_MU_MOTOR,
+    MODEL_MU_MASS,
+    MODEL_LAG, /* s: of the delay, what is a lag and no waiting, log */
+    MODEL_PARS
+};
+
+struct model_row {
+    const char *name, *unit;
+    double min, max;
+    int in_log; /* its coordinate in the fit is a logarithm */
+};
+extern const struct model_row model_row[MODEL_PARS];
+
+/* The drive's own loop, on which what waits hangs; its half period is part of the delay. */
+#define MODEL_SERVO_HZ 4000
+
+struct model {
+    double value[MODEL_PARS];
+};
+
+/* What the simulated device is in these terms, at a period of T_s. */
+struct model model_of(const struct sim_device *d, double T_s);
+/* The other way: a device for the advisor at that period. */
+struct sim_device model_device(const struct model *m, double T_s, double servo_Hz);
+
+/* Position at each sample, counts, of the first n. */
+void model_run(const struct model *m, const struct identify_data *d, size_t n, float *q_cnt);
+
+#endif

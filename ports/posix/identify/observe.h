@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: MIT */
+/* What the counts of a run tell: each count that the string passes through, on its way in or out.
+ *
+ * Of a count that stands only its edges are known, and of one where the string turns not both. One
+ * that is passed through is its middle, in the mean over its ticks. */
+#ifndef IDENTIFY_OBSERVE_H
+#define IDENTIFY_OBSERVE_H
+
+#include "identify/data.h"
+
+struct observation {
+    uint32_t from, ticks; /* samples */
+    float cnt;            /* its middle */
+    float weight;         /* 1 / (expected deviation)^2 */
+    uint32_t group;       /* part of a round: where it lies in all is not known */
+    uint16_t round;
+};
+
+struct observations {
+    struct observation *o;
+    size_t n;
+    unsigned groups, rounds;
+    size_t last; /* samples that are needed of the rounds wanted */
+};
+
+/* No group is longer than group_s: what the drive took over sooner or later adds up. Of the first
+ * `rounds` of these stages (bits); 0: of all. 0, or -1: out of memory. Free it in any case. */
+int observe(struct observations *to, const struct identify_data *d, unsigned stages,
+    unsigned rounds, double group_s);
+void observe_free(struct observations *o);
+
+#endif

@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: MIT */
+#include "identify/estimate.h"
+
+#include "base/jobs.h"
+#include "identify/session.h"
+
+#include "sim/plant.h"
+#include "sim/random.h"
+
+#include <math.h>
+#include <string.h>
+
+#define SEED       0x7265736D70 /* no seed of a simulated device that anybody gives */
+#define STUDENT_95 2.5706       /* for RESAMPLES - 1 */
+
+struct again {
+    int done;
+    struct model at;
+};
+
+struct context {
+    const struct estimate_of *e;
+    const struct identify_data *d;
+};
+
+static void work(const void *ctx, int i, void *result)
+{
+    const struct context *c = ctx;
+    struct again *r = result;
+    struct sim_random chance = {SEED + (uint64_t)i};
+    struct identify_session s;
+    struct identify_data data;
+    struct observations all;
+    struct fit f = c->e->fit;
+    memset(&s, 0, sizeof s);
+    s.board = posix_config_default();
+    s.board.device = model_device(&f.at, c->d->T_s, c->d->servo_Hz);
+    s.board.device.mass_kg = c->d->mass_kg;
+    (void)plant_take_step(&s.board.device, 0, 0);
+    s.board.seed = sim_random_u64(&chance) >> 1;
+    s.rate_Hz = (uint32_t)(1 / c->d->T_s + 0.5);
+    s.mass_kg = c->d->mass_kg;
+    s.par = &c->d->par;
+    if (identify_session(&s, &data) || data.result != EXH_PROBE_DONE) {
+        identify_data_free(&data);
+        return;
+    }
+    fit_shake(&f.at, &chance);
+    if (observe(&all, &data, 3, 0, 0.05) == 0 && estimate_finish(&f, &data, &all) == 0) {
+        r->done = 1;
+        r->at = f.at;
+    }
+    observe_free(&all);
+    identify_data_free(&data);
+}
+
+static double log_or(int i, double v)
+{
+    return model_row[i].in_log && v > 0 && i != MODEL_MU_MOTOR && i != MODEL_MU_MASS ? log(v) : v;
+}
+
+static double back(int i, double u)
+{
+    const double v = model_row[i].in_log && i != MODEL_MU_MOTOR && i != MODEL_MU_MASS ? exp(u) : u;
+    return v < model_row[i].min ? model_row[i].min : v > model_row[i].max ? model_row[i].max : v;
+}
+
+/* The lag is a part of the delay, and no more than it. */
+static void within_delay(struct fit *f, double most_s)
+{
+    double *const lag[] = {&f->at.value[MODEL_LAG], &f->low[MODEL_LAG], &f->high[MODEL_LAG]};
+    for (int i = 0; i < 3; i++) {
+        if (*lag[i] > most_s) { *lag[i] = most_s; }
+    }
+}
+
+static void take(struct fit *f, const struct again *r, int n)
+{
+    const struct model told = f->at;
+    for (int i = 0; i < MODEL_PARS; i++) {
+        const double u = log_or(i, told.value[i]);
+        double mean = 0, square = 0, half;
+        for (int k = 0; k < n; k++) { mean += (log_or(i, r[k].at.value[i]) - u) / n; }
+        for (int k = 0; k < n; k++) {
+            const double apart = log_or(i, r[k].at.value[i]) - u - mean;
+            square += apart * apart / (n - 1);
+        }
+        half = STUDENT_95 * sqrt(square * (1 + 1.0 / n));
+        f->at.value[i] = back(i, u - mean);
+        f->low[i] = back(i, u - mean - half);
+        f->high[i] = back(i, u - mean + half);
+    }
+    within_delay(f, f->at.value[MODEL_DELAY] - 0.5 / MODEL_SERVO_HZ);
+}
+
+int identify_resample(struct estimate_of *e, const struct identify_data *d, int jobs)
+{
+    static struct again r[RESAMPLES];
+    const struct context c = {e, d};
+    const struct jobs all = {RESAMPLES, jobs, sizeof r[0], r, work, &c, "fits", posix_interrupt};
+    int n = 0, status;
+    memset(r, 0, sizeof r);
+    status = jobs_run(&all);
+    if (status) { return status; }
+    for (int k = 0; k < RESAMPLES; k++) {
+        if (r[k].done) { r[n++] = r[k]; }
+    }
+    if (n < RESAMPLES) { return 1; } /* what was found cannot even do it again */
+    take(&e->fit, r, n);
+    return 0;
+}

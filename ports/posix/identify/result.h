@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: MIT */
+/* What a device is, as a text: `exhand identify` writes it, `exhand advise gains --device` reads
+ * it.
+ *
+ *   exhand identify 1
+ *   # any remark
+ *   rate = 2000 hz
+ *   known_mass = 0.5 kg
+ *   residual = 0.33
+ *   rotor = 0.0464 0.0461 0.0467 kg       value, low, high, unit: one line of each of model_row[]
+ */
+#ifndef IDENTIFY_RESULT_H
+#define IDENTIFY_RESULT_H
+
+#include "identify/model.h"
+
+#include <stdio.h>
+
+#define RESULT_LINE_B 200
+
+struct result_file {
+    double rate_Hz, mass_kg;
+    double residual; /* mean square over what edges of counts allow */
+    struct model value, low, high;
+};
+
+/* A residual above this: the model does not fit, and nobody may be advised by the file. */
+#define RESULT_RESIDUAL_MAX 2.5
+
+/* An estimate, of a run so sampled, with a known mass. */
+struct fit;
+void result_take(struct result_file *r, const struct fit *f, double T_s, double mass_kg);
+
+void result_write(FILE *f, const struct result_file *r);
+
+/* 0; 2 after a line on stderr that names file and line, and what may stand there. */
+int result_read(struct result_file *r, const char *path);
+/* Its text alone, for tests and whoever has it; name: for that line. */
+int result_parse(struct result_file *r, FILE *f, const char *name);
+
+#endif

@@ -1,0 +1,268 @@
+/* SPDX-License-Identifier: MIT */
+/* exhand identify: what is found is the device, what does not fit is told, its file is read back
+ * and damaged ones are refused by line, and the advisor takes it. */
+#include "advise/gains.h"
+#include "file_of.h"
+#include "identify/estimate.h"
+#include "identify/session.h"
+#include "said.h"
+
+#include "identify/identify.h"
+
+#include "sim/random.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define LEN(a) (sizeof(a) / sizeof((a)[0]))
+
+static struct said s;
+static struct identify_data data;
+
+/* --- the estimate --- */
+
+static struct identify_session session(uint64_t seed)
+{
+    struct identify_session c;
+    memset(&c, 0, sizeof c);
+    c.rate_Hz = 2000;
+    c.mass_kg = 0.5;
+    c.repeats = 2;
+    c.board = posix_config_default();
+    c.board.seed = seed;
+    return c;
+}
+
+static void run(const struct identify_session *c)
+{
+    identify_data_free(&data);
+    CHECK_EQ_I64(identify_session(c, &data), 0);
+}
+
+TEST(what_is_found_is_the_device)
+{
+    static const double off[MODEL_PARS] = {
+        0.03, 0.3, 0.03, 0.06, 0.01, 0.01, 0.02, 0.03, 0.03, 0.06, 1};
+    struct identify_session c = session(3);
+    const struct model truth = model_of(&c.board.device, 1.0 / c.rate_Hz);
+    struct estimate_of e;
+    c.repeats = 4;
+    run(&c);
+    CHECK_EQ_I64(identify_estimate(&e, &data), 0);
+    CHECK(e.fit.cost < 0.6, "residual %g", e.fit.cost);
+    for (int i = 0; i < MODEL_PARS; i++) {
+        CHECK(fabs(e.fit.at.value[i] / truth.value[i] - 1) < off[i], "%s: %g, want %g",
+            model_row[i].name, e.fit.at.value[i], truth.value[i]);
+    }
+}
+
+/* Of the known mass come newton and kilogram: what hangs there is less, and all that has one of
+ * these in it comes out more; metre and second do not, and no residual tells. */
+TEST(a_wrong_mass_scales_what_has_a_newton_in_it)
+{
+    static const int newton[MODEL_PARS] = {1, 1, 1, 0, 1, 0, 1, 1, 0, 0, 0};
+    struct identify_session c = session(5);
+    const struct model truth = model_of(&c.board.device, 1.0 / c.rate_Hz);
+    struct estimate_of e;
+    c.hung_kg = 0.4;
+    c.repeats = 3;
+    run(&c);
+    CHECK_EQ_I64(identify_estimate(&e, &data), 0);
+    CHECK(e.fit.cost < 0.6, "residual %g", e.fit.cost);
+    for (int i = 0; i < MODEL_LAG; i++) {
+        const double want = truth.value[i] * (newton[i] ? 1.25 : 1);
+        if (i == MODEL_COULOMB) { continue; } /* of 27 mN a tenth is nothing */
+        CHECK(fabs(e.fit.at.value[i] / want - 1) < 0.08, "%s: %g, want %g", model_row[i].name,
+            e.fit.at.value[i], want);
+    }
+}
+
+/* A pulley with play: the count stays where it is for 40 counts behind each turn. */
+static void play(struct exh_drive_in *in)
+{
+    static int32_t shown;
+    const int32_t is = (int32_t)(in->enc_raw[0] << 8) >> 8;
+    if (is > shown + 20) { shown = is - 20; }
+    if (is < shown - 20) { shown = is + 20; }
+    in->enc_raw[0] = (uint32_t)shown & 0xFFFFFF;
+}
+
+TEST(what_does_not_fit_is_told)
+{
+    struct identify_session c = session(2);
+    struct estimate_of e;
+    c.board.wires_in = play;
+    run(&c);
+    CHECK(data.result == EXH_PROBE_DONE, "%s", identify_result_text(data.result));
+    CHECK_EQ_I64(identify_estimate(&e, &data), 0);
+    CHECK(e.fit.cost > RESULT_RESIDUAL_MAX, "residual %g", e.fit.cost);
+}
+
+/* --- the file --- */
+
+static const char good[] = "exhand identify 1\n"
+                           "# a remark\n"
+                           "rate = 2000 hz\n"
+                           "known_mass = 0.5 kg\n"
+                           "residual = 0.33\n"
+                           "rotor = 0.0464 0.0461 0.0467 kg\n"
+                           "coulomb = 0.027 0.025 0.028 n\n"
+                           "viscous = 3.41 3.39 3.43 ns_per_m\n"
+                           "delay = 0.00063 0.0006 0.00065 s\n"
+                           "kf = 3.34 3.33 3.35 n_per_a\n"
+                           "step = 6.63e-05 6.62e-05 6.64e-05 m\n"
+                           "cable_k = 2969 2960 2980 n_per_m\n"
+                           "cable_b = 6.2 6.1 6.3 ns_per_m\n"
+                           "mu_motor = 0.1835 0.183 0.184\n"
+                           "mu_mass = 0.088 0.087 0.089\n"
+                           "lag = 0.00016 0.00014 0.00018 s\n";
+
+/* The good file with one text in it replaced. */
+static void put(const char *path, const char *old, const char *with)
+{
+    FILE *f = fopen(path, "w");
+    const char *at = strstr(good, old);
+    CHECK(f != NULL && at != NULL, "%s, \"%s\"", path, old);
+    if (f == NULL || at == NULL) { return; }
+    fprintf(f, "%.*s%s%s", (int)(at - good), good, with, at + strlen(old));
+    fclose(f);
+}
+
+TEST(a_file_is_read_back)
+{
+    char *dir = said_dir(), path[300];
+    struct result_file r, again;
+    FILE *f;
+    snprintf(path, sizeof path, "%s/device.txt", dir);
+    put(path, "# a remark", "");
+    CHECK(result_read(&r, path) == 0, "%s", path);
+    CHECK(r.rate_Hz == 2000 && r.mass_kg == 0.5 && r.low.value[MODEL_KF] == 3.33 &&
+              r.high.value[MODEL_LAG] == 0.00018,
+        "%g Hz", r.rate_Hz);
+    f = fopen(path, "w");
+    CHECK(f != NULL, "%s", path);
+    result_write(f, &r);
+    fclose(f);
+    CHECK(result_read(&again, path) == 0, "%s", path);
+    for (int i = 0; i < MODEL_PARS; i++) {
+        CHECK(fabs(again.value.value[i] - r.value.value[i]) < 1e-6 * r.value.value[i], "%s",
+            model_row[i].name);
+    }
+    said_clean(dir);
+}
+
+TEST(a_damaged_file_is_refused_by_line)
+{
+    static const struct {
+        const char *old, *with, *says;
+    } row[] = {
+        {"identify 1", "identify 2", ":1: "},
+        {"rate = 2000 hz", "rate = 2000 khz", ":3: "},
+        {"rate = 2000 hz\n", "", "has no rate"},
+        {"rate = 2000", "rate = nan", ":3: "},
+        {"known_mass = 0.5 kg", "known_mass = -0.5 kg", ":4: "},
+        {"# a remark", "remark", ":2: "},
+        {"# a remark", "weight = 3 kg", "unknown name"},
+        {"# a remark", "rate = 2000 hz", ":3: "},
+        {"rotor = 0.0464 0.0461", "rotor = 0.0464 0.0465", "outside its interval"},
+        {"rotor = 0.0464 0.0461 0.0467 kg", "rotor = 0.0464 0.0461 kg", ":6: "},
+        {"rotor = 0.0464 0.0461 0.0467 kg", "rotor = 0.0464 0.0461 0.0467 kg kg", ":6: "},
+        {"kf = 3.34 3.33 3.35", "kf = 3.34 3.33 inf", ":10: "},
+        {"residual = 0.33", "residual = 0.33 0.33", ":5: "},
+        {"rate = 2000 hz", "rate = 0 hz", ":3: "},
+        {"coulomb = 0.027 0.025", "coulomb = -0.03 -0.04", ":7: "},
+        {"rotor = 0.0464 0.0461 0.0467 kg", "rotor : 0.0464 0.0461 0.0467 kg", ":6: "},
+        {"viscous = 3.41 3.39 3.43 ns_per_m\n", "", "has no viscous"},
+        {"mu_mass = ", "mu_motor = ", ":15: "},
+        {"lag = 0.00016 0.00014 0.00018 s\n", "lag = 0.00016 0.00014 0.00018 s", "without an end"},
+    };
+    char *dir = said_dir(), path[300];
+    snprintf(path, sizeof path, "%s/device.txt", dir);
+    for (size_t i = 0; i < LEN(row); i++) {
+        put(path, row[i].old, row[i].with);
+        said(&s, dir, cli_advise, WORDS("advise", "gains", "--device", path));
+        CHECK(s.status == 2 && strstr(s.err, row[i].says) && strstr(s.err, "device.txt"),
+            "row %zu: %d %s", i, s.status, s.err);
+        CHECK(s.out[0] == '\0', "row %zu: %s", i, s.out);
+    }
+    said(&s, dir, cli_advise, WORDS("advise", "gains", "--device", "no/file"));
+    CHECK(s.status == 2 && strstr(s.err, "no/file"), "%d %s", s.status, s.err);
+    put(path, "# a remark", "");
+    said(&s, dir, cli_advise, WORDS("advise", "gains", "--device", path, "--off", "20"));
+    CHECK(s.status == 2 && strstr(s.err, "--off"), "%d %s", s.status, s.err);
+    said_clean(dir);
+}
+
+static int parsed(struct result_file *r, const char *text)
+{
+    const char *name = file_of(text);
+    const int err = result_read(r, name);
+    remove(name);
+    return err;
+}
+
+/* Bytes by chance in a good file: it is read or refused, and what is read is in its ranges. */
+TEST(any_bytes_are_read_or_refused)
+{
+    struct sim_random chance = {1};
+    for (int i = 0; i < 300; i++) {
+        char text[sizeof good];
+        struct result_file r;
+        memcpy(text, good, sizeof good);
+        for (int k = 0; k < 3; k++) {
+            text[sim_random_u64(&chance) % (sizeof text - 1)] =
+                (char)(1 + sim_random_u64(&chance) % 126);
+        }
+        if (parsed(&r, text) != 0) { continue; }
+        for (int p = 0; p < MODEL_PARS; p++) {
+            CHECK(r.low.value[p] <= r.value.value[p] && r.value.value[p] <= r.high.value[p] &&
+                      r.low.value[p] >= model_row[p].min && r.high.value[p] <= model_row[p].max,
+                "%s", text);
+        }
+    }
+}
+
+/* --- the command, and what is made of its file --- */
+
+TEST(the_device_is_told_apart)
+{
+    char *dir = said_dir(), path[300], log[300];
+    const struct sim_device d = sim_device_default();
+    struct result_file r;
+    said(&s, dir, cli_identify, WORDS("identify", "--seed", "77", "--repeats", "4", "--out", dir));
+    CHECK(s.status == 0 && strstr(s.out, "the model fits"), "%d\n%s%s", s.status, s.out, s.err);
+    snprintf(path, sizeof path, "%s/device.txt", dir);
+    CHECK(result_read(&r, path) == 0, "%s", path);
+    const struct model truth = model_of(&d, 1 / r.rate_Hz);
+    for (int i = 0; i < MODEL_PARS; i++) {
+        const double half = (r.high.value[i] - r.low.value[i]) / 2;
+        CHECK(fabs(r.value.value[i] - truth.value[i]) <= 3 * half,
+            "%s: %g, %g either side; it is %g", model_row[i].name, r.value.value[i], half,
+            truth.value[i]);
+        CHECK(half < (i == MODEL_COULOMB || i == MODEL_LAG ? 0.6 : 0.2) * truth.value[i],
+            "%s: %g either side of %g", model_row[i].name, half, truth.value[i]);
+    }
+    said(&s, dir, cli_advise,
+        WORDS("advise", "gains", "--device", path, "--rate", "500", "--cases", "4", "--k", "3000",
+            "--b", "10"));
+    CHECK(s.status == 0 && strstr(s.out, ": allowed ("), "%d\n%s%s", s.status, s.out, s.err);
+    snprintf(log, sizeof log, "%s/identify.exh", dir);
+    said(&s, dir, cli_replay, WORDS("replay", log));
+    CHECK(s.status == 0, "%d\n%s%s", s.status, s.out, s.err);
+    said(&s, dir, cli_identify, WORDS("identify", "--from-log", log));
+    CHECK(s.status == 0 && strstr(s.out, "the model fits"), "%d\n%s%s", s.status, s.out, s.err);
+    said_clean(dir);
+}
+
+TEST(what_cannot_be_lifted_asks_for_a_lighter_mass)
+{
+    char *dir = said_dir();
+    said(&s, dir, cli_identify, WORDS("identify", "--repeats", "2", "--mass", "2"));
+    CHECK(s.status == 1 && strstr(s.err, "lighter mass"), "%d\n%s%s", s.status, s.out, s.err);
+    said_clean(dir);
+}
+
+TEST_MAIN("identify", what_is_found_is_the_device, a_wrong_mass_scales_what_has_a_newton_in_it,
+    what_does_not_fit_is_told, a_file_is_read_back, a_damaged_file_is_refused_by_line,
+    any_bytes_are_read_or_refused, the_device_is_told_apart,
+    what_cannot_be_lifted_asks_for_a_lighter_mass);

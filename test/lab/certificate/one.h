@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT */
+/* One device of a certificate: told apart, advised, and held against what it does. */
+#ifndef CERTIFICATE_ONE_H
+#define CERTIFICATE_ONE_H
+
+#include "identify/model.h"
+
+#include <stdint.h>
+
+#define ONE_LIGHTER 3 /* so often the known mass may be halved if the box cannot lift it */
+
+/* Where in the rule a run is. */
+enum { ONE_INSIDE, ONE_LINE, ONE_WHERES };
+
+struct one_opt {
+    int64_t seed, rate_Hz, repeats;
+    int told; /* 1: nothing is identified, the advisor is told the device */
+    int map;  /* 1: what rests and what is allowed, as characters, to stdout */
+    int grid; /* nodes along k and along b, over which the stable area is summed; 0: no advice */
+};
+
+struct one {
+    int32_t done, failed; /* enum identify_result of the last try, 0: it ran to its end */
+    int32_t fits, advised;
+    double mass_kg, device_s, residual; /* the known mass at last; device time of all tries */
+    double truth[MODEL_PARS], value[MODEL_PARS], low[MODEL_PARS], high[MODEL_PARS];
+    int32_t runs[ONE_WHERES], single[ONE_WHERES],
+        unstable[ONE_WHERES]; /* runs of ten falls; of
+                               * them those in which one fall does not come to rest, and more of
+                               * them */
+    double stable, covered;   /* nodes where the device is stable; of them inside the rule */
+};
+
+/* Device i of a draw. */
+void one_run(struct one *r, const struct one_opt *o, int i);
+
+#endif
