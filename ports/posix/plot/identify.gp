@@ -22,6 +22,8 @@ set tics nomirror out scale 0.6 textcolor rgb ink
 set grid lc rgb '#dddddd' lw 0.6 lt 1
 set lmargin at screen 0.10; set rmargin at screen 0.97
 of(stage, y) = (column('stage') == stage ? y : NaN)
+ten(span) = 10.0**floor(log10(span))
+tics_of(span) = ten(span)*(span > 4*ten(span) ? 2 : span > 2*ten(span) ? 1 : 0.5) # 2 to 5 of them
 
 set multiplot
 set key at screen 0.97, screen 0.985 right top horizontal samplen 2 textcolor rgb ink
@@ -45,8 +47,11 @@ do for [stage = 0:1] {
 unset title
 set tmargin at screen 0.365; set bmargin at screen 0.235
 set ylabel 'apart (mm)' textcolor rgb ink
+stats trace using (of(1, column('apart_mm'))) name 'A' nooutput
+if (A_max > A_min) { set ytics tics_of(A_max - A_min) }
 plot trace using (column('t_s')):(of(1, column('apart_mm'))) with lines ls 3
 set tmargin at screen 0.215; set bmargin at screen 0.075
+set ytics autofreq
 set ylabel 'current (A)' textcolor rgb ink
 set format x '%g'
 set xlabel 'time (s)' textcolor rgb ink offset 0,0.5

@@ -25,13 +25,14 @@ static void cut(struct region *r, double k, double b)
 {
     for (int j = 0; j <= REGION_ROWS; j++) {
         struct region_row *row = &r->row[j];
-        const int left = j < REGION_ROWS && row[1].b_Nspm<b, right = j> 0 && row[-1].b_Nspm > b;
+        const int left = j < REGION_ROWS && row[1].b_Nspm < b;
+        const int right = j > 0 && row[-1].b_Nspm > b;
         if (left || right || row->high_Npm <= k) { continue; }
         row->high_Npm = k > row->low_Npm ? k : 0;
     }
 }
 
-/* Pairs that do not hold. Not again what was proved. */
+/* Number of pairs that do not hold. A pair that was proved is not tried again. */
 static int pass(struct gains_rate *x, struct pair *pair)
 {
     const double by = x->region.o.devices > 1 ? BEYOND : 1;
