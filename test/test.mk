@@ -149,5 +149,6 @@ test:
 	@.ci/deps "the tests" "$(CC) $(test_headers) -fsyntax-only -xc /dev/null" libcmocka-dev || exit 3
 	@.ci/deps "the tests of Modbus" "test -f /usr/include/modbus/modbus.h" libmodbus-dev || true
 	@.ci/deps "lines of a GPIO chip" "test -f /usr/include/gpiod.h" libgpiod-dev || true
+	@$(world_mesh_deps)
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(test_bin)
 	@JOBS=$(jobs) test/run.sh $(test_bin)

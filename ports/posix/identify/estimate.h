@@ -14,6 +14,9 @@ struct estimate_of {
 /* Down to a fit, from where f is. 0; -1: out of memory. */
 int estimate_finish(struct fit *f, const struct identify_data *d, const struct observations *o);
 
+/* Its lag becomes that of a start, within its delay. */
+void estimate_lag_anew(struct model *m);
+
 /* So often the device that was found is told apart again, on the simulated bench. */
 #define RESAMPLES 6
 

@@ -11,6 +11,7 @@ world_tree := $(if $(filter -static,$(LDFLAGS)),,$(if $(call sees,embree3/rtcore
               sees,embree4/rtcore.h),4)))
 world_mesh := $(B)/posix/ports/posix/world/$(if $(world_tree),mesh_embree,mesh_none).o
 world_gl   := $(and $(call have,SDL2/SDL_ttf.h),$(call have,GL/gl.h),$(call have,png.h))
+world_mesh_deps := .ci/deps "the world's meshes" "ls /usr/include/embree*/rtcore.h" libembree-dev || :
 world_pkgs := libsdl2-dev libsdl2-ttf-dev libgl-dev libegl-dev libgl1-mesa-dri libpng-dev \
               fonts-dejavu-core
 world      := $(B)/posix/world
@@ -41,7 +42,7 @@ $(world): $(world_obj) $(B)/posix/libexhand.a
 world:
 	@.ci/deps "the world's pictures" "cd /usr/include && ls SDL2/SDL_ttf.h GL/gl.h png.h" \
 	    $(world_pkgs) || true
-	@.ci/deps "the world's meshes" "ls /usr/include/embree*/rtcore.h" libembree-dev || true
+	@$(world_mesh_deps)
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(world)
 
 ## Run exhand and world over UDP as two processes, and in two network namespaces if it may.

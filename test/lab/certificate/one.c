@@ -171,6 +171,7 @@ static void advise(struct one *r, const struct one_opt *o, const struct sim_devi
     memset(&x, 0, sizeof x);
     gains_defaults(&a);
     a.jobs = 1;
+    a.has_file = 1;
     if (gains_refuse(&a)) { return; }
     x.rate_Hz = (double)o->rate_Hz;
     a.o.wall.T_s = 1 / x.rate_Hz;

@@ -6,7 +6,6 @@
 
 #define PAIRS  64   /* every second one on the line */
 #define PASSES 40   /* far more than any device took */
-#define BEYOND 1.03 /* both gains, as a pair is tried where the device is not known exactly */
 #define LESS   0.99 /* of a k that does not hold: a row's new end */
 
 struct pair {
@@ -35,12 +34,11 @@ static void cut(struct region *r, double k, double b)
 /* Number of pairs that do not hold. A pair that was proved is not tried again. */
 static int pass(struct gains_rate *x, struct pair *pair)
 {
-    const double by = x->region.o.devices > 1 ? BEYOND : 1;
     int failed = 0;
     for (int i = 0; i < PAIRS && !posix_interrupted(); i++) {
         const double b = pair[i].b, k = pair[i].share * gains_k_max(&x->rule, b);
         if (!gains_allows(&x->rule, k, b) || k == pair[i].proved_k) { continue; }
-        if (region_holds(&x->region.o, by * k, by * b, i + 1)) {
+        if (region_holds(&x->region.o, k, b, i + 1)) {
             pair[i].proved_k = k;
         } else {
             cut(&x->region, LESS * k, b);

@@ -15,6 +15,8 @@
 #define COARSE     1.19 /* k from pair to pair on the way up: a quarter of an octave */
 #define FINE       1.02 /* and at the end of a row */
 #define SEARCH     16   /* octaves of k above the first in which something has to hold */
+#define SLIVER     0.01 /* of the area: so little may be left out at large b */
+#define ENOUGH     0.75 /* of the largest b: rows that go on for longer are laid anew */
 
 /* --- one pair of gains --- */
 
@@ -170,19 +172,55 @@ static double top_b(const struct region_opt *o)
     return low < B_MAX_NSPM ? low : B_MAX_NSPM;
 }
 
-static void work(const void *ctx, int j, void *result)
+/* Every fourth row, or those between. */
+static int row_of(int n, int coarse) { return coarse ? 4 * n : n / 3 * 4 + n % 3 + 1; }
+
+static void coarse_row(const void *ctx, int n, void *result)
 {
     const struct region *r = ctx;
-    const struct region_row row = row_at(&r->o, r->row[j].b_Nspm);
+    const struct region_row row = row_at(&r->o, r->row[row_of(n, 1)].b_Nspm);
     memcpy(result, &row, sizeof row);
+}
+
+static void fine_row(const void *ctx, int n, void *result)
+{
+    const struct region *r = ctx;
+    const struct region_row row = row_at(&r->o, r->row[row_of(n, 0)].b_Nspm);
+    memcpy(result, &row, sizeof row);
+}
+
+/* 0, or why it ended before. */
+static int rows(struct region *r, int coarse)
+{
+    static struct region_row row[REGION_ROWS];
+    const int n = coarse ? REGION_ROWS / 4 + 1 : REGION_ROWS / 4 * 3;
+    const struct jobs jobs = {n, r->o.jobs, sizeof *row, row, coarse ? coarse_row : fine_row, r,
+        coarse ? "rows, every fourth" : "rows", posix_interrupt};
+    const int status = jobs_run(&jobs);
+    for (int i = 0; i < n && status == 0; i++) { r->row[row_of(i, coarse)] = row[i]; }
+    return posix_interrupted() ? JOBS_INTERRUPTED : status;
+}
+
+/* The b of a coarse row beyond which next to nothing is allowed: islands of weak walls reach far.
+ */
+static double worth(const struct region *r)
+{
+    double area[REGION_ROWS + 1], all = 0, beyond = 0;
+    int j = REGION_ROWS;
+    for (int i = 0; i <= REGION_ROWS; i += 4) {
+        area[i] = r->row[i].high_Npm - r->row[i].low_Npm;
+        all += area[i];
+    }
+    while (j > 4 && beyond + area[j] < SLIVER * all) {
+        beyond += area[j];
+        j -= 4;
+    }
+    return r->row[j < REGION_ROWS ? j + 4 : j].b_Nspm;
 }
 
 int region_fill(struct region *r, const struct region_opt *o)
 {
-    static struct region_row row[REGION_ROWS + 1];
-    const struct jobs jobs = {
-        REGION_ROWS + 1, o->jobs, sizeof *row, row, work, r, "rows", posix_interrupt};
-    const double b_top = top_b(o);
+    double b_top = top_b(o), was;
     int status;
     memset(r, 0, sizeof *r);
     r->o = *o;
@@ -192,10 +230,13 @@ int region_fill(struct region *r, const struct region_opt *o)
             1 / o->wall.T_s);
         return 1;
     }
-    for (int j = 0; j <= REGION_ROWS; j++) { r->row[j].b_Nspm = b_top * j / REGION_ROWS; }
-    status = jobs_run(&jobs);
-    if (status == 0) { memcpy(r->row, row, sizeof r->row); }
-    return posix_interrupted() ? JOBS_INTERRUPTED : status;
+    do {
+        for (int j = 0; j <= REGION_ROWS; j++) { r->row[j].b_Nspm = b_top * j / REGION_ROWS; }
+        status = rows(r, 1);
+        was = b_top;
+        b_top = worth(r);
+    } while (status == 0 && b_top < ENOUGH * was);
+    return status ? status : rows(r, 0);
 }
 
 #define PI 3.14159265358979323846

@@ -9,7 +9,7 @@
 
 #include "sim/settle.h"
 
-#define REGION_ROWS    40 /* steps of b */
+#define REGION_ROWS    40 /* steps of b, a multiple of 4 */
 #define REGION_DEVICES 24
 
 struct region_opt {
@@ -18,8 +18,7 @@ struct region_opt {
     struct settle_wall wall; /* k and b are not looked at */
     int cases;               /* a pair; half as many again of several devices */
     double margin;           /* every second case with so much (a share) less friction */
-    int spare;
-    int at_phase; /* 1: the wall lies `phase` counts above a count; 0: anywhere */
+    int at_phase;            /* 1: the wall lies `phase` counts above a count; 0: anywhere */
     double phase;
     int jobs;
 };
