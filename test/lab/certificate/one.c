@@ -20,7 +20,6 @@
 #include <string.h>
 
 #define FALLS  10     /* of a run */
-#define RUNS   4      /* of a pair whose place in the stable area is asked */
 #define INSIDE 24     /* runs inside of the rule, */
 #define LINE   12     /* and on its line */
 #define B_MAX  1000.0 /* N/(m/s), */
@@ -71,17 +70,16 @@ static int tell(struct one *r, const struct one_opt *o, const struct sim_device 
     return err;
 }
 
-/* The falls that come to rest, in a run of the drop scene on the device itself. */
-static int rests(
-    const struct one_opt *o, const struct sim_device *d, uint64_t seed, double k, double b)
+/* The falls that come to rest, in a run of the drop scene on the device itself. The wall is at this
+ * place between two counts, 0 .. 1. */
+static int rests(const struct one_opt *o, const struct sim_device *d, uint64_t seed, double k,
+    double b, double place)
 {
-    struct sim_random chance = {seed ^ 0x77616C6C};
-    /* By chance between two counts, and behind the place from which the bench counts a contact,
-     * wherever the first fall began: what rested between the two would never have been seen to. */
+    /* Behind the place from which the bench counts a contact, wherever the first fall began: what
+     * rested between the two would never have been seen to. */
     const double step_m = d->step_m / d->decode;
     const double deeper = (double)sim_floor(2 * d->height_jitter_m / step_m) + 1;
-    const struct run_setting wall = {
-        "q_lim", sim_wall_m(d, sim_random_unit(&chance)) + deeper * step_m};
+    const struct run_setting wall = {"q_lim", sim_wall_m(d, place) + deeper * step_m};
     struct run_cfg c;
     struct table2_result t;
     memset(&c, 0, sizeof c);
@@ -105,7 +103,7 @@ static void run_at(struct one *r, const struct one_opt *o, const struct sim_devi
     const double k = share * gains_k_max(&x->rule, b);
     int n;
     if (!gains_allows(&x->rule, k, b)) { return; }
-    n = rests(o, d, sim_random_u64(chance) >> 1, k, b);
+    n = rests(o, d, sim_random_u64(chance) >> 1, k, b, sim_random_unit(chance));
     r->runs[where]++;
     r->single[where] += n == FALLS - 1;
     r->unstable[where] += n < FALLS - 1;
@@ -126,15 +124,20 @@ static void inside(struct one *r, const struct one_opt *o, const struct sim_devi
     }
 }
 
-/* Stable: every fall of all runs. By chance a pair that rests in nine falls of ten has one run of
- * three in which all ten do: one run would count it as stable. */
-static int stable(const struct one_opt *o, const struct sim_device *d, struct sim_random *chance,
+/* The places, a run each, at which every fall rests, up to the first at which one does not: first
+ * those of four, then those of eight between them, then all. A pair that chatters at one of eight
+ * places is seldom seen to at few. */
+static int places(const struct one_opt *o, const struct sim_device *d, struct sim_random *chance,
     double k, double b)
 {
-    for (int i = 0; i < RUNS; i++) {
-        if (rests(o, d, sim_random_u64(chance) >> 1, k, b) < FALLS) { return 0; }
+    static const int in_turn[] = {0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
+    const int most = (int)(sizeof in_turn / sizeof in_turn[0]);
+    int n = 0;
+    while (n < most && rests(o, d, sim_random_u64(chance) >> 1, k, b,
+                           (in_turn[n] + sim_random_unit(chance)) / most) == FALLS) {
+        n++;
     }
-    return 1;
+    return n;
 }
 
 /* The stable area, and what of it the rule allows. */
@@ -153,10 +156,12 @@ static void area(struct one *r, const struct one_opt *o, const struct sim_device
         for (int i = 0; i < o->grid; i++) {
             const double k = k_top * (i + 0.5) / o->grid;
             const int allowed = gains_allows(&x->rule, k, b);
-            const int is = b <= B_MAX && k <= K_MAX && stable(o, d, chance, k, b);
-            if (o->map) { putchar(".o+#"[is + 2 * allowed]); }
-            r->stable += is;
-            r->covered += is && allowed;
+            const int n = b <= B_MAX && k <= K_MAX ? places(o, d, chance, k, b) : 0;
+            if (o->map) { putchar(".o+#"[(n >= 4 << ONE_SIXTEEN) + 2 * allowed]); }
+            for (int p = 0; p < ONE_PLACES; p++) {
+                r->stable[p] += n >= 4 << p;
+                r->covered[p] += n >= 4 << p && allowed;
+            }
         }
     }
     fflush(stdout); /* we may be the child of another process */

@@ -9,6 +9,10 @@
 
 #define ONE_LIGHTER 3 /* so often the known mass may be halved if the box cannot lift it */
 
+/* A pair of gains is stable if every fall rests at so many places of the wall between two counts;
+ * at how many is asked decides what is called stable. */
+enum { ONE_FOUR, ONE_EIGHT, ONE_SIXTEEN, ONE_PLACES };
+
 /* Where in the rule a run is. */
 enum { ONE_INSIDE, ONE_LINE, ONE_WHERES };
 
@@ -25,10 +29,10 @@ struct one {
     double mass_kg, device_s, residual; /* the known mass at last; device time of all tries */
     double truth[MODEL_PARS], value[MODEL_PARS], low[MODEL_PARS], high[MODEL_PARS];
     int32_t runs[ONE_WHERES], single[ONE_WHERES],
-        unstable[ONE_WHERES]; /* runs of ten falls; of
-                               * them those in which one fall does not come to rest, and more of
-                               * them */
-    double stable, covered;   /* nodes where the device is stable; of them inside the rule */
+        unstable[ONE_WHERES];                        /* runs of ten falls; of
+                                                      * them those in which one fall does not come to rest, and more of
+                                                      * them */
+    int32_t stable[ONE_PLACES], covered[ONE_PLACES]; /* nodes, and of them inside the rule */
 };
 
 /* Device i of a draw. */
