@@ -28,10 +28,8 @@ struct one {
     int32_t fits, advised;
     double mass_kg, device_s, residual; /* the known mass at last; device time of all tries */
     double truth[MODEL_PARS], value[MODEL_PARS], low[MODEL_PARS], high[MODEL_PARS];
-    int32_t runs[ONE_WHERES], single[ONE_WHERES],
-        unstable[ONE_WHERES];                        /* runs of ten falls; of
-                                                      * them those in which one fall does not come to rest, and more of
-                                                      * them */
+    /* Runs of ten falls; those with one fall that does not come to rest, and with more of them. */
+    int32_t runs[ONE_WHERES], single[ONE_WHERES], unstable[ONE_WHERES];
     int32_t stable[ONE_PLACES], covered[ONE_PLACES]; /* nodes, and of them inside the rule */
 };
 
