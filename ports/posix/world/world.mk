@@ -11,7 +11,8 @@ world_tree := $(if $(filter -static,$(LDFLAGS)),,$(if $(call sees,embree3/rtcore
               sees,embree4/rtcore.h),4)))
 world_mesh := $(B)/posix/ports/posix/world/$(if $(world_tree),mesh_embree,mesh_none).o
 world_gl   := $(and $(call have,SDL2/SDL_ttf.h),$(call have,GL/gl.h),$(call have,png.h))
-world_mesh_deps := .ci/deps "the world's meshes" "ls /usr/include/embree*/rtcore.h" libembree-dev || :
+world_mesh_deps := .ci/deps "the world's meshes" "ls /usr/include/embree*/rtcore.h" \
+                   libembree-dev || :
 world_pkgs := libsdl2-dev libsdl2-ttf-dev libgl-dev libegl-dev libgl1-mesa-dri libpng-dev \
               fonts-dejavu-core
 world      := $(B)/posix/world
