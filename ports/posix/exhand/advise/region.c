@@ -11,7 +11,7 @@
 
 #define K_MAX_NPM  1e6 /* what a scene takes */
 #define B_MAX_NSPM 1e3
-#define FEW        8    /* cases on the way up */
+#define FEW        5    /* cases on the way up */
 #define COARSE     1.19 /* k from pair to pair on the way up: a quarter of an octave */
 #define FINE       1.02 /* and at the end of a row */
 #define SEARCH     16   /* octaves of k above the first in which something has to hold */
@@ -106,23 +106,25 @@ static double first_k(double T_s)
 
 static int is_few(const struct region_opt *o) { return all_cases(o) < FEW ? all_cases(o) : FEW; }
 
+static int is_half(const struct region_opt *o) { return (all_cases(o) + 1) / 2; }
+
 /* The weakest wall that holds the mass at this b; 0: none. */
 static double weakest(const struct region_opt *o, double b, int *hint)
 {
     double k = first_k(o->wall.T_s);
     for (int i = 0; i < 2 * SEARCH && k < K_MAX_NPM; i++, k *= COARSE * COARSE) {
-        if (holds(o, k, b, is_few(o), hint) && holds(o, k, b, all_cases(o), hint)) { return k; }
+        if (holds(o, k, b, is_few(o), hint) && holds(o, k, b, is_half(o), hint)) { return k; }
     }
     return 0;
 }
 
 /* The stiffest pair not above k that does not hold, of those looked at: k and, against islands,
- * some way below it. 0: all hold. */
+ * some way below it by half of the cases. 0: all hold. */
 static double failing(const struct region_opt *o, double low, double k, double b, int *hint)
 {
     static const double down[] = {1, 1.05, 1.15, 1.35};
     for (size_t i = 0; i < sizeof down / sizeof down[0] && k / down[i] >= low; i++) {
-        if (!holds(o, k / down[i], b, all_cases(o), hint)) { return k / down[i]; }
+        if (!holds(o, k / down[i], b, i ? is_half(o) : all_cases(o), hint)) { return k / down[i]; }
     }
     return 0;
 }
