@@ -28,7 +28,7 @@ DEVICES ?= 240
 .PHONY: certificate
 certificate:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(lab)
-	@$(lab) certificate --devices $(DEVICES) --seed 300 --results $(B)/certificate.csv $(ARGS)
+	@$(lab) certificate --devices $(DEVICES) --seed 400 --results $(B)/certificate.csv $(ARGS)
 
 # Recorded networks beside them, where there are any.
 SEEDS    ?= 5

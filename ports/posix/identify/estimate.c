@@ -16,6 +16,7 @@
 #define GOOD       0.1 /* a start that came so far is the one */
 #define AGAIN      4   /* from what was found, at most */
 #define LAG_S      200e-6
+#define HOPELESS   20 /* a cost from which plain steps lead nowhere */
 
 struct starts {
     struct model m[STARTS_MAX];
@@ -110,6 +111,7 @@ int estimate_finish(struct fit *f, const struct identify_data *d, const struct o
     struct fit next;
     int err = fit_run(f, d, o, near);
     if (err == 0) { err = fit_run(f, d, o, down); }
+    if (err || f->cost > HOPELESS) { return err; }
     for (int i = 0; i < 3 && err == 0; i++) {
         next = *f;
         err = fit_run(&next, d, o, plain);

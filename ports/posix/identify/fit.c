@@ -262,11 +262,12 @@ int fit_run(
     f->good = 0;
     f->cost = residuals(&w, &f->at);
     for (f->steps = 0; f->steps < how.steps && !f->good; f->steps++) {
-        double was = f->cost;
+        const double was = f->cost;
+        int here = 0;
         /* Plain steps are short: their derivatives are those of the first. */
         if (!how.bold || f->steps == 0) { derivatives(&w, &f->at, !how.one_sided, spare); }
         normal(&w, a, g);
-        for (int tries = 0; tries < 8; tries++) {
+        for (int tries = 0; tries < 8 && !here; tries++) {
             struct model next = f->at;
             double cost;
             if (solve(a, raise, g, x) == 0) {
@@ -275,12 +276,11 @@ int fit_run(
                 if (cost < f->cost || (how.bold && cost < 1.2 * f->cost)) {
                     f->at = next;
                     f->cost = cost;
-                    raise = raise > 1e-7 ? raise / 10 : raise;
-                    if (how.bold) { raise = 0; }
-                    break;
+                    raise = how.bold ? 0 : raise > 1e-7 ? raise / 10 : raise;
+                    here = 1;
                 }
             }
-            raise *= 10;
+            if (!here) { raise *= 10; }
         }
         if (how.bold == 2 && f->steps >= 2) {
             to_free(&f->at, x);
@@ -288,7 +288,7 @@ int fit_run(
             sums++;
         }
         f->good = !how.bold && was - f->cost < how.enough * was;
-        if (!f->good) { (void)residuals(&w, &f->at); }
+        if (!f->good && !here) { (void)residuals(&w, &f->at); }
     }
     if (how.bold == 2 && sums > 0) {
         for (int i = 0; i < N; i++) { mean[i] /= sums; }

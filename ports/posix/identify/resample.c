@@ -13,6 +13,7 @@
 #define SEED       0x7265736D70 /* no seed of a simulated device that anybody gives */
 #define STUDENT_95 2.5706       /* for RESAMPLES - 1 */
 #define TRIES      4            /* starts of a fit, at most */
+#define WIDER      1.15         /* the device's own fit began farther away than these */
 
 struct again {
     int done;
@@ -102,7 +103,7 @@ static void take(struct fit *f, const struct again *r, int n)
             const double apart = log_or(i, r[k].at.value[i]) - u - mean;
             square += apart * apart / (n - 1);
         }
-        half = STUDENT_95 * sqrt(square * (1 + 1.0 / n));
+        half = WIDER * STUDENT_95 * sqrt(square * (1 + 1.0 / n));
         f->at.value[i] = back(i, u - mean);
         f->low[i] = back(i, u - mean - half);
         f->high[i] = back(i, u - mean + half);
