@@ -12,6 +12,7 @@ struct fit {
     int steps;                                /* taken */
     int good;                                 /* it came to its end */
     double low[MODEL_PARS], high[MODEL_PARS]; /* 95 % */
+    double mu_low, mu_high;                   /* of model_mu(), 95 % */
 };
 
 #define FIT_ALL   ((1u << MODEL_PARS) - 1u)

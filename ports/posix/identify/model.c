@@ -25,6 +25,11 @@ const struct model_row model_row[MODEL_PARS] = {
     {"lag", "s", 10e-6, 0.01, 1},
 };
 
+double model_mu(const struct model *m)
+{
+    return m->value[MODEL_MU_MOTOR] + m->value[MODEL_MU_MASS];
+}
+
 struct model model_of(const struct sim_device *d, double T_s)
 {
     const double late_s =

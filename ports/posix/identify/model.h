@@ -38,6 +38,9 @@ struct model {
     double value[MODEL_PARS];
 };
 
+/* Both dry frictions of the string. A run tells this sum better than its two parts. */
+double model_mu(const struct model *m);
+
 /* What the simulated device is in these terms, at a period of T_s. */
 struct model model_of(const struct sim_device *d, double T_s);
 /* The other way: a device for the advisor at that period. */

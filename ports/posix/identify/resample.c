@@ -92,6 +92,21 @@ static void within_delay(struct fit *f)
     }
 }
 
+/* The sum of both frictions of the string; its parts were taken before. */
+static void take_sum(struct fit *f, const struct model *told, const struct again *r, int n)
+{
+    const double value = model_mu(&f->at);
+    double mean = 0, square = 0, half;
+    for (int k = 0; k < n; k++) { mean += (model_mu(&r[k].at) - model_mu(told)) / n; }
+    for (int k = 0; k < n; k++) {
+        const double apart = model_mu(&r[k].at) - model_mu(told) - mean;
+        square += apart * apart / (n - 1);
+    }
+    half = WIDER * STUDENT_95 * sqrt(square * (1 + 1.0 / n));
+    f->mu_low = value > half ? value - half : 0;
+    f->mu_high = value + half;
+}
+
 static void take(struct fit *f, const struct again *r, int n)
 {
     const struct model told = f->at;
@@ -108,6 +123,7 @@ static void take(struct fit *f, const struct again *r, int n)
         f->low[i] = back(i, u - mean - half);
         f->high[i] = back(i, u - mean + half);
     }
+    take_sum(f, &told, r, n);
     within_delay(f);
 }
 

@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#define HEAD "exhand identify 1"
+#define HEAD "exhand identify 2"
 
 /* Lines of one value. */
 static const struct {
@@ -22,6 +22,13 @@ static const struct {
 };
 #define SINGLES (sizeof single / sizeof single[0])
 
+/* Lines of a value and its interval: of the model's, then of their sum. */
+#define ROWS (MODEL_PARS + 1)
+static const struct model_row sum_row = {"mu_both", "", 0, 4, 0};
+#define SUM_OFF 1e-5 /* of its own line, from the sum of the two others: digits cut off */
+
+static const struct model_row *row_of(int i) { return i < MODEL_PARS ? &model_row[i] : &sum_row; }
+
 void result_take(struct result_file *r, const struct fit *f, double T_s, double mass_kg)
 {
     memset(r, 0, sizeof *r);
@@ -34,6 +41,8 @@ void result_take(struct result_file *r, const struct fit *f, double T_s, double 
         r->low.value[i] = low < model_row[i].min ? model_row[i].min : low;
         r->high.value[i] = high > model_row[i].max ? model_row[i].max : high;
     }
+    r->mu_low = f->mu_low;
+    r->mu_high = f->mu_high > sum_row.max ? sum_row.max : f->mu_high;
 }
 
 void result_write(FILE *f, const struct result_file *r)
@@ -46,6 +55,7 @@ void result_write(FILE *f, const struct result_file *r)
         fprintf(f, "%s = %.7g %.7g %.7g%s%s\n", model_row[i].name, r->value.value[i],
             r->low.value[i], r->high.value[i], model_row[i].unit[0] ? " " : "", model_row[i].unit);
     }
+    fprintf(f, "%s = %.7g %.7g %.7g\n", sum_row.name, model_mu(&r->value), r->mu_low, r->mu_high);
 }
 
 static int bad(const char *name, int line, const char *what)
@@ -73,9 +83,10 @@ static int take_single(
     return 0;
 }
 
-static int take_row(struct result_file *r, int i, const char *text, const char *name, int line)
+static int take_row(
+    struct result_file *r, double *sum, int i, const char *text, const char *name, int line)
 {
-    const struct model_row *row = &model_row[i];
+    const struct model_row *row = row_of(i);
     char unit[16] = "", more[2];
     double v, low, high;
     const int n = sscanf(text, "%lf %lf %lf %15s %1s", &v, &low, &high, unit, more);
@@ -87,6 +98,12 @@ static int take_row(struct result_file *r, int i, const char *text, const char *
         return bad(name, line, "a value outside its range");
     }
     if (!(low <= v && v <= high)) { return bad(name, line, "a value outside its interval"); }
+    if (i == MODEL_PARS) {
+        *sum = v;
+        r->mu_low = low;
+        r->mu_high = high;
+        return 0;
+    }
     r->value.value[i] = v;
     r->low.value[i] = low;
     r->high.value[i] = high;
@@ -99,14 +116,14 @@ static int find(const char *word)
     for (size_t i = 0; i < SINGLES; i++) {
         if (strcmp(word, single[i].name) == 0) { return (int)i; }
     }
-    for (int i = 0; i < MODEL_PARS; i++) {
-        if (strcmp(word, model_row[i].name) == 0) { return (int)SINGLES + i; }
+    for (int i = 0; i < ROWS; i++) {
+        if (strcmp(word, row_of(i)->name) == 0) { return (int)SINGLES + i; }
     }
     return -1;
 }
 
-static int take_line(
-    struct result_file *r, unsigned *seen, const char *text, const char *name, int line)
+static int take_line(struct result_file *r, double *sum, unsigned *seen, const char *text,
+    const char *name, int line)
 {
     char word[32];
     int at = 0, i;
@@ -118,12 +135,13 @@ static int take_line(
     if (*seen >> i & 1) { return bad(name, line, "a name that came before"); }
     *seen |= 1u << i;
     return i < (int)SINGLES ? take_single(r, (size_t)i, text + at, name, line)
-                            : take_row(r, i - (int)SINGLES, text + at, name, line);
+                            : take_row(r, sum, i - (int)SINGLES, text + at, name, line);
 }
 
 int result_parse(struct result_file *r, FILE *f, const char *name)
 {
     char text[RESULT_LINE_B];
+    double sum = 0, off;
     unsigned seen = 0;
     int line = 0;
     memset(r, 0, sizeof *r);
@@ -136,16 +154,22 @@ int result_parse(struct result_file *r, FILE *f, const char *name)
         if (line == 1) {
             if (strcmp(text, HEAD) != 0) { return bad(name, line, "not `" HEAD "`"); }
         } else if (text[0] != '#' && text[0] != '\0') {
-            err = take_line(r, &seen, text, name, line);
+            err = take_line(r, &sum, &seen, text, name, line);
         }
         if (err) { return err; }
     }
-    for (int i = 0; i < (int)SINGLES + MODEL_PARS; i++) {
+    for (int i = 0; i < (int)SINGLES + ROWS; i++) {
         if (!(seen >> i & 1)) {
             cli_complain("%s: has no %s: give a file that exhand identify wrote", name,
-                i < (int)SINGLES ? single[i].name : model_row[i - (int)SINGLES].name);
+                i < (int)SINGLES ? single[i].name : row_of(i - (int)SINGLES)->name);
             return 2;
         }
+    }
+    off = sum - model_mu(&r->value);
+    if (!finite_in(off, -SUM_OFF, SUM_OFF)) {
+        cli_complain(
+            "%s: mu_both is not mu_motor + mu_mass: give a file that exhand identify wrote", name);
+        return 2;
     }
     return 0;
 }

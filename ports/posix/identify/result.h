@@ -2,12 +2,13 @@
 /* What a device is, as a text: `exhand identify` writes it, `exhand advise gains --device` reads
  * it.
  *
- *   exhand identify 1
+ *   exhand identify 2
  *   # any remark
  *   rate = 2000 hz
  *   known_mass = 0.5 kg
  *   residual = 0.33
- *   rotor = 0.0464 0.0461 0.0467 kg       value, low, high, unit: one line of each of model_row[]
+ *   rotor = 0.0464 0.0461 0.0467 kg       value, low, high, unit: one line of each of model_row[],
+ *   mu_both = 0.271 0.27 0.273            and of mu_motor + mu_mass
  */
 #ifndef IDENTIFY_RESULT_H
 #define IDENTIFY_RESULT_H
@@ -22,6 +23,7 @@ struct result_file {
     double rate_Hz, mass_kg;
     double residual; /* mean square over what edges of counts allow */
     struct model value, low, high;
+    double mu_low, mu_high; /* of model_mu() of the value */
 };
 
 /* A residual above this: the model does not fit, and nobody may be advised by the file. */

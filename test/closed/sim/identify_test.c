@@ -100,7 +100,7 @@ TEST(what_does_not_fit_is_told)
 
 /* --- the file --- */
 
-static const char good[] = "exhand identify 1\n"
+static const char good[] = "exhand identify 2\n"
                            "# a remark\n"
                            "rate = 2000 hz\n"
                            "known_mass = 0.5 kg\n"
@@ -115,7 +115,8 @@ static const char good[] = "exhand identify 1\n"
                            "cable_b = 6.2 6.1 6.3 ns_per_m\n"
                            "mu_motor = 0.1835 0.183 0.184\n"
                            "mu_mass = 0.088 0.087 0.089\n"
-                           "lag = 0.00016 0.00014 0.00018 s\n";
+                           "lag = 0.00016 0.00014 0.00018 s\n"
+                           "mu_both = 0.2715 0.271 0.272\n";
 
 /* The good file with one text in it replaced. */
 static void put(const char *path, const char *old, const char *with)
@@ -156,7 +157,7 @@ TEST(a_damaged_file_is_refused_by_line)
     static const struct {
         const char *old, *with, *says;
     } row[] = {
-        {"identify 1", "identify 2", ":1: "},
+        {"identify 2", "identify 1", ":1: "},
         {"rate = 2000 hz", "rate = 2000 khz", ":3: "},
         {"rate = 2000 hz\n", "", "has no rate"},
         {"rate = 2000", "rate = nan", ":3: "},
@@ -174,7 +175,10 @@ TEST(a_damaged_file_is_refused_by_line)
         {"rotor = 0.0464 0.0461 0.0467 kg", "rotor : 0.0464 0.0461 0.0467 kg", ":6: "},
         {"viscous = 3.41 3.39 3.43 ns_per_m\n", "", "has no viscous"},
         {"mu_mass = ", "mu_motor = ", ":15: "},
-        {"lag = 0.00016 0.00014 0.00018 s\n", "lag = 0.00016 0.00014 0.00018 s", "without an end"},
+        {"0.271 0.272\n", "0.271 0.272", "without an end"},
+        {"mu_both = 0.2715 0.271 0.272\n", "", "has no mu_both"},
+        {"mu_both = 0.2715", "mu_both = 0.2719", "mu_both is not mu_motor + mu_mass"},
+        {"mu_both = 0.2715", "mu_both = 0.28", "outside its interval"},
     };
     char *dir = said_dir(), path[300];
     snprintf(path, sizeof path, "%s/device.txt", dir);
@@ -214,12 +218,38 @@ TEST(any_bytes_are_read_or_refused)
                 (char)(1 + sim_random_u64(&chance) % 126);
         }
         if (parsed(&r, text) != 0) { continue; }
+        CHECK(r.mu_low <= model_mu(&r.value) + 1e-5 && model_mu(&r.value) <= r.mu_high + 1e-5, "%s",
+            text);
         for (int p = 0; p < MODEL_PARS; p++) {
             CHECK(r.low.value[p] <= r.value.value[p] && r.value.value[p] <= r.high.value[p] &&
                       r.low.value[p] >= model_row[p].min && r.high.value[p] <= model_row[p].max,
                 "%s", text);
         }
     }
+}
+
+/* The advisor's devices stay inside the interval of both frictions' sum, though those of its parts
+ * reach far beyond it. */
+TEST(the_sum_of_both_frictions_is_kept)
+{
+    static struct region_opt o;
+    struct result_file r;
+    int low = 0, high = 0;
+    CHECK(parsed(&r, good) == 0, "%s", good);
+    r.low.value[MODEL_MU_MOTOR] = 0.15;
+    r.high.value[MODEL_MU_MOTOR] = 0.22;
+    r.low.value[MODEL_MU_MASS] = 0.05;
+    r.high.value[MODEL_MU_MASS] = 0.12;
+    CHECK_EQ_I64(gains_told(&o, &r, r.rate_Hz), 0);
+    CHECK(o.devices > 4, "%d devices", o.devices);
+    for (int i = 0; i < o.devices; i++) {
+        const double a = o.device[i].mu_motor, b = o.device[i].mu_mass;
+        CHECK(a >= 0.15 && a <= 0.22 && b >= 0.05 && b <= 0.12, "device %d: %g, %g", i, a, b);
+        CHECK(a + b > 0.271 - 1e-9 && a + b < 0.272 + 1e-9, "device %d: %g + %g", i, a, b);
+        low += a + b < 0.2711;
+        high += a + b > 0.2719;
+    }
+    CHECK(low > 0 && high > 0, "%d at the lower end, %d at the upper", low, high);
 }
 
 /* --- the command, and what is made of its file --- */
@@ -248,6 +278,10 @@ TEST(the_device_is_told_apart)
         WORDS("advise", "gains", "--device", path, "--rate", "500", "--cases", "4", "--k", "3000",
             "--b", "10"));
     CHECK(s.status == 0 && strstr(s.out, ": allowed ("), "%d\n%s%s", s.status, s.out, s.err);
+    CHECK(fabs(model_mu(&r.value) - model_mu(&truth)) <= 1.5 * (r.mu_high - r.mu_low) &&
+              r.mu_high - r.mu_low < 0.2 * model_mu(&truth),
+        "mu_both: %g, %g .. %g; it is %g", model_mu(&r.value), r.mu_low, r.mu_high,
+        model_mu(&truth));
     snprintf(log, sizeof log, "%s/identify.exh", dir);
     said(&s, dir, cli_replay, WORDS("replay", log));
     CHECK(s.status == 0, "%d\n%s%s", s.status, s.out, s.err);
@@ -266,5 +300,5 @@ TEST(what_cannot_be_lifted_asks_for_a_lighter_mass)
 
 TEST_MAIN("identify", what_is_found_is_the_device, a_wrong_mass_scales_what_has_a_newton_in_it,
     what_does_not_fit_is_told, a_file_is_read_back, a_damaged_file_is_refused_by_line,
-    any_bytes_are_read_or_refused, the_device_is_told_apart,
+    any_bytes_are_read_or_refused, the_sum_of_both_frictions_is_kept, the_device_is_told_apart,
     what_cannot_be_lifted_asks_for_a_lighter_mass);

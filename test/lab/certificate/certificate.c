@@ -37,7 +37,7 @@ static void print(FILE *f, const struct one_opt *o, int i, const struct one *r)
     for (int p = 0; p < ONE_PLACES; p++) {
         n += snprintf(line + n, sizeof line - (size_t)n, ",%d,%d", r->stable[p], r->covered[p]);
     }
-    for (int p = 0; p < MODEL_PARS; p++) {
+    for (int p = 0; p < ONE_VALUES; p++) {
         n += snprintf(line + n, sizeof line - (size_t)n, ",%.7g,%.7g,%.7g,%.7g", r->truth[p],
             r->value[p], r->low[p], r->high[p]);
     }
@@ -61,7 +61,7 @@ static int parse(const char *line, const struct one_opt *o, int *i, struct one *
         if (sscanf(line, ",%d,%d%n", &r->stable[p], &r->covered[p], &n) != 2) { return 0; }
         at = n;
     }
-    for (int p = 0; p < MODEL_PARS; p++) {
+    for (int p = 0; p < ONE_VALUES; p++) {
         int n = 0;
         line += at;
         if (sscanf(line, ",%lf,%lf,%lf,%lf%n", &r->truth[p], &r->value[p], &r->low[p], &r->high[p],
@@ -121,7 +121,8 @@ static struct sums sums_of(const struct certificate *c)
             s.share[p][s.shares] = r->stable[p] > 0 ? (double)r->covered[p] / r->stable[p] : 0;
         }
         s.shares += r->fits || r->advised;
-        for (int p = 0; r->fits && p < MODEL_LAG; p++) {
+        for (int p = 0; r->fits && p < ONE_VALUES; p++) {
+            if (p == MODEL_LAG) { continue; } /* part of the delay */
             s.values++;
             s.hit += r->low[p] <= r->truth[p] && r->truth[p] <= r->high[p];
         }
@@ -136,9 +137,10 @@ static void coverage(const struct certificate *c)
 {
     printf("| value | unit | truth inside its interval | half the interval, median |\n"
            "|--|--|--|--|\n");
-    for (int p = 0; p < MODEL_LAG; p++) {
+    for (int p = 0; p < ONE_VALUES; p++) {
         double half[DEVICES_MAX];
         int n = 0, hit = 0;
+        if (p == MODEL_LAG) { continue; }
         for (int i = 0; i < c->devices; i++) {
             const struct one *r = &c->one[i];
             if (!r->done || !r->fits || !(r->truth[p] > 0)) { continue; }
@@ -146,8 +148,10 @@ static void coverage(const struct certificate *c)
             half[n++] = (r->high[p] - r->low[p]) / 2 / r->truth[p];
         }
         qsort(half, (size_t)n, sizeof half[0], rising);
-        printf("| %s | %s | %.1f %% of %d | %.2g %% |\n", model_row[p].name, model_row[p].unit,
-            n ? 100.0 * hit / n : 0, n, n ? 100 * half[n / 2] : 0);
+        printf("| %s | %s | %.1f %% of %d | %.2g %% |\n",
+            p == ONE_MU_BOTH ? "mu_both" : model_row[p].name,
+            p == ONE_MU_BOTH ? "" : model_row[p].unit, n ? 100.0 * hit / n : 0, n,
+            n ? 100 * half[n / 2] : 0);
     }
 }
 

@@ -40,6 +40,18 @@ static int session(struct one *r, struct identify_session *s, struct identify_da
     return r->failed;
 }
 
+static void keep(struct one *r, const struct model *truth, const struct result_file *file)
+{
+    memcpy(r->truth, truth->value, sizeof truth->value);
+    memcpy(r->value, file->value.value, sizeof file->value.value);
+    memcpy(r->low, file->low.value, sizeof file->low.value);
+    memcpy(r->high, file->high.value, sizeof file->high.value);
+    r->truth[ONE_MU_BOTH] = model_mu(truth);
+    r->value[ONE_MU_BOTH] = model_mu(&file->value);
+    r->low[ONE_MU_BOTH] = file->mu_low;
+    r->high[ONE_MU_BOTH] = file->mu_high;
+}
+
 /* 0: it was told apart, and the model fits. */
 static int tell(struct one *r, const struct one_opt *o, const struct sim_device *d, uint64_t seed,
     struct result_file *file)
@@ -61,10 +73,7 @@ static int tell(struct one *r, const struct one_opt *o, const struct sim_device 
     if (!err) {
         const struct model truth = model_of(d, data.T_s);
         result_take(file, &e.fit, data.T_s, data.mass_kg);
-        memcpy(r->truth, truth.value, sizeof r->truth);
-        memcpy(r->value, file->value.value, sizeof r->value);
-        memcpy(r->low, file->low.value, sizeof r->low);
-        memcpy(r->high, file->high.value, sizeof r->high);
+        keep(r, &truth, file);
     }
     identify_data_free(&data);
     return err;
@@ -199,6 +208,7 @@ void one_run(struct one *r, const struct one_opt *o, int i)
         memset(&file, 0, sizeof file);
         file.rate_Hz = (double)o->rate_Hz;
         file.value = file.low = file.high = model_of(&d, 1 / file.rate_Hz);
+        file.mu_low = file.mu_high = model_mu(&file.value);
         advise(r, o, &d, &file, seed);
     } else if (tell(r, o, &d, seed, &file) == 0 && o->grid > 0) {
         advise(r, o, &d, &file, seed);

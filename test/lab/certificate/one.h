@@ -16,6 +16,9 @@ enum { ONE_FOUR, ONE_EIGHT, ONE_SIXTEEN, ONE_PLACES };
 /* Where in the rule a run is. */
 enum { ONE_INSIDE, ONE_LINE, ONE_WHERES };
 
+/* What is held against the truth: the model's values, and the sum of both frictions. */
+enum { ONE_MU_BOTH = MODEL_PARS, ONE_VALUES };
+
 struct one_opt {
     int64_t seed, rate_Hz, repeats;
     int told; /* 1: nothing is identified, the advisor is told the device */
@@ -27,7 +30,7 @@ struct one {
     int32_t done, failed; /* enum identify_result of the last try, 0: it ran to its end */
     int32_t fits, advised;
     double mass_kg, device_s, residual; /* the known mass at last; device time of all tries */
-    double truth[MODEL_PARS], value[MODEL_PARS], low[MODEL_PARS], high[MODEL_PARS];
+    double truth[ONE_VALUES], value[ONE_VALUES], low[ONE_VALUES], high[ONE_VALUES];
     /* Runs of ten falls; those with one fall that does not come to rest, and with more of them. */
     int32_t runs[ONE_WHERES], single[ONE_WHERES], unstable[ONE_WHERES];
     int32_t stable[ONE_PLACES], covered[ONE_PLACES]; /* nodes, and of them inside the rule */

@@ -10,6 +10,19 @@
     0.93303299153680741 /* 2^(-1/10): as many steps, none of them a multiple of another \
                          */
 
+/* Moves both frictions towards their values until their sum is inside its own interval: a corner
+ * of the two alone is a device that the run ruled out. */
+static void keep_sum(struct model *m, const struct result_file *f)
+{
+    const double value = model_mu(&f->value), sum = model_mu(m);
+    const double most = sum < f->mu_low ? f->mu_low : f->mu_high;
+    if (!(sum < f->mu_low || sum > f->mu_high)) { return; }
+    for (int i = MODEL_MU_MOTOR; i <= MODEL_MU_MASS; i++) {
+        const double v = f->value.value[i];
+        m->value[i] = v + (m->value[i] - v) * (most - value) / (sum - value);
+    }
+}
+
 /* Of its intervals, what is worse for rest: less inertia and friction, later, coarser. The delay
  * holds the lag: of the two a run tells the sum, and the lag alone may be anything within it. */
 static struct model corner(const struct result_file *f, int stiff)
@@ -20,6 +33,7 @@ static struct model corner(const struct result_file *f, int stiff)
     m.value[MODEL_STEP] = f->high.value[MODEL_STEP];
     m.value[MODEL_KF] = f->value.value[MODEL_KF];
     if (stiff) { m.value[MODEL_CABLE_K] = f->high.value[MODEL_CABLE_K]; }
+    keep_sum(&m, f);
     return m;
 }
 
@@ -35,6 +49,7 @@ static struct model within(const struct result_file *f, int n)
         share -= (double)(int)share;
         m.value[i] = f->low.value[i] + share * (f->high.value[i] - f->low.value[i]);
     }
+    keep_sum(&m, f);
     return m;
 }
 

@@ -60,7 +60,10 @@ static void print(
         if (truth) { printf(" %11.5g", truth->value[i]); }
         printf("\n");
     }
-    printf("%u rounds, %zu edges of counts; residual %.3g of %.3g allowed: %s\n", e->rounds,
+    printf("%-9s %-8s %11.5g  %11.5g .. %-11.5g", "mu_both", "", model_mu(&r->value), r->mu_low,
+        r->mu_high);
+    if (truth) { printf(" %11.5g", model_mu(truth)); }
+    printf("\n%u rounds, %zu edges of counts; residual %.3g of %.3g allowed: %s\n", e->rounds,
         e->counts, r->residual, RESULT_RESIDUAL_MAX,
         r->residual <= RESULT_RESIDUAL_MAX ? "the model fits" : "the model does NOT fit");
 }
