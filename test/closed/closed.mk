@@ -22,13 +22,13 @@ gate-mutants:
 	@mkdir -p $(B)/gate
 	@test/closed/model/mutants.py $(B)/gate $(ARGS)
 
-DEVICES ?= 240
-## Identify random devices, advise each by its file, and run it inside of its rule (DEVICES=240; two
+DEVICES ?= 200
+## Identify random devices, advise each by its file, and run it inside of its rule (DEVICES=200; two
 ## hours of two cores; goes on from build/certificate.csv).
 .PHONY: certificate
 certificate:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(lab)
-	@$(lab) certificate --devices $(DEVICES) --seed 400 --results $(B)/certificate.csv $(ARGS)
+	@$(lab) certificate --devices $(DEVICES) --seed 700 --results $(B)/certificate.csv $(ARGS)
 
 # Recorded networks beside them, where there are any.
 SEEDS    ?= 5
