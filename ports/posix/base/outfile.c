@@ -92,7 +92,7 @@ FILE *outfile_open(const char *option, const char *path)
     e = find(NULL);
     if (err == 0) { err = e ? outpart_open(&e->part, path) : EMFILE; }
     if (err == 0) {
-        f = e->f = fdopen(e->part.fd, "w");
+        f = e->f = fdopen(e->part.fd, e->part.slot < 0 ? "w" : "w+");
         e->option = option;
         strcpy(e->path, path);
         if (f == NULL) {

@@ -131,11 +131,11 @@ int outpart_same(const char *a, const char *b)
 /* --- beside --- */
 
 /* Where no file system keeps locks there is none to be had. */
-static int lock_file(int fd)
+static int lock_file(int fd, int how)
 {
     int err;
     do {
-        err = flock(fd, LOCK_EX | LOCK_NB) != 0 ? errno : 0;
+        err = flock(fd, how | LOCK_NB) != 0 ? errno : 0;
     } while (err == EINTR);
     return err == EWOULDBLOCK ? EBUSY : 0;
 }
@@ -154,7 +154,7 @@ static int clear_away(const char *part)
     const int fd = open(part, O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (fd < 0) { return errno == ENOENT ? 0 : errno; }
     if (fstat(fd, &st) != 0 || !S_ISREG(st.st_mode)) { err = EEXIST; }
-    if (err == 0) { err = lock_file(fd); }
+    if (err == 0) { err = lock_file(fd, LOCK_EX); }
     if (err == 0 && is_named(fd, part) && unlink(part) != 0) { err = errno; }
     (void)close(fd);
     return err;
@@ -177,13 +177,22 @@ static int create(const char *part)
 {
     for (int i = 0; i < TRIES; i++) {
         const int fd = open_high(part, O_RDWR | O_CREAT | O_EXCL);
-        int err = fd < 0 ? errno : lock_file(fd);
+        int err = fd < 0 ? errno : lock_file(fd, LOCK_EX);
         if (err == 0 && is_named(fd, part)) { return fd; }
         if (fd >= 0) { (void)close(fd); }
         if (err == EEXIST) { err = clear_away(part); }
         if (err) { return -err; }
     }
     return -EBUSY;
+}
+
+/* The file that is there: 0, or an errno; EBUSY: it is whole, and its writer goes on. */
+static int may_write(const char *path)
+{
+    const int fd = open_high(path, O_WRONLY | O_NONBLOCK);
+    const int err = fd < 0 ? errno : lock_file(fd, LOCK_SH);
+    if (fd >= 0) { (void)close(fd); }
+    return err;
 }
 
 static int open_beside(struct outpart *p, const struct stat *old)
@@ -242,8 +251,8 @@ int outpart_open(struct outpart *p, const char *path)
     if (there && (!S_ISREG(st.st_mode) || as >= 0)) {
         return open_in_place(p, path, S_ISREG(st.st_mode) ? as : -1);
     }
-    if (there && access(path, W_OK) != 0) { return errno; }
     err = follow(p->path, path);
+    if (err == 0 && there) { err = may_write(path); }
     if (err == 0) { err = open_beside(p, there ? &st : NULL); }
     if (err) { outpart_abandon(p); }
     return err;

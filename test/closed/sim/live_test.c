@@ -81,7 +81,8 @@ TEST(an_interrupt_leaves_a_complete_log)
     const pid_t pid =
         said_start(dir, cli_run, WORDS("run", "--pace", "--rate", "1000", "--log", log));
     nanosleep(&while_it_runs, NULL);
-    CHECK(said_size(log) > 0, "it has not begun");
+    CHECK(said_size(said_path(dir, "a.exh.part")) > 0, "it has not begun");
+    CHECK(said_size(log) < 0, "a log that is not whole has its name");
     kill(pid, SIGINT);
     said_end(&s, dir, pid);
     CHECK(s.status == 130, "%d %s", s.status, s.err);
@@ -141,7 +142,9 @@ static int stopped_in_run(void)
     int in_run;
     const pid_t pid = said_start(dir, cli_run,
         WORDS("run", "--pace", "--rate", "100", "--seconds", "4", "--slack", "0.3", "--log", log));
-    for (int i = 0; i < 1000 && said_size(log) <= 0; i++) { nanosleep(&a_while, NULL); }
+    for (int i = 0; i < 1000 && said_size(said_path(dir, "a.exh.part")) <= 0; i++) {
+        nanosleep(&a_while, NULL);
+    }
     stopped_for(pid, runs, stands);
     said_end(&s, dir, pid);
     CHECK(s.status == 0 && strstr(s.out, " s, faults overrun"), "%d %s%s", s.status, s.out, s.err);

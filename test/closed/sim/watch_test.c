@@ -42,7 +42,7 @@ static void start(const char *option, const char *value)
     watcher = said_start(dir, watch,
         WORDS("watch", "--listen", at, "--seconds", "8", "--csv", said_path(dir, "w.csv"), option,
             value));
-    for (int i = 0; i < 400 && said_size(said_path(dir, "w.csv")) < 0; i++) { pause_ms(10); }
+    for (int i = 0; i < 400 && said_size(said_path(dir, "w.csv.part")) < 0; i++) { pause_ms(10); }
     pause_ms(50);
 }
 
