@@ -21,6 +21,7 @@ static struct {
     FILE *file;
     int paced;
     uint64_t lost;
+    uint32_t taken; /* records, modulo 2^32 as their numbers are */
     struct writer writer;
 } file;
 
@@ -62,6 +63,7 @@ int live_log_put(const void *rec, size_t len_B)
             taken = writer_put(&file.writer, rec, len_B, WAITS_S);
         } while (taken == 0 && !file.paced && !posix_interrupted());
     }
+    file.taken += taken == 1;
     file.lost += taken != 1;
     return taken == 1;
 }
@@ -73,14 +75,15 @@ int live_log_close(void)
     int err;
     if (file.file == NULL) { return 0; }
     err = writer_end(&file.writer, WAITS_S);
-    if (err > 0) {
+    if (err > 0 && outlog_mend(file.file, file.taken, (uint32_t)file.lost) != 0) {
         outfile_abandon(file.file);
-    } else if (err == 0 && outlog_close(file.file) != 0) {
+    } else if (err >= 0 && outlog_close(file.file) != 0) {
         return 1;
     }
     if (err > 0) {
-        cli_complain("--log: %s: can't be written: %s: %llu records lost", file.path, strerror(err),
-            (unsigned long long)file.lost);
+        cli_complain(
+            "--log: %s: can't be written: %s: %llu records lost: make room, or give another --log",
+            file.path, strerror(err), (unsigned long long)file.lost);
     } else if (err < 0) {
         cli_complain("%s: takes nothing for %.0f s: its end, and %llu records before, are lost",
             file.path, WAITS_S, (unsigned long long)file.lost);
