@@ -39,7 +39,7 @@ WRITERS = (
     ("csv", "exhand", "csv {log} --all --out {d}/a.csv", "same"),
     ("drop", "exhand", "drop --rate 500,1000 --falls 3 --runs 2 --jobs 2 --out {d}", "rows"),
     ("bilateral", "exhand",
-     "bilateral --speed natural --approaches 2 --seeds 1 --out {d}", "log"),
+     "bilateral --rate 500 --speed natural --approaches 1 --seeds 1 --out {d}", "log"),
     ("run-log", "exhand", "run --seconds 20 --log {d}/a.exh", "log"),
     ("run-paced", "exhand", "run --pace --rate 200 --seconds 0.6 --log {d}/a.exh", "log"),
     ("blackbox", "exhand", "run --seconds 4 --let-go 2 --blackbox {d}/b.exh", "log"),
@@ -344,9 +344,9 @@ def one(writer, opt, rng, deadline_s):
             writer.in_place(rng, kind, make, check)
             places += FEW
     c = writer.counts
-    print(f"{writer.name:16} {kills:4} signals, {c['ends']:4} in time; {full:3} limits, {disk:3} full "
-          f"disks, {places:3} in place; files: {c['new']:4} whole, {c['old']:4} old; "
-          f"{writer.took_s:.2f} s a run", flush=True)
+    print(f"{writer.name:16} {kills:4} signals, {c['ends']:4} in time; {full:3} limits, "
+          f"{disk:3} full disks, {places:3} in place; files: {c['new']:4} whole, "
+          f"{c['old']:4} old; {writer.took_s:.2f} s a run", flush=True)
 
 
 def main():
