@@ -39,6 +39,7 @@ check:
 	@$(timed) fmu $(B)/fmi/native
 	@$(timed) world boot-built contract-built nic-built hil-built
 	@$(timed) $(check_runs)
+	@$(timed) kill-short
 	@$(timed) stress-short
 	@$(timed) size
 	@$(timed) fmt-check

@@ -13,8 +13,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LINE_B 512
-#define PUTS   3 /* tries to set the outputs low */
+#define LINE_B       512
+#define PUTS         3   /* tries to set the outputs low */
+#define GPIO_SIGNALS 128 /* more than there are */
 
 static struct {
     struct gpio_spec spec;
@@ -134,6 +135,8 @@ void gpio_safe(void)
     gpio.enable = gpio.beat = 0;
 }
 
+static struct sigaction before_us[GPIO_SIGNALS];
+
 /* Low before anything else, and low they stay: a program that was stopped and goes on later must
  * not go on where it was. Then the signal does what it would have done. */
 static void on_signal(int sig)
@@ -141,8 +144,16 @@ static void on_signal(int sig)
     const int before = errno;
     dropped = 1;
     (void)put_low();
-    raise(sig); /* blocked until the handler returns, which is reset already */
+    (void)sigaction(sig, &before_us[sig], NULL);
+    raise(sig); /* blocked until the handler returns */
     errno = before;
+}
+
+/* One of a single use ends the program, too: it comes behind ours. */
+static int is_last(const struct sigaction *a)
+{
+    return a->sa_handler == SIG_DFL ||
+           ((a->sa_flags & (int)SA_RESETHAND) && a->sa_handler != on_signal);
 }
 
 /* All that end or stop a program, unless somebody has plans for them; nobody can have any for
@@ -154,9 +165,10 @@ static void guard_signals(void)
     a.sa_handler = on_signal;
     a.sa_flags = (int)SA_RESETHAND;
     sigfillset(&a.sa_mask);
-    for (int sig = 1; sig <= SIGRTMAX; sig++) {
+    for (int sig = 1; sig <= SIGRTMAX && sig < GPIO_SIGNALS; sig++) {
         if (sig == SIGCHLD || sig == SIGURG || sig == SIGCONT || sig == SIGWINCH) { continue; }
-        if (sigaction(sig, NULL, &was) == 0 && was.sa_handler == SIG_DFL) {
+        if (sigaction(sig, NULL, &was) == 0 && is_last(&was)) {
+            before_us[sig] = was;
             (void)sigaction(sig, &a, NULL);
         }
     }

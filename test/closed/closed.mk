@@ -22,6 +22,21 @@ gate-mutants:
 	@mkdir -p $(B)/gate
 	@test/closed/model/mutants.py $(B)/gate $(ARGS)
 
+# What the writers leave when they are ended at random moments, or the disk is full.
+kill_run = PYTHONDONTWRITEBYTECODE=1 test/closed/kill/kill.py $(1) $(exhand) $(lab) $(world)
+
+## End every writer of files 200 times at random moments, and on a full disk: nothing is lost
+## (ARGS="--only drop").
+.PHONY: kill kill-short
+kill:
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(exhand) $(lab) $(world)
+	@$(call kill_run,$(ARGS))
+
+# In a minute of two cores.
+kill-short:
+	@$(call kill_run,--kills 30 --seconds 40) > $(B)/kill.txt || { cat $(B)/kill.txt; exit 1; }
+	@tail -n 1 $(B)/kill.txt
+
 DEVICES ?= 200
 ## Identify random devices, advise each by its file, and run it inside of its rule (DEVICES=200; two
 ## hours of two cores; goes on from build/certificate.csv).

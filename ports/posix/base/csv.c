@@ -4,13 +4,13 @@
 #include "base/columns.h"
 #include "base/logfile.h"
 #include "base/option.h"
+#include "base/outfile.h"
+#include "base/outpart.h"
 
 #include "exhand/run/log.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 /* --- the rows of a log --- */
 
@@ -95,13 +95,6 @@ static int write_rows(struct walk *w, const struct columns *c, FILE *to)
 
 /* --- whole files --- */
 
-static int same_file(const char *a, const char *b)
-{
-    struct stat sa, sb;
-    return stat(a, &sa) == 0 && stat(b, &sb) == 0 && sa.st_dev == sb.st_dev &&
-           sa.st_ino == sb.st_ino;
-}
-
 /* Reads the log once for nothing but its faults: 0 when there are rows. */
 static int survey(struct logfile *l, unsigned what)
 {
@@ -123,15 +116,11 @@ static int convert(
     struct logfile *l, const char *to_path, unsigned what, const struct columns *columns)
 {
     struct walk w = {.log = l, .what = what};
-    FILE *to = to_path ? fopen(to_path, "w") : stdout;
+    FILE *to = to_path ? outfile_open("out", to_path) : stdout;
     int err;
-    if (to == NULL) {
-        cli_complain("%s: %s", to_path, strerror(errno));
-        return 2;
-    }
+    if (to == NULL) { return 2; }
     err = write_rows(&w, columns, to);
-    if (to_path && fclose(to) != 0) { err = 1; }
-    if (err && to_path) { cli_complain("%s: %s", to_path, strerror(errno)); }
+    if (to_path) { err = outfile_close(to); }
     return err | logfile_complain(l);
 }
 
@@ -140,8 +129,8 @@ int csv_write(const char *log_path, const char *to_path, unsigned what, int fing
     struct logfile l;
     struct columns columns;
     int err;
-    if (to_path && same_file(log_path, to_path)) {
-        cli_complain("%s: is the log itself: choose another file", to_path);
+    if (to_path && outpart_same(log_path, to_path)) {
+        cli_complain("--out: %s: is the log itself: choose another file", to_path);
         return 2;
     }
     err = logfile_open(&l, log_path);

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/jobs.h"
 
+#include "base/ends.h"
 #include "base/option.h"
+#include "base/outpart.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -36,6 +38,7 @@ static void on_signal(int sig)
 {
     const int before = errno;
     interrupted = 1;
+    ends_note(sig);
     if (interrupt_work != NULL) { interrupt_work(); }
     for (int i = 0; i < JOBS_PARALLEL_MAX; i++) {
         if (child[i] > 0) { kill(child[i], sig); }
@@ -85,6 +88,7 @@ static void run_child(const struct jobs *j, int i, int to)
     memset(&m, 0, sizeof m);
     m.i = i;
     j->work(j->ctx, i, m.bytes);
+    outpart_remove_all(); /* as exit() would */
     _exit(write(to, &m, sizeof m) == (ssize_t)sizeof m ? 0 : 1);
 }
 

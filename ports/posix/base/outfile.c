@@ -2,24 +2,192 @@
 #include "base/outfile.h"
 
 #include "base/option.h"
+#include "base/outpart.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
-#define PATH_B 512
+/* --- those that are on their way --- */
 
-static int path_of(char to[PATH_B], const char *dir, const char *name)
+static struct entry {
+    FILE *f; /* NULL: free */
+    struct outpart part;
+    const char *option;
+    char path[OUTPART_B]; /* as it was given */
+} open_now[OUTPART_MAX];
+
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+
+/* NULL: a free one, which is taken at once by that stream. */
+static struct entry *find(FILE *f)
 {
-    const int n = snprintf(to, PATH_B, "%s/%s", dir, name);
-    if (n >= 0 && n < PATH_B) { return 0; }
+    struct entry *e = NULL;
+    for (int i = 0; i < OUTPART_MAX && e == NULL; i++) {
+        if (open_now[i].f == f) { e = &open_now[i]; }
+    }
+    return e;
+}
+
+static const char *advice(int error)
+{
+    switch (error) {
+    case EBUSY: return "another writer has it now: wait for its end, or give another file";
+    case ENAMETOOLONG: return "give a shorter path";
+    default: return "give a file that can be written";
+    }
+}
+
+void outfile_refused(const char *option, const char *path, int error)
+{
+    cli_complain("%s%s%s%s: %s: %s", option ? "--" : "", option ? option : "", option ? ": " : "",
+        path, strerror(error), advice(error));
+}
+
+static void failed(const struct entry *e, int error)
+{
+    cli_complain("%s%s%s%s: can't be written: %s: make room or give another%s%s",
+        e->option ? "--" : "", e->option ? e->option : "", e->option ? ": " : "", e->path,
+        strerror(error ? error : EIO), e->option ? " --" : " file", e->option ? e->option : "");
+}
+
+int outfile_try(const struct outfile_option *o, size_t n)
+{
+    struct outpart p;
+    struct stat st;
+    for (size_t i = 0; i < n; i++) {
+        const char *const path = o[i].path;
+        int err = 0;
+        if (path == NULL) { continue; }
+        for (size_t k = 0; k < i; k++) {
+            if (o[k].path && outpart_same(o[k].path, path)) {
+                cli_complain("--%s: %s: is the file of --%s, too: give each its own", o[i].option,
+                    path, o[k].option);
+                return 2;
+            }
+        }
+        if (stat(path, &st) == 0 && !S_ISREG(st.st_mode) && !S_ISDIR(st.st_mode)) {
+            if (access(path, W_OK) != 0) { err = errno; } /* to open it may take for ever */
+        } else {
+            err = outpart_open(&p, path);
+            if (err == 0) { outpart_abandon(&p); }
+        }
+        if (err) {
+            outfile_refused(o[i].option, path, err);
+            return 2;
+        }
+    }
+    return 0;
+}
+
+FILE *outfile_open(const char *option, const char *path)
+{
+    struct entry *e;
+    FILE *f = NULL;
+    int err = strlen(path) < OUTPART_B ? 0 : ENAMETOOLONG;
+    (void)pthread_mutex_lock(&lock);
+    e = find(NULL);
+    if (err == 0) { err = e ? outpart_open(&e->part, path) : EMFILE; }
+    if (err == 0) {
+        f = e->f = fdopen(e->part.fd, e->part.slot < 0 ? "w" : "w+");
+        e->option = option;
+        strcpy(e->path, path);
+        if (f == NULL) {
+            err = errno;
+            outpart_abandon(&e->part);
+        }
+    }
+    (void)pthread_mutex_unlock(&lock);
+    if (err) { outfile_refused(option, path, err); }
+    return f;
+}
+
+/* What it was; it is nobody's any more. */
+static struct entry taken(FILE *f)
+{
+    struct entry e = {.part = {.fd = -1, .slot = -1}, .path = "?"}, *at;
+    (void)pthread_mutex_lock(&lock);
+    at = find(f);
+    if (at) {
+        e = *at;
+        at->f = NULL;
+    }
+    (void)pthread_mutex_unlock(&lock);
+    return e;
+}
+
+/* Of a stream that an earlier write failed on, errno may be a stranger's by now. */
+static int error_of(FILE *f)
+{
+    static const int known[] = {ENOSPC, EFBIG, EDQUOT, EPIPE};
+    const int before = errno;
+    int why = EIO;
+    if (fflush(f) != 0) { return errno; }
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
+        if (before == known[i]) { why = before; }
+    }
+    return ferror(f) ? why : 0;
+}
+
+int outfile_goes_on(FILE *f)
+{
+    struct entry *e;
+    int err = error_of(f);
+    (void)pthread_mutex_lock(&lock);
+    e = find(f);
+    if (e && err) {
+        outpart_abandon(&(struct outpart){.fd = -1, .slot = e->part.slot});
+        e->part.slot = -1;
+    } else if (e) {
+        err = outpart_commit(&e->part);
+    }
+    (void)pthread_mutex_unlock(&lock);
+    if (e && err) { failed(e, err); }
+    return err != 0;
+}
+
+int outfile_close(FILE *f)
+{
+    const int bad = outfile_goes_on(f);
+    const struct entry e = taken(f);
+    if (fclose(f) == 0 || bad) { return bad; }
+    failed(&e, errno);
+    return 1;
+}
+
+void outfile_abandon(FILE *f)
+{
+    struct entry e;
+    if (f == NULL) { return; }
+    e = taken(f);
+    e.part.fd = -1; /* the stream's to close */
+    outpart_abandon(&e.part);
+    (void)fclose(f);
+}
+
+int outfile_end(FILE *f, int whole)
+{
+    if (whole) { return outfile_close(f); }
+    outfile_abandon(f);
+    return 0;
+}
+
+/* --- in a directory --- */
+
+static int path_of(char to[OUTPART_B], const char *dir, const char *name)
+{
+    const int n = snprintf(to, OUTPART_B, "%s/%s", dir, name);
+    if (n >= 0 && n < OUTPART_B) { return 0; }
     cli_complain("--out: %s: too long a path: give a shorter one", dir);
     return 1;
 }
 
 int outfile_dir(const char *dir, const char *name)
 {
-    char path[PATH_B];
+    char path[OUTPART_B];
     struct stat st;
     if (path_of(path, dir, name)) { return 2; }
     if (mkdir(dir, 0777) != 0 && errno != EEXIST) {
@@ -33,28 +201,20 @@ int outfile_dir(const char *dir, const char *name)
     return 0;
 }
 
+FILE *outfile_in(const char *dir, const char *name)
+{
+    char path[OUTPART_B];
+    return path_of(path, dir, name) ? NULL : outfile_open("out", path);
+}
+
 int outfile_write(
     const char *dir, const char *name, void (*write)(FILE *f, const void *ctx), const void *ctx)
 {
-    char path[PATH_B];
-    FILE *f;
-    int failed;
-    if (path_of(path, dir, name)) { return 1; }
+    FILE *f = outfile_in(dir, name);
+    if (f == NULL) { return 1; }
     errno = 0;
-    f = fopen(path, "wb");
-    if (f != NULL) { write(f, ctx); }
-    failed = f == NULL || fflush(f) != 0 || ferror(f);
-    if (failed) {
-        cli_complain(
-            "%s: can't be written: %s: make room or give another --out, and calibrate again", path,
-            strerror(errno ? errno : EIO));
-    }
-    if (f != NULL && fclose(f) != 0 && !failed) {
-        cli_complain("%s: can't be closed: %s: give another --out, and calibrate again", path,
-            strerror(errno));
-        failed = 1;
-    }
-    return failed;
+    write(f, ctx);
+    return outfile_close(f);
 }
 
 long outfile_read(

@@ -3,70 +3,40 @@
 
 #include "base/option.h"
 #include "base/outfile.h"
+#include "base/outpart.h"
 #include "base/param.h"
 
 #include "exhand/bytes.h"
 #include "exhand/error.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#define PATH_B 1024
 #define HEAD_B 12u
 
 /* --- out --- */
 
-/* 0 or an errno. */
-static int put(int fd, const unsigned char *b, size_t n)
-{
-    while (n > 0) {
-        const ssize_t done = write(fd, b, n);
-        if (done < 0 && errno == EINTR) { continue; }
-        if (done <= 0) { return done < 0 ? errno : EIO; }
-        b += done;
-        n -= (size_t)done;
-    }
-    return fsync(fd) != 0 ? errno : 0;
-}
-
-/* The name is on disk when its directory is. Not everywhere can one be synchronised. */
-static void sync_dir(const char *path)
-{
-    char dir[PATH_B];
-    const char *slash = strrchr(path, '/');
-    const size_t n = slash == NULL ? 0 : slash == path ? 1 : (size_t)(slash - path);
-    int fd;
-    memcpy(dir, n ? path : ".", n ? n : 1);
-    dir[n ? n : 1] = '\0';
-    fd = open(dir, O_RDONLY);
-    if (fd >= 0) {
-        (void)fsync(fd);
-        (void)close(fd);
-    }
-}
-
 int params_write(const char *path, const void *image, size_t len_B)
 {
-    char beside[PATH_B];
-    const int len = snprintf(beside, sizeof beside, "%s.%ld", path, (long)getpid());
-    int fd, failed;
-    if (len < 0 || len >= PATH_B) { return ENAMETOOLONG; }
-    fd = open(beside, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    if (fd < 0) { return errno; }
-    failed = put(fd, image, len_B);
-    if (close(fd) != 0 && !failed) { failed = errno; }
-    if (!failed && rename(beside, path) != 0) { failed = errno; }
-    if (failed) {
-        (void)remove(beside);
-        return failed;
+    struct outpart p;
+    const unsigned char *b = image;
+    int failed = outpart_open(&p, path);
+    while (!failed && len_B > 0) {
+        const ssize_t done = write(p.fd, b, len_B);
+        if (done > 0) {
+            b += done;
+            len_B -= (size_t)done;
+        } else if (done == 0 || errno != EINTR) {
+            failed = done < 0 ? errno : EIO;
+        }
     }
-    sync_dir(path);
-    return 0;
+    if (!failed) { failed = outpart_commit(&p); }
+    outpart_abandon(&p);
+    return failed;
 }
 
 int params_save_file(const char *path, const struct exh_params *p)
@@ -75,7 +45,8 @@ int params_save_file(const char *path, const struct exh_params *p)
     const int32_t n = exh_params_save(p, image, sizeof image);
     const int why = n < 0 ? EFBIG : params_write(path, image, (size_t)n);
     if (why == 0) { return 0; }
-    cli_complain("%s: can't be written: %s: make room, or give another file", path, strerror(why));
+    cli_complain("--save-params: %s: can't be written: %s: make room, or give another file", path,
+        strerror(why));
     return 1;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/program.h"
 
+#include "base/ends.h"
 #include "base/option.h"
 
 #include "exhand/board.h"
@@ -34,7 +35,7 @@ static void help(const struct program *p, FILE *to)
         "  --version  versions of library, record, board, parameter image, calibration\n"
         "`%s COMMAND --help` lists the options of one.\n"
         "Exit status: 0 ok, 1 a check failed, 2 bad usage, 3 something is missing,\n"
-        "130 interrupted.\n",
+        "130 interrupted (SIGINT), 143 ended (SIGTERM).\n",
         p->name);
 }
 
@@ -42,8 +43,9 @@ int program_main(const struct program *p, int argc, char **argv)
 {
     const char *name = argc > 1 ? argv[1] : "";
     const struct program_command *c = find(p, name);
+    ends_begin();
     cli_program = p->name;
-    if (c) { return cli_finish(c->run(argc - 1, argv + 1)); }
+    if (c) { return ends_status(cli_finish(c->run(argc - 1, argv + 1))); }
     if (strcmp(name, "--version") == 0) {
         printf("exhand %d.%d.%d, record %d, board %d, parameters %d, calibration %d, of the glove "
                "%d, wire %d\n",

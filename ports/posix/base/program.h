@@ -23,7 +23,8 @@ struct program {
     const char *moved; /* names of commands that the lab's program has, blanks between; or NULL */
 };
 
-/* The exit status: 0 ok, 1 a check failed, 2 bad usage, 3 something is missing, 130 interrupted. */
+/* The exit status: 0 ok, 1 a check failed, 2 bad usage, 3 something is missing, 130 interrupted,
+ * 143 ended by SIGTERM. */
 int program_main(const struct program *p, int argc, char **argv);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/until.h"
 
+#include "base/ends.h"
 #include "posix.h"
 
 #include <signal.h>
@@ -9,7 +10,7 @@
 
 static void stop(int sig)
 {
-    (void)sig;
+    ends_note(sig);
     posix_interrupt();
 }
 

@@ -4,7 +4,6 @@
 #include "base/thread.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
@@ -23,16 +22,17 @@ static size_t piece(const struct writer *w)
 /* errno of it, without the lock. */
 static int open_path(struct writer *w)
 {
-    if (w->path == NULL) { return 0; }
-    do {
-        w->fd = open(w->path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    } while (w->fd < 0 && errno == EINTR);
-    return w->fd < 0 ? errno : 0;
+    const int err = w->path ? outpart_open(&w->part, w->path) : 0;
+    if (w->path) { w->fd = w->part.fd; }
+    return err;
 }
 
-static int close_path(const struct writer *w)
+static int close_path(struct writer *w, int error)
 {
-    return w->path && w->fd >= 0 && close(w->fd) != 0 ? errno : 0;
+    if (w->path == NULL) { return error; }
+    if (error == 0) { error = outpart_commit(&w->part); }
+    outpart_abandon(&w->part);
+    return error;
 }
 
 static void *write_on(void *ctx)
@@ -62,9 +62,9 @@ static void *write_on(void *ctx)
         pthread_cond_broadcast(&w->moved);
     }
     pthread_mutex_unlock(&w->lock);
-    error = close_path(w);
+    error = close_path(w, error);
     pthread_mutex_lock(&w->lock);
-    if (w->error == 0) { w->error = error; }
+    w->error = error;
     w->over = 1;
     pthread_cond_broadcast(&w->moved);
     pthread_mutex_unlock(&w->lock);

@@ -4,6 +4,8 @@
 #ifndef CLI_WRITER_H
 #define CLI_WRITER_H
 
+#include "base/outpart.h"
+
 #include <pthread.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -11,7 +13,8 @@
 struct writer {
     int fd;
     const char *path; /* the thread opens and closes it; NULL: fd is the caller's */
-    uint8_t *ring;    /* cap_B of it, the caller's, as is the writer: for ever */
+    struct outpart part;
+    uint8_t *ring; /* cap_B of it, the caller's, as is the writer: for ever */
     size_t cap_B;
     size_t head, held; /* where the thread reads, and how much of it is its */
     int error;         /* errno of what ended it: nothing is taken any more */
@@ -22,8 +25,9 @@ struct writer {
 
 /* 0, or the errno of a thread that could not be made. */
 int writer_start(struct writer *w, int fd, void *ring, size_t cap_B);
-/* The same, to a file of this name, new or emptied. The thread opens it, too, since that may take
- * long: what comes of it is known by the end. */
+/* The same, to a file of this name, which is whole once writer_end() has said 0, or is not there
+ * (outpart.h). The thread opens it, too, since that may take long: what comes of it is known by the
+ * end. */
 int writer_start_file(struct writer *w, const char *path, void *ring, size_t cap_B);
 
 /* One caller, in its order: 1: all of it will be written, unless the file fails; 0: none, there was

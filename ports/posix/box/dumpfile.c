@@ -3,9 +3,9 @@
 
 #include "base/names.h"
 #include "base/option.h"
+#include "base/outfile.h"
 #include "base/writer.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -116,15 +116,15 @@ static void write_dump(void)
     FILE *f;
     if (is.state != EXH_BLACKBOX_FROZEN) { return; }
     name_dump(path);
-    f = fopen(path, "wb");
+    f = outfile_open(NULL, path);
     while ((n = exh_blackbox_read(piece, sizeof piece)) > 0) {
-        if (f != NULL && fwrite(piece, 1, n, f) != n) { box.failed = 1; }
+        if (f != NULL) { (void)fwrite(piece, 1, n, f); }
     }
-    if (f == NULL || fclose(f) != 0 || box.failed) {
-        failed(path, strerror(errno));
-        return;
+    if (f != NULL && outfile_close(f) == 0) {
+        told(&is, path);
+    } else {
+        box.failed = 1;
     }
-    told(&is, path);
 }
 
 /* --- piece by piece --- */

@@ -3,6 +3,7 @@
 
 #include "falls/analysis.h"
 #include "base/option.h"
+#include "base/outfile.h"
 
 #include <string.h>
 
@@ -72,10 +73,7 @@ static void write_plot(const struct fall_stiffness *s, const char *prefix, struc
     snprintf(name[0], sizeof name[0], "%s_raw.csv", prefix);
     snprintf(name[1], sizeof name[1], "%s_averaged.csv", prefix);
     snprintf(name[2], sizeof name[2], "%s_line.csv", prefix);
-    if (fall_write_plot(s, FALL_B, &paths) != FALL_OK) {
-        cli_complain("%s, _averaged.csv, _line.csv: can't all be written", name[0]);
-        r->error = 1;
-    }
+    if (fall_write_plot(s, FALL_B, &paths) != FALL_OK) { r->error = 1; }
 }
 
 /* The first fall by itself, for the picture over time. */
@@ -83,21 +81,16 @@ static void write_fall(const struct fall_log *log, const char *prefix, struct ta
 {
     char name[TABLE2_PATH_B];
     const size_t end = log->falls > 1 ? log->start[1] : log->samples;
-    int bad;
     FILE *f;
     snprintf(name, sizeof name, "%s_fall.csv", prefix);
-    f = fopen(name, "w");
-    bad = f == NULL || fprintf(f, "t_s,q_m,qd_m_per_s,f_des_n,i_des_a,c,f_mon_n\n") < 0;
-    for (size_t i = log->start[0]; !bad && i < end; i++) {
+    f = outfile_open("out", name);
+    if (f != NULL) { fprintf(f, "t_s,q_m,qd_m_per_s,f_des_n,i_des_a,c,f_mon_n\n"); }
+    for (size_t i = log->start[0]; f != NULL && i < end; i++) {
         const struct fall_sample *s = &log->sample[i];
-        bad = fprintf(f, "%.9f,%.9g,%.9g,%.9g,%.9g,%d,%.9g\n", s->t_s, s->q_m, s->qd_mps,
-                  s->f_des_N, s->i_des_A, s->c, s->f_mon_N) < 0;
+        fprintf(f, "%.9f,%.9g,%.9g,%.9g,%.9g,%d,%.9g\n", s->t_s, s->q_m, s->qd_mps, s->f_des_N,
+            s->i_des_A, s->c, s->f_mon_N);
     }
-    if (f != NULL && fclose(f) != 0) { bad = 1; }
-    if (bad) {
-        cli_complain("%s: can't be written", name);
-        r->error = 1;
-    }
+    if (f == NULL || outfile_close(f) != 0) { r->error = 1; }
 }
 
 /* Of so many pairs in the band, the share that the scope "till the motor stops" leaves out. */
@@ -179,6 +172,7 @@ struct table2_result table2_measure_more(
         if (more) { more(&run.log, &c->board.device, &r); }
         r.faults = run.faults;
         r.lost = run.lost;
+        r.dumps = run.dumps;
         r.guard = run.guard;
         r.phase = run.phase;
         r.q_lim_m = run.q_lim_m;

@@ -37,6 +37,7 @@ struct table2_result {
     int falls, oscillating, buzzing, incomplete;
     unsigned faults;
     unsigned long lost;
+    int dumps;          /* of the black box */
     struct guard guard; /* of scene guarded */
 };
 

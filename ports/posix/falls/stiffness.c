@@ -5,6 +5,8 @@
 #include "falls/pairs.h"
 #include "falls/scope.h"
 
+#include "base/outfile.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -49,15 +51,12 @@ void fall_stiffness_free(struct fall_stiffness *s)
 
 static enum fall_status write_pairs(const char *path, const struct fall_pair *at, size_t n)
 {
-    FILE *f = fopen(path, "w");
+    FILE *f = outfile_open("out", path);
 
     if (!f) { return FALL_IO; }
-    int bad = fputs("q_m,f_mon_n\n", f) < 0;
-    for (size_t i = 0; i < n && !bad; i++) {
-        bad = fprintf(f, "%.9g,%.9g\n", at[i].q_m, at[i].f_N) < 0;
-    }
-    bad |= fclose(f) != 0;
-    return bad ? FALL_IO : FALL_OK;
+    fputs("q_m,f_mon_n\n", f);
+    for (size_t i = 0; i < n; i++) { fprintf(f, "%.9g,%.9g\n", at[i].q_m, at[i].f_N); }
+    return outfile_close(f) ? FALL_IO : FALL_OK;
 }
 
 enum fall_status fall_write_plot(const struct fall_stiffness *s, enum fall_direction direction,

@@ -31,7 +31,7 @@ struct fall_plot_paths {
 };
 
 /* The line spans the averaged data in the direction's own free variable: q for A,
- * force for B. Without a line its file holds the header only. */
+ * force for B. Without a line its file holds the header only. FALL_IO: said on stderr. */
 enum fall_status fall_write_plot(const struct fall_stiffness *s, enum fall_direction direction,
     const struct fall_plot_paths *paths);
 

@@ -6,6 +6,7 @@
 #include "view.h"
 
 #include "base/option.h"
+#include "base/outfile.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -22,16 +23,12 @@ struct alone {
     struct pace pace;
 };
 
-static int save(struct alone *a, const char *path)
+static int save(struct alone *a, const char *option, const char *path)
 {
-    char why[400];
     a->m.eye = view_eye(&a->view);
     a->m.look = a->view.look;
     world_draw(a->run->world, &a->m, &a->list);
-    if (picture_save(a->picture, &a->list, path, why, sizeof why)) {
-        cli_complain("%s", why);
-        return 1;
-    }
+    if (picture_save(a->picture, &a->list, option, path)) { return 1; }
     picture_show(a->picture);
     return 0;
 }
@@ -45,7 +42,7 @@ static int film(struct alone *a, long frame)
     char path[512];
     if (r->video == NULL || (frame > 0 && now == (long)((double)(frame - 1) * rate))) { return 0; }
     snprintf(path, sizeof path, "%s/%06ld.png", r->video, now);
-    return save(a, path);
+    return save(a, "video", path);
 }
 
 static int frames(struct alone *a)
@@ -67,7 +64,7 @@ static int frames(struct alone *a)
         world_frame(r->world, &a->m.in, &a->pace, a->m.t_s, &a->m.out, &a->stats);
         if (film(a, k)) { return 1; }
     }
-    return r->png ? save(a, r->png) : 0;
+    return r->png ? save(a, "png", r->png) : 0;
 }
 
 static void report(const struct world_stats *s)
@@ -89,6 +86,8 @@ int run_alone(struct run *r)
             "--video: %s: %s: give a directory that can be made", r->video, strerror(errno));
         return 2;
     }
+    status = outfile_try(&(struct outfile_option){"png", r->png}, 1);
+    if (status) { return status; }
     if (r->png || r->video) {
         const struct picture_want want = {
             "world", (int)r->width, (int)r->height, 1, (int)r->samples};

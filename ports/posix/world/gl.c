@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "gl.h"
 
+#include "base/option.h"
+#include "base/outfile.h"
+
 #include <png.h>
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -180,25 +182,24 @@ static int write_png(FILE *f, const unsigned char *pixel, int width, int height)
 }
 
 int picture_save(
-    struct picture *p, const struct draw_list *list, const char *path, char *error, size_t error_B)
+    struct picture *p, const struct draw_list *list, const char *option, const char *path)
 {
+    FILE *f = outfile_open(option, path);
     unsigned char *pixel;
-    FILE *f = fopen(path, "wb");
     int bad;
+    if (f == NULL) { return 1; }
     paint(p, list, 1);
     pixel = malloc((size_t)p->width * (size_t)p->height * 3);
-    bad = pixel == NULL || f == NULL;
+    bad = pixel == NULL;
+    if (bad) { cli_complain("--%s: out of memory: give a smaller --width", option); }
     if (!bad) {
         glPixelStorei(GL_PACK_ALIGNMENT, 1);
         glReadPixels(0, 0, p->width, p->height, GL_RGB, GL_UNSIGNED_BYTE, pixel);
-        bad = write_png(f, pixel, p->width, p->height);
-    }
-    if (f && fclose(f) != 0) { bad = 1; }
-    if (bad) {
-        snprintf(error, error_B, "%s: %s: give a file that can be written", path, strerror(errno));
+        bad = write_png(f, pixel, p->width, p->height) && !ferror(f);
+        if (bad) { cli_complain("--%s: %s: libpng can't write this picture", option, path); }
     }
     free(pixel);
-    return bad;
+    return outfile_end(f, !bad) || bad;
 }
 
 static int key_of(const SDL_KeyboardEvent *e)

@@ -93,7 +93,8 @@ int link_want(struct link *l, const char *name, const struct exh_signal *row, un
 int link_trace_open(
     struct link *l, const struct link_trace_want *want, char *error, size_t error_B);
 
-/* Says what was missed. 1: the file could not be written. */
+/* Says what was missed; without a frame no file is left. 1 after a line on stderr: it could not be
+ * written. */
 int link_trace_close(struct link *l);
 
 /* Takes what has come till now. 1 if a newer state is in *state. */

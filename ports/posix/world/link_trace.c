@@ -3,10 +3,10 @@
 #include "link_part.h"
 
 #include "base/none.h"
+#include "base/outfile.h"
 
 #include "exhand/error.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -68,9 +68,9 @@ int link_trace_open(struct link *l, const struct link_trace_want *want, char *er
     t->table = want->table;
     t->path = want->path;
     if (pick(t, want->signals, error, error_B)) { return 2; }
-    t->file = fopen(want->path, "w");
+    t->file = outfile_open("trace", want->path);
     if (t->file == NULL) {
-        snprintf(error, error_B, "--trace: %.200s: %s", want->path, strerror(errno));
+        error[0] = '\0'; /* it was said */
         return 1;
     }
     head(t);
@@ -84,13 +84,12 @@ int link_trace_close(struct link *l)
     char text[300];
     int bad;
     if (t->file == NULL) { return 0; }
-    bad = ferror(t->file);
-    bad |= fclose(t->file);
+    bad = outfile_end(t->file, t->frames > 0);
     t->file = NULL;
-    snprintf(text, sizeof text, "--trace: %.200s: %s%lu frames, %lu missed", t->path,
-        bad ? "could not be written: " : "", t->frames, t->missed);
-    if (l->say && (bad || t->missed || t->frames == 0)) { l->say(text); }
-    return bad != 0;
+    snprintf(text, sizeof text, "--trace: %.200s: %lu frames, %lu missed", t->path, t->frames,
+        t->missed);
+    if (l->say && (t->missed || t->frames == 0)) { l->say(text); }
+    return bad;
 }
 
 void link_trace_anew(struct link *l, int64_t now_us)

@@ -9,7 +9,9 @@
 #include "view.h"
 
 #include "bilateral/bilateral.h"
+#include "base/ends.h"
 #include "base/option.h"
+#include "base/outfile.h"
 
 #include <pthread.h>
 #include <signal.h>
@@ -37,7 +39,7 @@ static volatile sig_atomic_t stopped;
 
 static void stop(int signal)
 {
-    (void)signal;
+    ends_note(signal);
     stopped = 1;
 }
 
@@ -262,14 +264,10 @@ static void leave(struct live *l)
 
 static int leave_list(const struct draw_list *list, const char *path)
 {
-    FILE *f = fopen(path, "w");
-    int bad = f == NULL;
-    if (f) {
-        draw_write(f, list);
-        bad = fclose(f) != 0;
-    }
-    if (bad) { cli_complain("%s: give a file that can be written", path); }
-    return bad;
+    FILE *f = outfile_open("list", path);
+    if (f == NULL) { return 1; }
+    draw_write(f, list);
+    return outfile_close(f);
 }
 
 static int watch(struct live *l)
@@ -292,8 +290,7 @@ static int watch(struct live *l)
     while (!look(l, &v)) {
         if (take_keys(l, &v)) { leave(l); }
     }
-    if (r->png) { bad = picture_save(v.picture, &v.list, r->png, why, sizeof why); }
-    if (bad) { cli_complain("%s", why); }
+    if (r->png) { bad = picture_save(v.picture, &v.list, "png", r->png); }
     bad |= r->list && leave_list(&v.list, r->list);
     picture_close(v.picture);
     draw_free(&v.list);
@@ -338,15 +335,15 @@ static int open_trace(const struct run *r, struct link *l)
         &bilateral_outputs, r->trace, r->trace_signals, (uint32_t)r->trace_every};
     char why[300];
     const int bad = r->trace ? link_trace_open(l, &want, why, sizeof why) : 0;
-    if (bad) {
-        cli_complain("%s", why);
-        link_close(l);
-    }
+    if (bad && why[0]) { cli_complain("%s", why); }
+    if (bad) { link_close(l); }
     return bad;
 }
 
 int run_live(struct run *r)
 {
+    const struct outfile_option leaves[] = {
+        {"trace", r->trace}, {"png", r->png}, {"list", r->list}};
     static struct live l;
     struct sigaction on;
     char why[300];
@@ -356,6 +353,8 @@ int run_live(struct run *r)
     sigaction(SIGINT, &on, NULL);
     sigaction(SIGTERM, &on, NULL);
     l.run = r;
+    status = outfile_try(leaves, sizeof leaves / sizeof leaves[0]);
+    if (status) { return status; }
     if (r->listen || r->peer) {
         const uint32_t session = (uint32_t)now_us() ^ (uint32_t)getpid() << 20;
         if (link_open(&l.link, r->listen, r->peer, session, why, sizeof why)) {

@@ -2,6 +2,7 @@
 /* world: the world simulator as a program of its own. */
 #include "run.h"
 
+#include "base/ends.h"
 #include "base/option.h"
 
 #include "exhand/exhand.h"
@@ -94,14 +95,15 @@ int main(int argc, char **argv)
         "to touch.",
         option, (int)(sizeof option / sizeof option[0]), 0};
     int status;
+    ends_begin();
     cli_program = "";
     status = cli_parse(&c, argc, argv, NULL);
     if (status) { return status == 1 ? 0 : status; }
-    if (r.bench) { return cli_finish(run_bench(&r)); }
+    if (r.bench) { return ends_status(cli_finish(run_bench(&r))); }
     status = check(&r);
     if (status == 0) { status = load(&r); }
     if (status) { return status; }
     status = r.headless && !r.listen && !r.peer ? run_alone(&r) : run_live(&r);
     world_free(r.world);
-    return cli_finish(status);
+    return ends_status(cli_finish(status));
 }

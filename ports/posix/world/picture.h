@@ -26,9 +26,10 @@ void picture_paint(struct picture *p, const struct draw_list *list);
 void picture_show(struct picture *p);
 void picture_wait(struct picture *p); /* until it is painted, for measuring */
 
-/* Paints, all numbers of now, and writes as PNG; 0, or 1 with the reason in error. */
+/* Paints, all numbers of now, and writes as PNG what an option asks for; 0, or 1 after a line on
+ * stderr. */
 int picture_save(
-    struct picture *p, const struct draw_list *list, const char *path, char *error, size_t error_B);
+    struct picture *p, const struct draw_list *list, const char *option, const char *path);
 
 /* What was pressed since the last call: keys as their characters, arrows as below; 0: nothing
  * more. Turning and zooming by mouse is added to the view. */

@@ -154,14 +154,14 @@ TEST(what_cannot_be_written_is_said)
         char text[300];
         if (i % 2 == 0) { CHECK_EQ_I64(mkdir(path, 0777), 0); }
         if (i % 2 == 1) { CHECK_EQ_I64(symlink("/dev/full", path), 0); }
-        snprintf(text, sizeof text, "%s: can't be written: %s:", path,
-            i % 2 ? "No space left on device" : "Is a directory");
+        snprintf(text, sizeof text, "--out: %s: %s:", path,
+            i % 2 ? "can't be written: No space left on device" : "Is a directory");
         SAYS(dir, 1, text, "--out", dir);
         said_clean(dir);
     }
     {
         char *dir = said_dir();
-        SAYS(dir, 2, "too long a path", "--out", LONG_512);
+        SAYS(dir, 2, "File name too long", "--out", LONG_512);
         said_clean(dir);
     }
 }

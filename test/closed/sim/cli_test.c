@@ -392,8 +392,10 @@ static void interrupt(
 {
     const pid_t pid = said_start(dir, cli_drop,
         WORDS("drop", "--rate", rates, "--falls", "1000", "--jobs", jobs, "--out", dir));
-    for (int i = 0; i < 2000 && said_size(said_path(dir, name)) <= 0; i++) { nap_ms(5); }
-    CHECK(said_size(said_path(dir, name)) > 0, "%s does not grow", name);
+    char part[64];
+    snprintf(part, sizeof part, "%s.part", name);
+    for (int i = 0; i < 2000 && said_size(said_path(dir, part)) <= 0; i++) { nap_ms(5); }
+    CHECK(said_size(said_path(dir, part)) > 0, "%s does not grow", part);
     CHECK_EQ_I64(kill(pid, sig), 0);
     said_end(s, dir, pid);
     CHECK(kill(-pid, 0) != 0 && errno == ESRCH, "it left processes behind");

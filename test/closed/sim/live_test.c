@@ -5,6 +5,7 @@
 #include "said.h"
 #include "terminal.h"
 
+#include <sys/resource.h>
 #include <termios.h>
 #include <time.h>
 
@@ -81,7 +82,8 @@ TEST(an_interrupt_leaves_a_complete_log)
     const pid_t pid =
         said_start(dir, cli_run, WORDS("run", "--pace", "--rate", "1000", "--log", log));
     nanosleep(&while_it_runs, NULL);
-    CHECK(said_size(log) > 0, "it has not begun");
+    CHECK(said_size(said_path(dir, "a.exh.part")) > 0, "it has not begun");
+    CHECK(said_size(log) < 0, "a log that is not whole has its name");
     kill(pid, SIGINT);
     said_end(&s, dir, pid);
     CHECK(s.status == 130, "%d %s", s.status, s.err);
@@ -141,7 +143,9 @@ static int stopped_in_run(void)
     int in_run;
     const pid_t pid = said_start(dir, cli_run,
         WORDS("run", "--pace", "--rate", "100", "--seconds", "4", "--slack", "0.3", "--log", log));
-    for (int i = 0; i < 1000 && said_size(log) <= 0; i++) { nanosleep(&a_while, NULL); }
+    for (int i = 0; i < 1000 && said_size(said_path(dir, "a.exh.part")) <= 0; i++) {
+        nanosleep(&a_while, NULL);
+    }
     stopped_for(pid, runs, stands);
     said_end(&s, dir, pid);
     CHECK(s.status == 0 && strstr(s.out, " s, faults overrun"), "%d %s%s", s.status, s.out, s.err);
@@ -371,9 +375,35 @@ TEST(what_it_cannot_do_is_named)
     said_clean(dir);
 }
 
+/* On a disk that is full the log ends behind its last whole record, and the loss is in it. */
+TEST(a_full_disk_ends_a_log)
+{
+    const struct rlimit few = {200000, RLIM_INFINITY};
+    struct rlimit was;
+    char *dir = said_dir();
+    const char *log = said_path(dir, "a.exh");
+    struct said s;
+    CHECK_EQ_I64(getrlimit(RLIMIT_FSIZE, &was), 0);
+    signal(SIGXFSZ, SIG_IGN);
+    CHECK_EQ_I64(setrlimit(RLIMIT_FSIZE, &few), 0);
+    said(&s, dir, cli_run, WORDS("run", "--seconds", "4", "--log", log));
+    CHECK_EQ_I64(setrlimit(RLIMIT_FSIZE, &was), 0);
+    CHECK(s.status == 1 && strstr(s.err, "can't be written: File too large"), "%d %s", s.status,
+        s.err);
+    CHECK(said_size(log) > 190000 && said_size(said_path(dir, "a.exh.part")) < 0, "%ld B",
+        said_size(log));
+    said(&s, dir, cli_csv, WORDS("csv", log, "--out", "/dev/null"));
+    CHECK(s.status == 0 && s.err[0] == '\0', "%d %s", s.status, s.err);
+    said(&s, dir, cli_replay, WORDS("replay", "--timeline", log));
+    CHECK(s.status == 0 && strstr(s.out, " records lost") && !strstr(s.out, " 0 records lost"),
+        "%d %s", s.status, s.out);
+    said_clean(dir);
+}
+
 TEST_MAIN("live", each_scene_goes_on_until_its_time_is_over, the_shortest_time_ends,
     after_a_fault_it_runs_again_by_the_grip_alone, an_interrupt_leaves_a_complete_log,
     what_goes_by_while_it_is_stopped_is_missed, a_log_that_nobody_takes_stalls_nobody,
     dumps_of_a_paced_box, a_dump_that_nobody_takes_stalls_nobody, the_line_of_status,
     a_terminal_that_was_halted_stalls_nobody, a_slow_log_is_complete_in_virtual_time,
-    it_runs_again_wherever_the_fault_found_the_mass, what_it_cannot_do_is_named);
+    it_runs_again_wherever_the_fault_found_the_mass, what_it_cannot_do_is_named,
+    a_full_disk_ends_a_log);

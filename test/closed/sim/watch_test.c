@@ -42,7 +42,7 @@ static void start(const char *option, const char *value)
     watcher = said_start(dir, watch,
         WORDS("watch", "--listen", at, "--seconds", "8", "--csv", said_path(dir, "w.csv"), option,
             value));
-    for (int i = 0; i < 400 && said_size(said_path(dir, "w.csv")) < 0; i++) { pause_ms(10); }
+    for (int i = 0; i < 400 && said_size(said_path(dir, "w.csv.part")) < 0; i++) { pause_ms(10); }
     pause_ms(50);
 }
 
@@ -280,15 +280,16 @@ TEST(a_terminal_is_drawn_over)
 TEST(what_there_is_none_of_leaves_its_place_empty)
 {
     static char text[262144];
-    const char *row;
+    const char *row, *log;
     size_t empty;
     if (terminal_open(&tty) < 0) { return; }
     dir = said_dir();
+    log = a_log_of_a_hand("100");
     watch = watch_on_terminal;
     start("--signals", "d,c");
     watch = cli_watch;
     text[0] = '\0';
-    send_file(a_log_of_a_hand("100"), 0);
+    send_file(log, 0);
     for (int i = 0; i < 500 && strstr(text, "c[1] ") == NULL; i++) {
         pause_ms(10);
         terminal_read(&tty, text, sizeof text);

@@ -182,7 +182,10 @@ TEST(a_file_by_its_name)
     CHECK_EQ_I64(writer_put(w, "cd", 2, 0), 1);
     CHECK_EQ_I64(writer_end(w, 30), 0);
     CHECK_EQ_I64((int64_t)writer_held(w), 0);
-    CHECK(pread(fd, got, sizeof got, 0) == 4 && memcmp(got, "abcd", 4) == 0, "%s", got);
+    CHECK(pread(fd, got, sizeof got, 0) == 16, "what was there is written over: %s", got);
+    close(fd);
+    fd = open(name, O_RDONLY);
+    CHECK(read(fd, got, sizeof got) == 4 && memcmp(got, "abcd", 4) == 0, "%s", got);
     close(fd);
     CHECK_EQ_I64(remove(name), 0);
     CHECK_EQ_I64(mkfifo(name, 0600), 0);

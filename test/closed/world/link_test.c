@@ -480,8 +480,7 @@ TEST(a_trace_that_cannot_be_is_refused_in_words)
         CHECK(open_trace(path, bad[i], why) == 2 && strstr(why, "--trace-signals: "), "%s: %s",
             bad[i], why);
     }
-    CHECK(open_trace("/nowhere/at/all", "c", why) == 1 && strstr(why, "/nowhere/at/all: "), "%s",
-        why);
+    CHECK_EQ_I64(open_trace("/nowhere/at/all", "c", why), 1); /* said on stderr */
     heard[0] = '\0';
     world.say = listen_to;
     CHECK(open_trace(path, "c", why) == 0, "%s", why);

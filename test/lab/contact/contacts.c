@@ -5,6 +5,7 @@
 #include "lab/contact/studies.h"
 
 #include "base/option.h"
+#include "base/outfile.h"
 
 #include "world/world.h"
 
@@ -240,7 +241,7 @@ static int table(const struct cell *cell, int n)
         "fingers with every bit as over the perfect link from their first freeze on: at flat "
         "faces; of a curved\nsurface the plane is of where the pad was foreseen.\n",
         SCENES, APPROACHES, is.seeds);
-    return csv && fclose(csv) != 0;
+    return csv && outfile_close(csv);
 }
 
 /* Exit status: what must not be. */

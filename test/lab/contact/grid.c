@@ -5,6 +5,7 @@
 #include "lab/contact/studies.h"
 
 #include "base/option.h"
+#include "base/outfile.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -159,7 +160,10 @@ static int leave(const struct bilateral_options *o, const struct cell *cell, int
     f = bilateral_out_file(o->out, file);
     snprintf(file, sizeof file, "%s.gp", name);
     g = f ? bilateral_out_file(o->out, file) : NULL;
-    if (g == NULL) { return 1; }
+    if (g == NULL) {
+        outfile_abandon(f);
+        return 1;
+    }
     fprintf(f,
         "%s,contacts,settled,rested,settle_s,rest_s,stiffness_n_per_m,rise_n_per_m,speed_m_per_"
         "s,quick,quickest_s\n",
@@ -182,7 +186,7 @@ static int leave(const struct bilateral_options *o, const struct cell *cell, int
         "k='%.6g'; b='%.6g'; speed='%.3g'\nload plots.'/bilateral_%s.gp'\n",
         name, name, name, o->run.k_Npm, o->run.b_Nspm,
         speed_of(o, at == 3 ? sim_path_speed("natural") : CRISP_MPS), name);
-    return (fclose(f) | fclose(g)) != 0;
+    return outfile_close(f) | outfile_close(g);
 }
 
 int bilateral_hands(const struct bilateral_options *o)

@@ -7,6 +7,7 @@
 #include "lab/contact/studies.h"
 
 #include "base/option.h"
+#include "base/outfile.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -252,7 +253,7 @@ static int write_csv(
                 w->lo_Npm, w->hi_Npm, w->r2, w->ripple_N, w->silent, w->given_W, w->ticks);
         }
     }
-    return fclose(f) != 0;
+    return outfile_close(f);
 }
 
 /* --- who asks --- */

@@ -3,6 +3,7 @@
 #include "lab/contact/studies.h"
 
 #include "base/option.h"
+#include "base/outfile.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -117,8 +118,11 @@ static double allowed_s(const struct bilateral_options *o)
 static int files(const struct bilateral_options *o, const struct cell *cell, double allowed_ms)
 {
     FILE *f = bilateral_out_file(o->out, "sweep.csv");
-    FILE *g = bilateral_out_file(o->out, "sweep.gp");
-    if (f == NULL || g == NULL) { return 1; }
+    FILE *g = f ? bilateral_out_file(o->out, "sweep.gp") : NULL;
+    if (g == NULL) {
+        outfile_abandon(f);
+        return 1;
+    }
     fprintf(f, "delay_s,jitter,loss,approaches,felt,missed,early,same_bits,share\n");
     for (int i = 0; i < CELLS; i++) {
         const struct cell *c = &cell[i];
@@ -133,7 +137,7 @@ static int files(const struct bilateral_options *o, const struct cell *cell, dou
         "data='sweep.csv'; speed='%.3g'; ray_mm='%.3g'; fps='%.4g'; allowed_ms=%.4g\n"
         "jitters='0 0.5 1'; losses='0 0.1 0.3 0.6'\nload plots.'/bilateral_sweep.gp'\n",
         o->speed[0].mps, 1e3 * o->run.ray_m, o->run.fps, allowed_ms);
-    return (fclose(f) | fclose(g)) != 0;
+    return outfile_close(f) | outfile_close(g);
 }
 
 static void print(const struct cell *cell)

@@ -3,13 +3,13 @@
 
 #include "base/jobs.h"
 #include "base/option.h"
+#include "base/outfile.h"
 #include "box/table2.h"
 
 #include "sim/linear.h"
 #include "lab/drop/reach.h"
 #include "sim/plant.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -227,25 +227,15 @@ static void print_parts(const struct plan *p, const struct check *x, int n, int 
 
 static int write_csv(const struct plan *p, const struct check *x, int n)
 {
-    char path[TABLE2_PATH_B];
-    FILE *f;
-    int bad;
-    snprintf(path, sizeof path, "%s/check.csv", p->o->dir);
-    f = fopen(path, "w");
-    if (f == NULL) {
-        cli_complain("%s: %s", path, strerror(errno));
-        return 1;
-    }
+    FILE *f = outfile_in(p->o->dir, "check.csv");
+    if (f == NULL) { return 1; }
     fprintf(f, "table,start,switched_on,rate_hz,k_n_per_m,b_ns_per_m,rho,stable\n");
     for (int i = 0; i < n; i++) {
         fprintf(f, "%s,%s,%s,%.9g,%.9g,%.9g,%.6f,%d\n", x[i].agreement ? "agreement" : "parts",
             x[i].start == LET_GO ? "let_go" : "dropped", variant[x[i].variant].name,
             p->o->rate_Hz[x[i].rate_i], x[i].k_Npm, x[i].b_Nspm, x[i].rho, x[i].stable);
     }
-    bad = ferror(f);
-    if (fclose(f) == 0 && !bad) { return 0; }
-    cli_complain("%s: can't be written", path);
-    return 1;
+    return outfile_close(f);
 }
 
 /* Whether both grids can be run at a rate: 0, or 2 after a line on stderr. */

@@ -2,8 +2,10 @@
 #include "lab/drop/cells.h"
 
 #include "base/option.h"
+#include "base/outfile.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <float.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -195,28 +197,32 @@ int cells_load(struct cells *c, const char *path)
     return err;
 }
 
+static FILE *put_all(const struct cells *c, const char *path)
+{
+    char line[LINE_B];
+    FILE *f = outfile_open("out", path);
+    if (f == NULL) { return NULL; }
+    fprintf(f, "%s\n%s", c->settings, header);
+    for (int i = 0; i < c->n; i++) {
+        format(line, &c->at[i]);
+        fputs(line, f);
+    }
+    return f;
+}
+
 int cells_save(const struct cells *c, const char *path)
 {
-    char fresh[1100], line[LINE_B];
-    FILE *f;
-    int bad;
-    snprintf(fresh, sizeof fresh, "%s.new", path);
-    f = fopen(fresh, "w");
-    if (f == NULL) {
-        cli_complain("%s: %s", fresh, strerror(errno));
-        return 1;
-    }
-    bad = fprintf(f, "%s\n%s", c->settings, header) < 0;
-    for (int i = 0; i < c->n && !bad; i++) {
-        format(line, &c->at[i]);
-        bad = fputs(line, f) < 0;
-    }
-    bad |= fclose(f) != 0;
-    if (bad || rename(fresh, path) != 0) {
-        cli_complain("%s: can't be written: %s", path, strerror(errno));
-        return 1;
-    }
-    return 0;
+    FILE *f = put_all(c, path);
+    return f == NULL || outfile_close(f) != 0;
+}
+
+FILE *cells_grow(const struct cells *c, const char *path)
+{
+    FILE *f = put_all(c, path);
+    if (f == NULL) { return NULL; }
+    if (outfile_goes_on(f) == 0 && fcntl(fileno(f), F_SETFL, O_APPEND) == 0) { return f; }
+    outfile_abandon(f);
+    return NULL;
 }
 
 int cells_append(int fd, const char *path, const struct cell *c)

@@ -8,6 +8,8 @@
 #ifndef CLI_CELLS_H
 #define CLI_CELLS_H
 
+#include <stdio.h>
+
 struct cell {
     double rate_Hz;
     int ray;     /* of the plane, from k alone */
@@ -39,7 +41,11 @@ void cells_sort(struct cells *c);
 /* All cells, sorted, in place of the file. 0, or 1 after a line on stderr. */
 int cells_save(const struct cells *c, const char *path);
 
-/* One line at the end of a file opened to append; whole or not at all even when
+/* The same, and the file grows: other sweeps are kept away from it until outfile_abandon(). NULL
+ * after a line on stderr. */
+FILE *cells_grow(const struct cells *c, const char *path);
+
+/* One line at the end of a file that grows; whole or not at all even when
  * several processes do it. 0, or 1 after a line on stderr. */
 int cells_append(int fd, const char *path, const struct cell *c);
 

@@ -3,6 +3,7 @@
 #include "lab/lab.h"
 
 #include "base/assign.h"
+#include "base/outfile.h"
 #include "drop/options.h"
 #include "lab/drop/border.h"
 #include "lab/drop/friction.h"
@@ -24,18 +25,13 @@ static struct {
 static int report_readings(const struct drop_options *o, const struct table2_result *r, int stride)
 {
     const struct table2_readings t = {r, o->rates, stride, (int)o->runs};
-    char path[TABLE2_PATH_B];
     FILE *f;
     table2_readings_print(stdout, &t);
     if (o->out == NULL) { return 0; }
-    snprintf(path, sizeof path, "%s/readings.csv", o->out);
-    f = fopen(path, "w");
-    if (f != NULL) { table2_readings_csv(f, &t); }
-    if (f == NULL || fclose(f) != 0) {
-        cli_complain("%s: can't be written", path);
-        return 1;
-    }
-    return 0;
+    f = outfile_in(o->out, "readings.csv");
+    if (f == NULL) { return 1; }
+    table2_readings_csv(f, &t);
+    return outfile_close(f);
 }
 
 /* --- the system before, beside this one --- */

@@ -3,12 +3,12 @@
 
 #include "base/jobs.h"
 #include "base/option.h"
+#include "base/outfile.h"
 #include "box/table2.h"
 #include "lab/drop/ray.h"
 
 #include "sim/linear.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -119,7 +119,7 @@ static void print(const struct sweep_opt *o, const struct limit *x, int points)
     }
 }
 
-static int write_csv(FILE *f, const struct sweep_opt *o, const struct limit *x, int n)
+static void write_csv(FILE *f, const struct sweep_opt *o, const struct limit *x, int n)
 {
     fprintf(f, "friction,rate_hz,times,gain,gain_low,gain_high,open,gain_linear\n");
     for (int i = 0; i < n; i++) {
@@ -131,37 +131,29 @@ static int write_csv(FILE *f, const struct sweep_opt *o, const struct limit *x, 
         fprintf(f, "%s,%.9g,%.6g,%s,%d,%.6g\n", kind_name[x[i].kind], o->rate_Hz[x[i].rate_i],
             x[i].scale, border, b->status == LOGISTIC_OPEN, x[i].linear);
     }
-    return ferror(f);
 }
 
-static int write_picture(FILE *f, const struct sweep_opt *o)
+static void write_picture(FILE *f, const struct sweep_opt *o)
 {
     fprintf(f, "# Made by exhand drop --friction. Inside this directory, PLOTS the way to "
                "ports/posix/plot:\n#   gnuplot -c friction.gp PLOTS\nplots=ARG1\n"
                "out='friction.png'; data='friction.csv'; rates='");
     for (int i = 0; i < o->rates; i++) { fprintf(f, "%s%.6g", i ? " " : "", o->rate_Hz[i]); }
     fprintf(f, "'\nload plots.'/friction.gp'\n");
-    return ferror(f);
 }
 
 static int write_files(const struct sweep_opt *o, const struct limit *x, int n)
 {
     static const char *const name[] = {"friction.csv", "friction.gp"};
     for (int i = 0; i < 2; i++) {
-        char path[TABLE2_PATH_B];
-        FILE *f;
-        int bad;
-        snprintf(path, sizeof path, "%s/%s", o->dir, name[i]);
-        f = fopen(path, "w");
-        if (f == NULL) {
-            cli_complain("%s: %s", path, strerror(errno));
-            return 1;
+        FILE *f = outfile_in(o->dir, name[i]);
+        if (f == NULL) { return 1; }
+        if (i == 0) {
+            write_csv(f, o, x, n);
+        } else {
+            write_picture(f, o);
         }
-        bad = i == 0 ? write_csv(f, o, x, n) : write_picture(f, o);
-        if (fclose(f) != 0 || bad) {
-            cli_complain("%s: can't be written", path);
-            return 1;
-        }
+        if (outfile_close(f)) { return 1; }
     }
     return 0;
 }

@@ -2,11 +2,11 @@
 #include "lab/drop/plane.h"
 
 #include "base/option.h"
+#include "base/outfile.h"
 #include "box/table2.h"
 
 #include "sim/linear.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -183,28 +183,10 @@ static void print(const struct found *x, int n, const struct sweep_opt *o)
     }
 }
 
-static FILE *create(const struct sweep_opt *o, const char *name)
-{
-    char path[TABLE2_PATH_B];
-    FILE *f;
-    snprintf(path, sizeof path, "%s/%s", o->dir, name);
-    f = fopen(path, "w");
-    if (f == NULL) { cli_complain("%s: %s", path, strerror(errno)); }
-    return f;
-}
-
-static int finish(FILE *f, const struct sweep_opt *o, const char *name)
-{
-    const int bad = ferror(f);
-    if (fclose(f) == 0 && !bad) { return 0; }
-    cli_complain("%s/%s: can't be written", o->dir, name);
-    return 1;
-}
-
 /* What a rate buys, for the picture of it (plot/rate.gp). */
 static int write_stiffness(const struct sweep_opt *o, const struct found *x)
 {
-    FILE *f = create(o, "stiffness.csv");
+    FILE *f = outfile_in(o->dir, "stiffness.csv");
     if (f == NULL) { return 1; }
     fprintf(f, "rate_hz,k_n_per_m,k_low_n_per_m,k_high_n_per_m,at_b_ns_per_m,open,linear_k_n_per_m,"
                "paper_k_n_per_m\n");
@@ -215,14 +197,14 @@ static int write_stiffness(const struct sweep_opt *o, const struct found *x)
         if (row) { fprintf(f, "%.9g", row->k_Npm); }
         fputc('\n', f);
     }
-    return finish(f, o, "stiffness.csv");
+    return outfile_close(f);
 }
 
 int plane_report(const struct cells *cells, const struct sweep_opt *o, const struct reach *reach)
 {
     struct found *x = calloc((size_t)o->rates, sizeof *x);
-    FILE *border_f = create(o, "border.csv"), *rho_f = create(o, "rho.csv");
-    FILE *gp = create(o, "sweep.gp");
+    FILE *border_f = outfile_in(o->dir, "border.csv"), *rho_f = outfile_in(o->dir, "rho.csv");
+    FILE *gp = outfile_in(o->dir, "sweep.gp");
     int err = x == NULL || border_f == NULL || rho_f == NULL || gp == NULL;
     if (err == 0) {
         fprintf(border_f, "rate_hz,ray,k_n_per_m,b_ns_per_m,k_low_n_per_m,b_low_ns_per_m,"
@@ -235,9 +217,7 @@ int plane_report(const struct cells *cells, const struct sweep_opt *o, const str
         err |= write_stiffness(o, x);
         print(x, o->rates, o);
     }
-    if (border_f) { err |= finish(border_f, o, "border.csv"); }
-    if (rho_f) { err |= finish(rho_f, o, "rho.csv"); }
-    if (gp) { err |= finish(gp, o, "sweep.gp"); }
+    err |= outfile_end(border_f, !err) | outfile_end(rho_f, !err) | outfile_end(gp, !err);
     free(x);
     return err;
 }

@@ -3,6 +3,7 @@
 #include "lab/drop/study.h"
 
 #include "base/option.h"
+#include "base/outfile.h"
 #include "base/param.h"
 #include "box/table2.h"
 
@@ -10,9 +11,7 @@
 
 #include "drop/drop.h"
 
-#include <errno.h>
 #include <string.h>
-#include <sys/stat.h>
 
 int sweep_take_shard(const char *text, int *shard, int *shards)
 {
@@ -69,7 +68,6 @@ int study_rest(const struct run_cfg *base, double rate_Hz, double k_Npm, double 
 
 int sweep_open_dir(const char *dir, const char *option)
 {
-    struct stat st;
     if (dir == NULL) {
         cli_complain("--%s: needs --out DIR: there it leaves its files", option);
         return 2;
@@ -78,13 +76,5 @@ int sweep_open_dir(const char *dir, const char *option)
         cli_complain("--out: %.40s...: longer than 700 bytes: choose a shorter path", dir);
         return 2;
     }
-    if (mkdir(dir, 0777) != 0 && errno != EEXIST) {
-        cli_complain("--out: %s: %s: give a directory that can be made", dir, strerror(errno));
-        return 2;
-    }
-    if (stat(dir, &st) != 0 || !S_ISDIR(st.st_mode)) {
-        cli_complain("--out: %s: no directory: give another", dir);
-        return 2;
-    }
-    return 0;
+    return outfile_dir(dir, "");
 }

@@ -3,6 +3,7 @@
 
 #include "base/jobs.h"
 #include "base/option.h"
+#include "base/outfile.h"
 #include "base/param.h"
 #include "lab/drop/plane.h"
 #include "drop/options.h"
@@ -11,11 +12,9 @@
 
 #include <dirent.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #define SETTINGS_B 3072
 
@@ -150,15 +149,12 @@ static int sweep(
 {
     struct batch b = {o, cells, reach, path, -1};
     int err, again;
-    if (cells_save(cells, path)) { return 1; } /* without a line that was cut off */
-    b.fd = open(path, O_WRONLY | O_APPEND);
-    if (b.fd < 0) {
-        cli_complain("%s: %s", path, strerror(errno));
-        return 1;
-    }
+    FILE *f = cells_grow(cells, path); /* without a line that was cut off */
+    if (f == NULL) { return 1; }
+    b.fd = fileno(f);
     if (cells->n > 0) { fprintf(stderr, "%s: goes on from %d cells\n", path, cells->n); }
     err = run_rays(&b);
-    close(b.fd);
+    outfile_abandon(f); /* it stands at its name as it is */
     again = cells_load(cells, path);
     if (err == JOBS_INTERRUPTED) {
         cli_complain(

@@ -24,13 +24,9 @@ struct take {
 
 static FILE *open_trace(const struct take *t, const char *how)
 {
-    char path[PATH_B];
-    FILE *f;
-    const int len =
-        snprintf(path, sizeof path, "%s/faults_%" PRIu32 "Hz_%s.csv", t->dir, t->base.rate_Hz, how);
-    f = len > 0 && len < PATH_B ? fopen(path, "wb") : NULL;
-    if (f == NULL) { cli_complain("%s: nothing can be written there: give another --out", t->dir); }
-    return f;
+    char name[64];
+    snprintf(name, sizeof name, "faults_%" PRIu32 "Hz_%s.csv", t->base.rate_Hz, how);
+    return outfile_in(t->dir, name);
 }
 
 /* 1 in the branch. */
@@ -48,7 +44,7 @@ static int branch(
     }
     fprintf(c.trace, "t_s,force_n,coded_a,motor_a,state\n");
     if (faults_branch(&t->base, &c, tick, v, &s)) { return 1; }
-    t->err |= fclose(c.trace) != 0 || s.bad != 0;
+    t->err |= outfile_close(c.trace) != 0 || s.bad != 0;
     return 0;
 }
 

@@ -3,6 +3,7 @@
 #include "lab/lab.h"
 #include "base/jobs.h"
 #include "base/option.h"
+#include "base/outfile.h"
 
 #include "lab/fit/winners.h"
 #include "lab/fit/search.h"
@@ -128,10 +129,10 @@ static int settings_agree(const struct fit_options *o)
         if (!same) { cli_complain("--out: %s holds another search: give another folder", o->out); }
         return same ? 0 : 2;
     }
-    f = open_out(o, "settings", "w");
+    f = outfile_in(o->out, "settings");
     if (f == NULL) { return 1; }
     fputs(mine, f);
-    return fclose(f) != 0;
+    return outfile_close(f);
 }
 
 static int journal_open(const struct fit_options *o, struct journal *j)
@@ -257,13 +258,13 @@ static int fit(struct fit_options *o)
     }
     err = settings_agree(o); /* before anything of another search is touched */
     if (err) { return err; }
-    progress = open_out(o, "progress.csv", "w");
+    progress = outfile_in(o->out, "progress.csv");
     if (progress == NULL) { return 1; }
     fprintf(progress, "evaluations");
     for (int k = 0; k < ESTIMATES; k++) { fprintf(progress, ",%s", estimate_name[k]); }
     fprintf(progress, "\n");
     err = searched(o, progress);
-    if (fclose(progress) != 0 && err == 0) { err = 1; }
+    if (outfile_end(progress, err == 0) != 0) { err = 1; }
     if (err) { return err; }
     return winners_judge(&o->search, (int)o->falls, (int)o->jobs, o->out);
 }

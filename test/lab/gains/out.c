@@ -2,9 +2,9 @@
 #include "lab/gains/gains.h"
 
 #include "base/option.h"
+#include "base/outfile.h"
 #include "box/table2.h"
 
-#include <errno.h>
 #include <string.h>
 
 static double si(int32_t raw, int frac) { return (double)raw / (double)(INT32_C(1) << frac); }
@@ -108,16 +108,10 @@ int gains_write(const char *dir, struct gains_rate *r, const struct gains_share 
     } file[] = {
         {"allowed.csv", 0}, {"rule.csv", 0}, {"gains.gp", 0}, {"map.csv", 1}, {"judge.csv", 1}};
     for (size_t i = 0; i < sizeof file / sizeof file[0]; i++) {
-        char path[TABLE2_PATH_B];
         FILE *f;
-        int bad;
         if (file[i].of_map && map == NULL) { continue; }
-        snprintf(path, sizeof path, "%.700s/%s", dir, file[i].name);
-        f = fopen(path, "w");
-        if (f == NULL) {
-            cli_complain("%s: %s", path, strerror(errno));
-            return 1;
-        }
+        f = outfile_in(dir, file[i].name);
+        if (f == NULL) { return 1; }
         switch (i) {
         case 0: allowed(f, r, n, map); break;
         case 1: rules(f, r, n, map); break;
@@ -125,11 +119,7 @@ int gains_write(const char *dir, struct gains_rate *r, const struct gains_share 
         case 3: cells(f, r, n, map); break;
         default: judged(f, s, n); break;
         }
-        bad = ferror(f);
-        if (fclose(f) != 0 || bad) {
-            cli_complain("%s: can't be written", path);
-            return 1;
-        }
+        if (outfile_close(f)) { return 1; }
     }
     return 0;
 }

@@ -6,6 +6,7 @@
 #include "base/jobs.h"
 #include "base/option.h"
 #include "base/outfile.h"
+#include "base/outlog.h"
 #include "base/until.h"
 #include "identify/estimate.h"
 #include "identify/result.h"
@@ -14,10 +15,7 @@
 
 #include "identify/identify.h"
 
-#include <errno.h>
 #include <string.h>
-
-#define PATH_B 512
 
 struct options {
     struct identify_session s;
@@ -124,22 +122,14 @@ static int tell(const struct options *o, const struct identify_data *data)
 /* 0, or a status after a line on stderr. */
 static int run(struct options *o, struct identify_data *data)
 {
-    char path[PATH_B];
     int err;
     if (o->log) { return identify_data_log(data, o->log); }
     if (o->out) {
-        snprintf(path, sizeof path, "%s/identify.exh", o->out);
-        o->s.board.log = fopen(path, "wb");
-        if (o->s.board.log == NULL) {
-            cli_complain("%s: %s: give a directory that can be written", path, strerror(errno));
-            return 2;
-        }
+        o->s.board.log = outfile_in(o->out, "identify.exh");
+        if (o->s.board.log == NULL) { return 2; }
     }
     err = identify_session(&o->s, data) ? 2 : 0;
-    if (o->s.board.log && fclose(o->s.board.log) != 0) {
-        cli_complain("%s: can't be written", path);
-        err = 1;
-    }
+    if (o->s.board.log && outlog_close(o->s.board.log) != 0) { err = 1; }
     return posix_interrupted() ? 130 : err;
 }
 

@@ -8,6 +8,7 @@
 #include "base/assign.h"
 #include "base/cli.h"
 #include "base/option.h"
+#include "base/outfile.h"
 #include "base/param.h"
 
 #include "world/world.h"
@@ -168,6 +169,8 @@ static void own_gains(struct bilateral_options *o)
 
 static int go(struct bilateral_options *o, double rate_Hz, const struct bilateral_study *study)
 {
+    const struct outfile_option leaves[] = {
+        {"blackbox", o->run.blackbox}, {"save-params", o->params.save}};
     int err = study->refuse ? study->refuse(o, rate_Hz) : 0;
     if (err == 0) { err = steps_too_long(o); }
     if (err == 0) { err = load_scene(o); }
@@ -182,11 +185,13 @@ static int go(struct bilateral_options *o, double rate_Hz, const struct bilatera
         o->run.board.slack_s = WORLD_LINE_SLACK_S;
     }
     err = refuse(o);
+    if (err == 0) { err = outfile_try(leaves, sizeof leaves / sizeof leaves[0]); }
     if (err == 0 && o->out) { err = bilateral_out_open(o->out); }
     if (err) { return err; }
     err = probe(o);
     if (err) { return err; }
     err = study->run ? study->run(o) : bilateral_experiment(o);
+    if (o->out) { bilateral_out_clear(o->out); }
     world_free(o->run.scene);
     sim_trace_free(&o->trace);
     hand_record_free(&recorded);

@@ -48,6 +48,9 @@ void bilateral_print_advice(
 /* out.c: DIR. 0, or 1 or 2 after a line on stderr. */
 int bilateral_out_open(const char *dir);
 FILE *bilateral_out_file(const char *dir, const char *name);
+/* Last: tables and pictures of an earlier experiment do not stay beside this one's, if it made any.
+ */
+void bilateral_out_clear(const char *dir);
 void bilateral_out_name(
     char *to, size_t cap_B, const char *dir, const char *speed, int finger, const char *suffix);
 int bilateral_out_csv(

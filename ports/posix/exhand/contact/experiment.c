@@ -4,10 +4,11 @@
 
 #include "base/names.h"
 #include "base/option.h"
+#include "base/outfile.h"
+#include "base/outlog.h"
 #include "box/hand_need.h"
 #include "box/world_line.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -79,16 +80,11 @@ static int open_log(const struct bilateral_options *o, int i, struct bilateral_r
     if (o->out == NULL) { return 0; }
     if (c->blackbox == NULL) {
         bilateral_out_name(fault, cap, o->out, o->speed[i].name, -1, "_fault.exh");
-        (void)remove(fault); /* an earlier run's */
         c->blackbox = fault;
     }
     bilateral_out_name(path, cap, o->out, o->speed[i].name, -1, ".exh");
-    c->board.log = fopen(path, "wb");
-    if (c->board.log == NULL) {
-        cli_complain("%s: %s", path, strerror(errno));
-        return 1;
-    }
-    return 0;
+    c->board.log = outfile_open("out", path);
+    return c->board.log == NULL;
 }
 
 /* Each finger in use: judged, printed, its table written. */
@@ -164,10 +160,8 @@ static int one_speed(
     c.keep = 1;
     if (open_log(o, i, &c, path, fault, sizeof path) != 0) { return 1; }
     err = bilateral_run(&c, &r) < 0 ? 2 : 0;
-    if (c.board.log && (fclose(c.board.log) != 0 || r.lost) && err == 0) {
-        cli_complain("%s: can't be written: %lu records lost", path, (unsigned long)r.lost);
-        err = 1;
-    }
+    if (err == 0 && r.dumps == 0 && c.blackbox == fault) { (void)remove(fault); } /* an earlier's */
+    if (c.board.log && outlog_close(c.board.log) != 0 && err == 0) { err = 1; }
     if (err == 0) { err = judge_fingers(o, i, &r, c.board.exo.fingers, result, n); }
     if (err == 0 && r.faults) {
         names_faults(what, sizeof what, r.faults);
@@ -208,7 +202,7 @@ int bilateral_experiment(const struct bilateral_options *o)
         if (csv == NULL) { return 1; }
         bilateral_csv_head(csv);
         for (int i = 0; i < n; i++) { bilateral_csv(csv, &result[i]); }
-        err = fclose(csv) != 0 ? 1 : 0;
+        err = outfile_close(csv);
         err |= bilateral_out_pictures(o->out, result, n, o->run.k_Npm, o->run.b_Nspm, o->link);
     }
     for (int i = 0; i < n; i++) { free(result[i].contact); }

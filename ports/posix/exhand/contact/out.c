@@ -2,45 +2,48 @@
 /* What --out leaves behind. */
 #include "contact/bilateral.h"
 
-#include "base/option.h"
 #include "base/outfile.h"
 
-#include <errno.h>
 #include <math.h>
 #include <string.h>
 
 #define PATH_B 1024
 #define GAIN_B 24
 
+static const char *const tables[] = {"contact.png", "force.png", "sweep.png", "contacts.csv",
+    "crisp.png", "hands.png", "crisp.csv", "hands.csv", "crisp.gp", "hands.gp", "sweep.csv",
+    "bilateral.gp", "sweep.gp"};
+#define TABLES (sizeof tables / sizeof tables[0])
+
+static int made[TABLES]; /* by this experiment */
+
 int bilateral_out_open(const char *dir)
 {
-    static const char *const made[] = {"contact.png", "force.png", "sweep.png", "contacts.csv",
-        "crisp.png", "hands.png", "crisp.csv", "hands.csv", "crisp.gp", "hands.gp", "sweep.csv",
-        "bilateral.gp", "sweep.gp"};
+    char path[PATH_B];
+    const struct outfile_option first = {"out", path};
     const int err = outfile_dir(dir, "bilateral_natural_index_raw.csv");
     if (err) { return err; }
-    for (size_t i = 0; i < sizeof made / sizeof made[0]; i++) {
-        char path[PATH_B];
-        snprintf(path, sizeof path, "%s/%s", dir, made[i]);
-        (void)remove(path); /* nothing of an earlier experiment stays beside this one's */
-    }
-    return 0;
+    memset(made, 0, sizeof made);
+    snprintf(path, sizeof path, "%s/contacts.csv", dir);
+    return outfile_try(&first, 1);
 }
 
 FILE *bilateral_out_file(const char *dir, const char *name)
 {
+    for (size_t i = 0; i < TABLES; i++) { made[i] |= strcmp(name, tables[i]) == 0; }
+    return outfile_in(dir, name);
+}
+
+void bilateral_out_clear(const char *dir)
+{
     char path[PATH_B];
-    FILE *f;
-    const int len = snprintf(path, sizeof path, "%s/%s", dir, name);
-    if (len < 0 || len >= PATH_B) {
-        cli_complain("%s/%s: too long a path: give a shorter --out", dir, name);
-        return NULL;
+    int any = 0;
+    for (size_t i = 0; i < TABLES; i++) { any |= made[i]; }
+    for (size_t i = 0; any && i < TABLES; i++) {
+        if (made[i]) { continue; }
+        snprintf(path, sizeof path, "%s/%s", dir, tables[i]);
+        (void)remove(path);
     }
-    f = fopen(path, "wb");
-    if (f == NULL) {
-        cli_complain("%s: %s: make room or give another --out", path, strerror(errno));
-    }
-    return f;
 }
 
 void bilateral_out_name(
@@ -48,14 +51,6 @@ void bilateral_out_name(
 {
     snprintf(to, cap_B, "%s%sbilateral_%s%s%s%s", dir ? dir : "", dir ? "/" : "", speed,
         finger < 0 ? "" : "_", finger < 0 ? "" : bilateral_finger_name[finger], suffix);
-}
-
-static int done(FILE *f, const char *name)
-{
-    const int bad = ferror(f);
-    if (fclose(f) == 0 && !bad) { return 0; }
-    cli_complain("%s: can't be written whole: make room or give another --out", name);
-    return 1;
 }
 
 /* The paper's nine. */
@@ -80,7 +75,7 @@ int bilateral_out_csv(const char *dir, const struct bilateral_run *r, unsigned f
         }
         fputc('\n', to);
     }
-    return done(to, name);
+    return outfile_close(to);
 }
 
 /* The contact that is shown: the first that was one. */
@@ -133,5 +128,5 @@ int bilateral_out_pictures(const char *dir, const struct bilateral_result *r, in
     list(f, "stiffnesses");
     for (int i = 0; i < n; i++) { fprintf(f, " %.0f", r[i].drawn_Npm); }
     fprintf(f, "'\nload plots.'/contact.gp'\nload plots.'/bilateral_force.gp'\n");
-    return done(f, "bilateral.gp");
+    return outfile_close(f);
 }

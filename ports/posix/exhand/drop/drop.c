@@ -6,27 +6,14 @@
 #include "base/cli.h"
 #include "base/jobs.h"
 #include "base/messages.h"
+#include "base/outfile.h"
 #include "base/param.h"
 #include "base/scenes.h"
 #include "drop/outdir.h"
 
-#include <errno.h>
 #include <string.h>
 
 #define RUNS 20 /* at each rate, unless told */
-
-/* Before the run, whose fault comes once. What is there stays as it is, what is not stays away. */
-static int can_write(const char *path)
-{
-    FILE *was = fopen(path, "rb"), *f = fopen(path, "ab");
-    if (f == NULL) {
-        cli_complain("--blackbox: %s: %s: give a file that can be written", path, strerror(errno));
-    }
-    if (f != NULL) { fclose(f); }
-    if (f != NULL && was == NULL) { (void)remove(path); }
-    if (was != NULL) { fclose(was); }
-    return f != NULL;
-}
 
 /* The image's k and b are those of the table's rows, unless they are given. */
 static int load_params(struct drop_options *o)
@@ -49,6 +36,8 @@ static int load_params(struct drop_options *o)
 /* Options that do not go together: 0, or 2 after a line on stderr. */
 static int refuse_pairs(const struct drop_options *o)
 {
+    const struct outfile_option leaves[] = {
+        {"blackbox", o->blackbox}, {"save-params", o->params.save}};
     if (o->T.num != 0 && o->rates_given) {
         cli_complain("--period and --rate: a period is a rate: give one of them");
         return 2;
@@ -58,7 +47,6 @@ static int refuse_pairs(const struct drop_options *o)
                      "each rate");
         return 2;
     }
-    if (o->blackbox && !can_write(o->blackbox)) { return 2; }
     if (o->gpio.given && (o->rates != 1 || o->runs != 1 || o->plane)) {
         cli_complain("--gpio: one rate and one run, since lines are one program's: leave out "
                      "--runs and planes of gains");
@@ -74,7 +62,7 @@ static int refuse_pairs(const struct drop_options *o)
         cli_complain("--save-params: one rate, and no plane of gains: give --rate");
         return 2;
     }
-    return 0;
+    return outfile_try(leaves, sizeof leaves / sizeof leaves[0]);
 }
 
 /* Somebody looks at this one run. */

@@ -5,10 +5,11 @@
 #include "base/csv.h"
 #include "base/jobs.h"
 #include "base/names.h"
+#include "base/outfile.h"
+#include "base/outlog.h"
 #include "drop/outdir.h"
 #include "drop/print.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -56,21 +57,19 @@ struct table2_result drop_shown(const struct drop_options *o, int i)
     if (c.blackbox == NULL) {
         outdir_path(fault, o->out, o->rate_Hz[i], "_fault.exh");
         c.blackbox = fault;
-        (void)remove(fault); /* an earlier run's */
     }
     outdir_path(log, o->out, o->rate_Hz[i], ".exh");
     outdir_path(csv, o->out, o->rate_Hz[i], ".csv");
     outdir_path(plot, o->out, o->rate_Hz[i], "");
-    c.board.log = fopen(log, "wb");
+    c.board.log = outfile_open("out", log);
     if (c.board.log == NULL) {
-        cli_complain("%s: %s", log, strerror(errno));
         memset(&r, 0, sizeof r);
         r.error = 1;
         return r;
     }
     r = table2_measure_more(&c, plot, TABLE2_SAME, o->more);
-    if (fclose(c.board.log) != 0 || r.lost) {
-        cli_complain("%s: can't be written: %lu records lost", log, r.lost);
+    if (r.done && r.dumps == 0 && c.blackbox == fault) { (void)remove(fault); } /* an earlier one */
+    if (outlog_close(c.board.log) != 0) {
         r.error = 1;
     } else if (r.done && csv_write(log, csv, CSV_FALLS, CSV_IN_USE) != 0) {
         r.error = 1;
@@ -161,6 +160,7 @@ static int report(const struct drop_options *o, const struct table2_result *r)
         shown[rows] = *first;
         row[rows++] = table2_runs(first, o->gates ? first + o->runs : NULL, (int)o->runs);
     }
+    if (o->out) { outdir_clear(o->out, rows == 0); }
     if (rows == 0) { return 0; }
     err = write_out(o, r, row, shown, rows);
     if (o->gates) { failed = table2_print_gates(stdout, row, rows); }
@@ -205,7 +205,8 @@ int drop_experiment(const struct drop_options *o, drop_after *after)
         return 1;
     }
     ran = jobs_run(&jobs);
-    err = check_all(o, r) | report(o, r);
+    err = check_all(o, r);
+    if (ran == 0 || done(r, n) > 0) { err |= report(o, r); }
     if (ran == 0 && o->guarded) { report_guard(o, r); }
     if (ran == 0 && after) { err |= after(o, r, runs_of_rate(o)); }
     if (ran == JOBS_INTERRUPTED) {

@@ -2,66 +2,46 @@
 #include "drop/outdir.h"
 
 #include "base/option.h"
+#include "base/outfile.h"
 #include "drop/print.h"
 
-#include <errno.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #define NAME_B 64 /* room for the longest name of a file in the directory */
 
+/* The pictures, which gnuplot makes, and what they are made of. */
 static const char *const made[] = {
-    "table2.csv", "runs.csv", "pictures.gp", "force_position.png", "fall.png"};
+    "force_position.png", "fall.png", "table2.csv", "runs.csv", "pictures.gp"};
+#define PICTURES 2
+#define MADE     (sizeof made / sizeof made[0])
 
 static void path(char to[TABLE2_PATH_B], const char *dir, const char *name)
 {
     snprintf(to, TABLE2_PATH_B, "%s/%s", dir, name);
 }
 
-FILE *outdir_create(const char *dir, const char *name)
+void outdir_clear(const char *dir, int tables)
 {
     char p[TABLE2_PATH_B];
-    FILE *f;
-    path(p, dir, name);
-    f = fopen(p, "w");
-    if (f == NULL) { cli_complain("%s: %s", p, strerror(errno)); }
-    return f;
-}
-
-int outdir_finish(FILE *f, const char *dir, const char *name)
-{
-    const int bad = ferror(f);
-    if (fclose(f) == 0 && !bad) { return 0; }
-    cli_complain("%s/%s: can't be written", dir, name);
-    return 1;
+    for (size_t i = 0; i < (tables ? MADE : PICTURES); i++) {
+        path(p, dir, made[i]);
+        (void)remove(p);
+    }
 }
 
 int outdir_open(const char *dir)
 {
     char p[TABLE2_PATH_B];
-    FILE *f;
+    const struct outfile_option first = {"out", p};
+    int err;
     if (strlen(dir) + NAME_B > TABLE2_PATH_B) {
         cli_complain("--out: %.40s...: longer than %d bytes: choose a shorter path", dir,
             TABLE2_PATH_B - NAME_B);
         return 2;
     }
-    if (mkdir(dir, 0777) != 0 && errno != EEXIST) {
-        cli_complain("--out: %s: %s: give a directory that can be made", dir, strerror(errno));
-        return 2;
-    }
-    for (size_t i = 0; i < sizeof made / sizeof made[0]; i++) {
-        path(p, dir, made[i]);
-        remove(p); /* what a run doesn't make must not look as if it had */
-    }
-    path(p, dir, made[0]);
-    f = fopen(p, "w");
-    if (f == NULL) {
-        cli_complain("--out: %s: %s: give a directory that can be written", dir, strerror(errno));
-        return 2;
-    }
-    fclose(f);
-    remove(p);
-    return 0;
+    path(p, dir, made[PICTURES]);
+    err = outfile_dir(dir, made[0]);
+    return err ? err : outfile_try(&first, 1);
 }
 
 void outdir_path(char to[TABLE2_PATH_B], const char *dir, double rate_Hz, const char *suffix)
@@ -71,25 +51,22 @@ void outdir_path(char to[TABLE2_PATH_B], const char *dir, double rate_Hz, const 
 
 int outdir_table(const char *dir, const struct table2_runs *r, int rows)
 {
-    FILE *f = outdir_create(dir, "table2.csv");
-    int err = f == NULL;
-    if (f) {
-        table2_csv_header(f);
-        for (int i = 0; i < rows; i++) { table2_csv_line(f, &r[i]); }
-        err |= outdir_finish(f, dir, "table2.csv");
-    }
-    return err;
+    FILE *f = outfile_in(dir, "table2.csv");
+    if (f == NULL) { return 1; }
+    table2_csv_header(f);
+    for (int i = 0; i < rows; i++) { table2_csv_line(f, &r[i]); }
+    return outfile_close(f);
 }
 
 int outdir_runs(const char *dir, const struct table2_result *r, int n)
 {
-    FILE *f = outdir_create(dir, "runs.csv");
+    FILE *f = outfile_in(dir, "runs.csv");
     if (f == NULL) { return 1; }
     table2_runs_csv_header(f);
     for (int i = 0; i < n; i++) {
         if (r[i].done) { table2_runs_csv_line(f, &r[i]); }
     }
-    return outdir_finish(f, dir, "runs.csv");
+    return outfile_close(f);
 }
 
 /* --- pictures --- */
@@ -138,7 +115,7 @@ static void item_stiffness(FILE *f, const struct table2_result *r)
 int outdir_pictures(
     const char *dir, const struct sim_device *d, const struct table2_result *r, int rows)
 {
-    FILE *f = outdir_create(dir, "pictures.gp");
+    FILE *f = outfile_in(dir, "pictures.gp");
     if (f == NULL) { return 1; }
     fprintf(f, "# Made by exhand drop. Inside this directory, PLOTS the way to ports/posix/plot:\n"
                "#   gnuplot -c pictures.gp PLOTS\n"
@@ -157,5 +134,5 @@ int outdir_pictures(
     list(f, "bs", r, rows, item_b);
     list(f, "stiffnesses", r, rows, item_stiffness);
     fprintf(f, "load plots.'/fall.gp'\n");
-    return outdir_finish(f, dir, "pictures.gp");
+    return outfile_close(f);
 }

@@ -5,18 +5,16 @@
 
 #include "box/table2_runs.h"
 
-#include <stdio.h>
-
-/* Makes the directory if need be, removes the tables and pictures of an earlier
- * experiment and sees whether files can be made. 0, or 2 after a line on stderr. */
+/* Makes the directory if need be and sees whether files can be made. 0, or 2 after a line on
+ * stderr. */
 int outdir_open(const char *dir);
+
+/* What this experiment did not make must not look as if it had: pictures, and tables if it makes
+ * none. */
+void outdir_clear(const char *dir, int tables);
 
 /* DIR/drop_RATEHz + suffix: what belongs to one rate. */
 void outdir_path(char to[TABLE2_PATH_B], const char *dir, double rate_Hz, const char *suffix);
-
-/* A file there, and its end: NULL, or 1 after a line on stderr. */
-FILE *outdir_create(const char *dir, const char *name);
-int outdir_finish(FILE *f, const char *dir, const char *name);
 
 /* table2.csv of the rows, runs.csv of the results. 0, or 1 after a line on stderr. */
 int outdir_table(const char *dir, const struct table2_runs *r, int rows);

@@ -5,12 +5,13 @@
 #include "base/until.h"
 
 #include "base/option.h"
+#include "base/outfile.h"
+#include "base/outlog.h"
 #include "base/param.h"
 
 #include "exhand/run/log.h"
 #include "exhand/run/loop.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -72,7 +73,7 @@ static int run_logged(const struct glove_options *o, const struct posix_config *
     err = exh_loop(&exh_scene_glove, 0, &hooks);
     if (err < 0) { return complain_loop(o, err); }
     /* As set up, the filter has another cut-off. */
-    if (frames * (int64_t)every <= (int64_t)last_tick - last_tick / 4) {
+    if (!posix_interrupted() && frames * (int64_t)every <= (int64_t)last_tick - last_tick / 4) {
         cli_complain(
             "%ld frames in %lu ticks: a scan takes longer than %ld: --set every=... says more",
             frames, last_tick + 1ul, every);
@@ -122,7 +123,7 @@ int glove_record(const struct glove_options *o)
     struct posix_config c = posix_config_default();
     struct glove_frames f = {NULL, 0, {0, 0}, NULL, NULL};
     struct recording r = {NULL, NULL, NULL, 0, 0};
-    int err = find_motion(o, &c.hand), closed;
+    int err = find_motion(o, &c.hand);
     if (err == 0 && o->play) { err = play(o, &c, &f, &r); }
     c.device = o->device;
     c.glove_par = o->chain;
@@ -132,17 +133,13 @@ int glove_record(const struct glove_options *o)
     c.T = glove_period(o->rate_Hz);
     if (err == 0) { err = try_once(o, c); }
     c.max_ticks = ticks_of(o, &c);
-    if (err == 0 && (c.log = fopen(o->record, "wb")) == NULL) {
-        cli_complain(
-            "--record: %s: %s: give a file that can be written", o->record, strerror(errno));
-        err = 2;
-    }
+    if (err == 0 && (c.log = outfile_open("record", o->record)) == NULL) { err = 2; }
     if (err == 0) {
         until_catch(UNTIL_RESTARTS);
         err = run_logged(o, &c);
-        closed = fclose(c.log);
-        if (err == 1 || closed != 0) {
-            cli_complain("%s: can't be written whole", o->record);
+        if (err == 2) {
+            outfile_abandon(c.log);
+        } else if (outlog_close(c.log) != 0) {
             err = 1;
         }
     }

@@ -8,6 +8,8 @@
 #include "glove/poses.h"
 #include "glove_tty.h"
 #include "base/option.h"
+#include "base/outfile.h"
+#include "base/outlog.h"
 #include "base/param.h"
 
 #include "exhand/run/log.h"
@@ -15,7 +17,6 @@
 
 #include "exhand/error.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -172,15 +173,14 @@ int glove_serial(const struct glove_options *o)
     err = glove_serial_open(&run.tty, "serial", o->serial, o->glove_Hz);
     if (err) { return err; }
     err = stage(o);
-    if (err == 0 && o->record && (log = fopen(o->record, "wb")) == NULL) {
-        cli_complain(
-            "--record: %s: %s: give a file that can be written", o->record, strerror(errno));
-        err = 2;
-    }
+    if (err == 0 && o->record && (log = outfile_open("record", o->record)) == NULL) { err = 2; }
     if (err == 0) { err = go(o, log); }
     glove_tty_close(&run.tty);
-    if (log && fclose(log) != 0) { err = 1; }
-    if (err == 1) { cli_complain("%s: can't be written whole", o->record); }
+    if (err == 2) {
+        outfile_abandon(log);
+    } else if (log && outlog_close(log) != 0) {
+        err = 1;
+    }
     if (err == 0 && run.never) {
         complain_never();
         err = 3;

@@ -135,6 +135,8 @@ static int open_modbus(const struct live_options *o)
 /* Everything that can be refused before the loop. */
 static int prepare(struct live_options *o, const struct exh_scene *sc)
 {
+    const struct outfile_option leaves[] = {
+        {"log", o->log}, {"blackbox", o->blackbox}, {"save", o->save}};
     int err = settle_all(o, sc);
     if (err == 0) { err = hand_of(o, sc); }
     if (err == 0 && o->seconds * o->rate_Hz >= 4294967295.0) {
@@ -170,7 +172,13 @@ static int prepare(struct live_options *o, const struct exh_scene *sc)
     }
     if (err == 0) { err = contacts_check(&o->gpio, o->pace); }
     if (err == 0) { err = read_params(o); }
-    if (err == 0) { err = live_log_open(o->log, o->pace, o->seconds > 0); }
+    if (err == 0 && o->log && !o->pace && o->seconds <= 0) { /* gigabytes a minute */
+        cli_complain("--log: without an end it fills the disk as fast as it goes: give --seconds, "
+                     "or --pace");
+        err = 2;
+    }
+    if (err == 0) { err = outfile_try(leaves, sizeof leaves / sizeof leaves[0]); }
+    if (err == 0) { err = live_log_open(o->log, o->pace); }
     if (err == 0) { err = contacts_begin(&o->gpio); }
     if (err == 0) { err = open_modbus(o); }
     if (err == 0 && o->glove) {

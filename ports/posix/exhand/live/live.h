@@ -65,9 +65,9 @@ void live_status_after(uint32_t tick, const struct exh_scene_in *in);
 void live_status_end(void);
 
 /* live_log.c. --log: paced, no tick waits for it either: what finds no room is lost and counted.
- * ends: the run has an end. An exit status, after a line on stderr; 0: fine, also without a path.
+ * An exit status, after a line on stderr; 0: fine, also without a path.
  */
-int live_log_open(const char *path, int paced, int ends);
+int live_log_open(const char *path, int paced);
 FILE *live_log_file(void);                       /* NULL: none */
 int live_log_put(const void *rec, size_t len_B); /* posix_config.log_put */
 uint64_t live_log_lost(void);                    /* records */

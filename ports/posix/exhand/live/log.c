@@ -3,12 +3,13 @@
 #include "live/live.h"
 
 #include "base/option.h"
+#include "base/outfile.h"
+#include "base/outlog.h"
 #include "posix.h"
 #include "base/writer.h"
 
 #include "exhand/record.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -20,6 +21,7 @@ static struct {
     FILE *file;
     int paced;
     uint64_t lost;
+    uint32_t taken; /* records, modulo 2^32 as their numbers are */
     struct writer writer;
 } file;
 
@@ -28,28 +30,19 @@ static uint8_t ring[RING_B];
 static int open_file(void)
 {
     int err;
-    file.file = fopen(file.path, "wb");
-    if (file.file == NULL) {
-        cli_complain("--log: %s: %s: give a file that can be written", file.path, strerror(errno));
-        return 2;
-    }
+    file.file = outfile_open("log", file.path);
+    if (file.file == NULL) { return 2; }
     err = writer_start(&file.writer, fileno(file.file), ring, sizeof ring);
     if (err) { cli_complain("--log: no thread that writes: %s", strerror(err)); }
     return err ? 1 : 0;
 }
 
-int live_log_open(const char *path, int paced, int ends)
+int live_log_open(const char *path, int paced)
 {
     memset(&file, 0, sizeof file);
     file.path = path;
     file.paced = paced;
-    if (path == NULL) { return 0; }
-    if (!paced && !ends) { /* gigabytes a minute */
-        cli_complain("--log: without an end it fills the disk as fast as it goes: give --seconds, "
-                     "or --pace");
-        return 2;
-    }
-    return open_file();
+    return path ? open_file() : 0;
 }
 
 FILE *live_log_file(void) { return file.file; }
@@ -70,6 +63,7 @@ int live_log_put(const void *rec, size_t len_B)
             taken = writer_put(&file.writer, rec, len_B, WAITS_S);
         } while (taken == 0 && !file.paced && !posix_interrupted());
     }
+    file.taken += taken == 1;
     file.lost += taken != 1;
     return taken == 1;
 }
@@ -81,10 +75,15 @@ int live_log_close(void)
     int err;
     if (file.file == NULL) { return 0; }
     err = writer_end(&file.writer, WAITS_S);
-    if (err >= 0 && fclose(file.file) != 0 && err == 0) { err = errno; }
+    if (err > 0 && outlog_mend(file.file, file.taken, (uint32_t)file.lost) != 0) {
+        outfile_abandon(file.file);
+    } else if (err >= 0 && outlog_close(file.file) != 0) {
+        return 1;
+    }
     if (err > 0) {
-        cli_complain("%s: can't be written: %s: %llu records lost", file.path, strerror(err),
-            (unsigned long long)file.lost);
+        cli_complain(
+            "--log: %s: can't be written: %s: %llu records lost: make room, or give another --log",
+            file.path, strerror(err), (unsigned long long)file.lost);
     } else if (err < 0) {
         cli_complain("%s: takes nothing for %.0f s: its end, and %llu records before, are lost",
             file.path, WAITS_S, (unsigned long long)file.lost);

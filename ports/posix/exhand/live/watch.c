@@ -6,6 +6,7 @@
 #include "base/names.h"
 #include "base/none.h"
 #include "base/option.h"
+#include "base/outfile.h"
 #include "base/until.h"
 #include "posix.h"
 
@@ -61,12 +62,6 @@ static int pick(struct watch_box *b)
 
 /* --- samples --- */
 
-static int csv_failed(void)
-{
-    cli_complain("--csv: %s: %s", w.csv, strerror(errno));
-    return 1;
-}
-
 static int csv_sample(const struct watch_box *b, int first)
 {
     char name[WATCH_NAME_B];
@@ -86,7 +81,10 @@ static int csv_sample(const struct watch_box *b, int first)
             b->value[w.pick.index[i]]);
     }
     fputc('\n', w.file);
-    return ferror(w.file) || (!w.tty && fflush(w.file) != 0) ? csv_failed() : 0;
+    if (!ferror(w.file) && (w.tty || fflush(w.file) == 0)) { return 0; }
+    cli_complain(
+        "--csv: %s: can't be written: %s: make room or give another --csv", w.csv, strerror(errno));
+    return 1;
 }
 
 /* A log has every tick: one of them each 1/hz of the box's time, later ones only. A box that
@@ -168,7 +166,7 @@ static int finish(int err)
         if (w.picked) { watch_view_draw(&w.box, &w.pick, w.modbus ? w.modbus : w.listen); }
         watch_view_end();
     }
-    if (w.file && fclose(w.file) != 0 && err == 0) { err = csv_failed(); }
+    if (w.file && outfile_end(w.file, w.taken && !ferror(w.file)) != 0 && err == 0) { err = 1; }
     if (err == 0 && w.plot && w.taken) { err = watch_plot_draw(&w.box, &w.pick); }
     if (err) { return err; }
     if (!w.taken) {
@@ -200,6 +198,7 @@ static int finish(int err)
 
 static int prepare(void)
 {
+    const struct outfile_option leaves[] = {{"csv", w.csv}, {"plot", w.plot}};
     int err = 0;
     if ((w.modbus != NULL) + (w.listen != NULL) != 1) {
         cli_complain("--modbus or --listen: where the box is heard: give one of them");
@@ -215,12 +214,10 @@ static int prepare(void)
     }
     if (w.plot) { err = watch_plot_open(w.plot, w.last_s); }
     if (err == 0) { err = w.modbus ? watch_modbus_open(w.modbus) : watch_stream_open(w.listen); }
+    if (err == 0) { err = outfile_try(leaves, sizeof leaves / sizeof leaves[0]); }
     if (err == 0 && w.csv) {
-        w.file = fopen(w.csv, "w");
-        if (w.file == NULL) {
-            (void)csv_failed();
-            err = 2;
-        }
+        w.file = outfile_open("csv", w.csv);
+        if (w.file == NULL) { err = 2; }
     }
     return err;
 }

@@ -3,11 +3,12 @@
 #include "live/watch.h"
 
 #include "base/option.h"
+#include "base/outfile.h"
 #include "base/none.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #define PANELS 8
 
@@ -20,19 +21,12 @@ static struct {
 
 int watch_plot_open(const char *png, double last_s)
 {
-    FILE *f;
     plot.png = png;
     plot.last_s = last_s;
     if (system("command -v gnuplot >/dev/null 2>&1") != 0) {
         cli_complain("--plot: gnuplot draws it, and is not here: install gnuplot-nox");
         return 3;
     }
-    f = fopen(png, "ab"); /* rather now than at the end */
-    if (f == NULL) {
-        cli_complain("--plot: %s: %s", png, strerror(errno));
-        return 2;
-    }
-    fclose(f);
     return 0;
 }
 
@@ -89,13 +83,6 @@ static void put_data(FILE *g)
     fprintf(g, "END_OF_DATA\n");
 }
 
-static void put_name(FILE *g)
-{
-    fputs("set output '", g);
-    for (const char *c = plot.png; *c; c++) { fputs(*c == '\'' ? "''" : (char[]){*c, '\0'}, g); }
-    fputs("'\n", g);
-}
-
 /* Of the picture, from the top: title, n panels, the state's strip, the axis' numbers and name. In
  * pixels. */
 enum { TITLE_PX = 50, PANEL_PX = 170, GAP_PX = 20, STRIP_PX = 75, AXIS_PX = 75 };
@@ -140,7 +127,6 @@ static int put_script(FILE *g, const struct watch_box *b, const struct watch_pic
         "set terminal pngcairo size 1400,%u font 'DejaVu Sans,15' linewidth 1.4 background "
         "'#ffffff'\n",
         height_px(n));
-    put_name(g);
     fprintf(g,
         "set border 3 lc rgb '#333333' lw 0.8\nset tics nomirror out scale 0.5 font ',12' "
         "textcolor rgb '#333333'\n"
@@ -157,12 +143,21 @@ static int put_script(FILE *g, const struct watch_box *b, const struct watch_pic
 
 int watch_plot_draw(const struct watch_box *b, const struct watch_pick *p)
 {
-    FILE *g = popen("gnuplot", "w");
-    int err = g == NULL;
+    FILE *f = outfile_open("plot", plot.png), *g = NULL;
+    char command[64];
+    int err = f == NULL, fd = -1;
+    if (f) {
+        fd = dup(fileno(f)); /* which a child gets */
+        snprintf(command, sizeof command, "gnuplot >/dev/fd/%d", fd);
+        g = fd >= 0 ? popen(command, "w") : NULL;
+        err = g == NULL;
+    }
     if (g) {
         err = put_script(g, b, p);
         err |= pclose(g) != 0;
     }
+    if (fd >= 0) { (void)close(fd); }
+    if (f && outfile_end(f, !err) != 0) { err = 1; }
     free(plot.row);
     plot.row = NULL;
     plot.cap = plot.n = 0;

@@ -3,6 +3,7 @@
 #include "base/cli.h"
 
 #include "base/option.h"
+#include "base/outfile.h"
 #include "udp.h"
 #include "base/until.h"
 #include "posix.h"
@@ -30,7 +31,8 @@ struct listen {
 
 static int complain(const struct listen *l)
 {
-    cli_complain("%s: %s", l->out, strerror(errno));
+    cli_complain("--out: %s: can't be written: %s: make room or give another --out", l->out,
+        strerror(errno));
     return 2;
 }
 
@@ -156,16 +158,16 @@ int cli_listen(int argc, char **argv)
         cli_complain("--at: %s: %s: give ADDRESS:PORT of this machine", l.at, strerror(errno));
         return 2;
     }
-    l.file = fopen(l.out, "wb");
+    l.file = outfile_open("out", l.out);
     if (l.file == NULL) {
-        err = complain(&l);
+        err = 2;
     } else {
         until_catch(UNTIL_COMES_BACK);
         cli_complain("waits at %s for a log to begin (the box: log=udp or dump=udp)%s", l.at,
             l.wait_s > 0 ? "" : "; Ctrl-C or --wait ends it");
         l.heard_s = until_now_s();
         err = go(&l, &u);
-        if (fclose(l.file) != 0 && err == 0) { err = complain(&l); }
+        if (outfile_end(l.file, err == 0 && l.bytes > 0) != 0) { err = 2; }
     }
     udp_close(&u);
     if (err) { return err; }

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT */
+/* Logs on their way to a file (outfile.h). */
+#ifndef CLI_OUTLOG_H
+#define CLI_OUTLOG_H
+
+#include <stdint.h>
+#include <stdio.h>
+
+/* It has ended. Whole is one with a header and a frame: else nothing of it is left. 0, or 1 after a
+ * line on stderr: it could not be written. */
+int outlog_close(FILE *f);
+
+/* A write of it failed. What came until then ends behind its last whole record, with the number of
+ * records that are not there: of so many that were taken, and those that were not. 0, and
+ * outlog_close() may follow; or -1: nothing can be kept. */
+int outlog_mend(FILE *f, uint32_t taken, uint32_t lost);
+
+#endif
