@@ -6,12 +6,13 @@
  * EVA: -eva-slevel 200
  * PLANT: lib/src/num/bytes.c: at <= c->cap && n <= c->cap - at -> n <= c->cap - at
  * PLANT: lib/src/num/bytes.c: at <= c->cap && n <= c->cap - at -> at <= c->cap
- * PLANT: lib/src/num/bytes.c: for (; len_B >= 4; -> for (; len_B >= 3;
+ * PLANT: lib/src/num/crc.c: for (; len_B >= 4; -> for (; len_B >= 3;
  * PLANT: lib/src/num/bytes.c: (int32_t)u - 0x10000 -> (int32_t)u
- * PLANT: lib/src/num/bytes.c: nibble[16] -> nibble[15]
+ * PLANT: lib/src/num/crc.c: nibble[16] -> nibble[15]
  * PLANT: lib/src/num/bytes.c: (uint32_t)B : UINT32_MAX - 1 -> (uint32_t)B : UINT32_MAX
  */
 #include "num/bytes.c"
+#include "num/crc.c"
 
 #include "any.h"
 
