@@ -59,7 +59,7 @@ int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct
         &cfg->glove, &par->glove, &cfg->cal, (struct exh_period){(uint32_t)num, board.T.den});
     cfg->vouches = EXH_ARM_CALIBRATION | EXH_ARM_POLARITY;
     for (unsigned k = 0; err == 0 && k < cfg->n; k++) {
-        err = bilateral_finger_setup(cfg, s, k, board, calib);
+        err = bilateral_finger_setup(cfg, k, board, calib);
         cfg->vouches &= cfg->finger[cfg->at[k]].calib.vouches;
     }
     like_the_first(cfg);
@@ -100,7 +100,6 @@ static void sense(struct bilateral *s, const struct bilateral_cfg *cfg,
     for (unsigned k = 0; k < n; k++) {
         const unsigned f = bilateral_at(cfg, k);
         const struct exh_axis axis = bilateral_axis(s, cfg, k);
-        s->drive_now[f] = cfg->par->drive[f]; /* it is no state: a tick from bytes has it, too */
         now[k] = exh_axis_sense(&axis, in, f);
         p[f].q_m_q30 = now[k].pos_m_q30;
         p[f].qd_mps_q27 = now[k].vel_mps_q27;

@@ -189,9 +189,8 @@ struct bilateral {
     struct exh_supply supply;
     uint32_t unsure_ticks; /* nothing new known of a finger in use since */
     uint8_t broken;        /* 1: configuration or parameters changed (guard.h); of whoever looks */
-    /* Made anew in every tick: parameters as a material changes them; how old what the glove says
-     * is, UINT32_MAX: it has not said anything, or not for very long. */
-    struct exh_drive_par drive_now[BILATERAL_FINGERS];
+    /* Made anew in every tick: how old what the glove says is, UINT32_MAX: it has not said
+     * anything, or not for very long. */
     uint32_t glove_age_ticks;
 };
 
@@ -237,8 +236,8 @@ static inline struct exh_axis bilateral_axis(
 
 /* --- parts (finger.c, wire.c, trace.c) --- */
 
-int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsigned place,
-    struct exh_scene_board board, struct exh_scene_calib *calib);
+int bilateral_finger_setup(struct bilateral_cfg *cfg, unsigned place, struct exh_scene_board board,
+    struct exh_scene_calib *calib);
 void bilateral_wire_setup(struct bilateral_wire_cfg *cfg, struct bilateral_wire *s,
     uint32_t session, struct exh_period T);
 void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,

@@ -228,7 +228,7 @@ void unit_bytes(struct exh_bytes *c)
     exh_bytes_u8(c, &started);
     exh_drive_in_serialize(c, &in.drive, EXH_FINGERS);
     exh_drive_out_serialize(c, &out, EXH_FINGERS);
-    for (uint32_t i = 0; i < n; i++) { exh_bytes_i32(c, &scene->signal[i]); }
+    exh_bytes_i32s(c, scene->signal, n);
     if (c->mode == EXH_BYTES_READ) { scene->params->locked = 0; }
     exh_params_serialize(c, scene->params);
     if (c->mode == EXH_BYTES_READ) { set_up_anew(c); }

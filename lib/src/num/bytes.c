@@ -93,6 +93,21 @@ void exh_bytes_u32(struct exh_bytes *c, uint32_t *v)
     *v = (uint32_t)i;
 }
 
+/* Of a buffer that ends among them, each goes for itself: what fits is done. */
+void exh_bytes_i32s(struct exh_bytes *c, int32_t *v, uint32_t n)
+{
+    const uint32_t at = c->at;
+    uint8_t *p = move_past(c, 4 * n);
+    if (p == NULL) {
+        c->at = at;
+        for (; n > 0; n--, v++) { exh_bytes_i32(c, v); }
+    } else if (stays(c)) {
+        for (; n > 0; n--, v++, p += 4) { put_word(p, (uint32_t)*v); }
+    } else {
+        for (; n > 0; n--, v++, p += 4) { *v = exh_from_u32(word_at(p)); }
+    }
+}
+
 void exh_bytes_i64(struct exh_bytes *c, int64_t *v)
 {
     uint8_t *const p = move_past(c, 8);

@@ -156,7 +156,7 @@ void exh_log_frame_serialize(struct exh_bytes *c, const struct exh_scene *sc,
     exh_drive_in_serialize(c, &in->drive, sc->fingers);
     if (sc->read_glove) { glove_bytes(c, in); }
     exh_drive_out_serialize(c, out, sc->fingers);
-    for (uint32_t i = 0; i < n; i++) { exh_bytes_i32(c, &signal[i]); }
+    exh_bytes_i32s(c, signal, n);
 }
 
 void exh_log_keyframe_serialize(struct exh_bytes *c, const struct exh_scene *sc)
