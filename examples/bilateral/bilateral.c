@@ -151,15 +151,13 @@ static void tell_finger(struct bilateral_more *m, const struct bilateral_finger 
 
 static int32_t at_most(uint32_t v) { return v < INT32_MAX ? (int32_t)v : INT32_MAX; }
 
-static void tell_box(
-    struct bilateral_box *b, const struct bilateral *s, const struct exh_scene_in *in)
+static void tell_box(struct bilateral_box *b, const struct bilateral *s)
 {
     const struct exh_wire_rx *rx = &s->wire.rx;
     b->state = s->safety.state;
     b->faults = exh_from_u32(s->safety.faults);
     b->present = (int32_t)s->safety.present;
     b->glove_faults = exh_from_u32(s->glove_faults);
-    b->glove_age = in->glove.age_ticks;
     b->age = at_most(s->wire.age_ticks);
     b->trip_us = at_most(s->wire.trip_us);
     b->set = exh_from_u32(s->wire.set);
@@ -221,9 +219,18 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
         sig->paper[f].i_des_A_q26 = i[k].coded_A_q26;
         exh_axis_update(&axis, now[k].cnt, i[k].coded_A_q26);
         sig->more[f].limits = (int32_t)limits[k];
+    }
+    sig->box.glove_age = in->glove.age_ticks;
+}
+
+void bilateral_tell(
+    const struct bilateral *s, const struct bilateral_cfg *cfg, struct bilateral_signals *sig)
+{
+    for (unsigned k = 0; k < bilateral_n(cfg); k++) {
+        const unsigned f = bilateral_at(cfg, k);
         tell_finger(&sig->more[f], &s->finger[f]);
     }
-    tell_box(&sig->box, s, in);
+    tell_box(&sig->box, s);
 }
 
 void bilateral_bytes(struct exh_bytes *c, struct bilateral *s)
@@ -243,6 +250,7 @@ void bilateral_bytes(struct exh_bytes *c, struct bilateral *s)
 static struct bilateral_par active, staged;
 static struct exh_params params;
 static struct bilateral_signals signals;
+static uint8_t untold; /* 1: those of the newest tick are not all filled in */
 static struct bilateral_cfg cfg;
 static struct bilateral state;
 static struct exh_integrity guard;
@@ -280,6 +288,7 @@ static int setup(struct exh_scene_board board)
     int err;
     state = power_on;
     signals = silence;
+    untold = 0;
     mail_in.packets = mail_out.packets = 0;
     /* Into the parameters: the log's header has it, or no replay would be the same. */
     if (active.own.session == 0) {
@@ -296,6 +305,13 @@ static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 {
     state.broken = (uint8_t)exh_integrity_step(&guard);
     bilateral_tick(&state, &cfg, in, &mail_in, &params, out, &signals);
+    untold = 1;
+}
+
+static void show(void)
+{
+    if (untold) { bilateral_tell(&state, &cfg, &signals); }
+    untold = 0;
 }
 
 static void write_mail(void) { bilateral_write(&state, &cfg, &signals, &mail_out); }
@@ -321,7 +337,7 @@ const struct exh_scene exh_scene_bilateral = {
     .apply = exh_params_apply,
     .safety = &state.safety,
     .signals = &bilateral_outputs,
-    .signal = (int32_t *)&signals,
+    .values = (int32_t *)&signals,
     .read_glove = exh_board_read_glove,
     .glove_every = &active.glove_own.every,
     .link = &wire,
@@ -329,5 +345,6 @@ const struct exh_scene exh_scene_bilateral = {
     .defaults = defaults,
     .setup = setup,
     .tick = tick,
+    .show = show,
     .state = state_bytes,
 };

@@ -199,14 +199,19 @@ struct bilateral {
 int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct bilateral_par *par,
     struct exh_scene_board board, struct exh_scene_calib *calib);
 
-/* One tick; params: where packets stage what they ask for. */
+/* One tick; params: where packets stage what they ask for. Of sig it fills in what its state does
+ * not keep. */
 void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
     const struct exh_scene_in *in, const struct exh_scene_mail *mail, struct exh_params *params,
     struct exh_drive_out *out, struct bilateral_signals *sig);
 
-/* Behind it: the packets that go out. */
+/* The rest of it, for whoever reads it before the next tick. */
+void bilateral_tell(
+    const struct bilateral *s, const struct bilateral_cfg *cfg, struct bilateral_signals *sig);
+
+/* Behind a tick: the packets that go out. */
 void bilateral_write(struct bilateral *s, const struct bilateral_cfg *cfg,
-    const struct bilateral_signals *sig, struct exh_scene_mail *out);
+    struct bilateral_signals *sig, struct exh_scene_mail *out);
 
 void bilateral_bytes(struct exh_bytes *c, struct bilateral *s);
 
@@ -250,8 +255,8 @@ void bilateral_wire_put(
 void bilateral_trace_stop(struct bilateral_trace *t);
 void bilateral_trace_ask(struct bilateral_trace *t, const struct exh_wire_packet *p);
 /* Behind a tick: its frame, and one packet at most. */
-void bilateral_trace_write(
-    struct bilateral *s, const struct bilateral_signals *sig, struct exh_scene_mail *out);
+void bilateral_trace_write(struct bilateral *s, const struct bilateral_cfg *cfg,
+    struct bilateral_signals *sig, struct exh_scene_mail *out);
 void bilateral_trace_bytes(struct exh_bytes *c, struct bilateral_trace *t);
 void bilateral_finger_bytes(struct exh_bytes *c, struct bilateral_finger *s);
 

@@ -152,6 +152,10 @@ static uint32_t release(struct exh_drive *s, int64_t asked_N_q20, const struct e
     return EXH_LIMIT_RELEASE;
 }
 
+/* More than any force: a longer step ends where this one does, and 32 bits are enough. */
+#define STEP_MAX_N_Q20 (INT32_C(1) << 30)
+EXH_STATIC_ASSERT(no_force_is_beyond_a_step, EXH_FORCE_MAX_N_Q20 < STEP_MAX_N_Q20);
+
 uint32_t exh_drive_force_within(struct exh_drive *s, const struct exh_drive_cfg *cfg,
     const struct exh_permit *permit, struct exh_drive_most own, struct exh_force_ledger *f)
 {
@@ -163,11 +167,9 @@ uint32_t exh_drive_force_within(struct exh_drive *s, const struct exh_drive_cfg 
     const int rises = held > s->force_N_q20;
     const int64_t rate =
         exh_gain_mul(cfg->tick_N_q20, rises ? own.slew_up_Nps : cfg->par->slew_down_Nps);
-    const uint32_t step = (uint32_t)exh_clamp(rate, 1, INT32_MAX);
-    const uint32_t way = rises ? (uint32_t)held - (uint32_t)s->force_N_q20
-                               : (uint32_t)s->force_N_q20 - (uint32_t)held;
-    const uint32_t back = way > step ? way - step : 0; /* of what is held, another time */
-    const int32_t slewed = exh_from_u32(rises ? (uint32_t)held - back : (uint32_t)held + back);
+    const int32_t step = exh_clamp(rate, 1, STEP_MAX_N_Q20);
+    const int32_t end = exh_wrap_add(s->force_N_q20, rises ? step : -step);
+    const int32_t slewed = (held > end) == rises ? end : held; /* the nearer */
     uint32_t limits = 0;
 
     f->clamp_N_q20 = f->slew_N_q20 = f->release_N_q20 = 0;
@@ -177,7 +179,7 @@ uint32_t exh_drive_force_within(struct exh_drive *s, const struct exh_drive_cfg 
     if (asked < 0) { limits |= EXH_LIMIT_PULL; }
     if (asked > top) { limits |= EXH_LIMIT_FORCE; }
     if (most < top && asked > most) { limits |= EXH_LIMIT_RAMP; }
-    if (back != 0) { limits |= EXH_LIMIT_SLEW; }
+    if (slewed != held) { limits |= EXH_LIMIT_SLEW; }
     f->clamp_N_q20 = exh_wrap_diff64(held, asked);
     f->slew_N_q20 = (int64_t)slewed - held;
     f->force_N_q20 = slewed; /* between held and the last force */

@@ -215,7 +215,7 @@ void exh_log_after(uint32_t tick, const struct exh_scene_in *in, const struct ex
     struct exh_bytes c;
     if (scene->link) { packets(tick, scene->link->in); }
     c = begin(EXH_RECORD_FRAME, tick);
-    exh_log_frame_serialize(&c, scene, &i, &o, scene->signal);
+    exh_log_frame_serialize(&c, scene, &i, &o, exh_scene_signals(scene));
     end(&c);
     /* Here and not in exh_log_before(), where it would delay the output. */
     silent = alone || (tick + 1) % EXH_LOG_KEYFRAME_TICKS != 0;

@@ -212,6 +212,7 @@ static void one_tick(uint8_t least, uint8_t most, uint8_t packets)
     }
     exh_scene_bilateral.tick(&in, &out);
     exh_scene_bilateral.link->write();
+    (void)exh_scene_signals(&exh_scene_bilateral);
     kept();
     END();
 }
