@@ -92,32 +92,23 @@ static void see(struct bilateral *s, const struct bilateral_cfg *cfg, const stru
     }
 }
 
-/* Position and velocity of all fingers in use, by place; force by the monitor. */
-static void sense(struct bilateral *s, const struct bilateral_cfg *cfg,
-    const struct exh_drive_in *in, struct bilateral_paper *p, struct exh_axis_now *now)
+/* Position and velocity of all fingers in use, by place. Returns the drives' inputs by place. */
+static uint32_t sense(struct bilateral *s, const struct bilateral_cfg *cfg,
+    const struct exh_scene_in *in, struct bilateral_paper *p, struct exh_axis_now *now)
 {
     const unsigned n = bilateral_n(cfg);
+    uint32_t din = in->drive.din & (EXH_DIN_DRIVE0 - 1u);
     for (unsigned k = 0; k < n; k++) {
         const unsigned f = bilateral_at(cfg, k);
         const struct exh_axis axis = bilateral_axis(s, cfg, k);
-        now[k] = exh_axis_sense(&axis, in, f);
+        now[k] = exh_axis_sense(&axis, &in->drive, f);
         p[f].q_m_q30 = now[k].pos_m_q30;
         p[f].qd_mps_q27 = now[k].vel_mps_q27;
-        p[f].f_mon_N_q20 = exh_drive_monitor_N_q20(&cfg->drive[k], now[k].mon_A_q26);
+        s->mon_A_q26[f] = now[k].mon_A_q26;
+        din |= (in->drive.din / EXH_DIN_DRIVE0 >> f & 1u) * EXH_DIN_DRIVE0 << k;
+        exh_precontact_advance(&s->finger[f].precontact, in->missed);
     }
-}
-
-/* The drives' inputs by place. */
-static uint32_t din_by_place(const struct bilateral_cfg *cfg, uint32_t din)
-{
-    const unsigned n = bilateral_n(cfg);
-    uint32_t placed = din & (EXH_DIN_DRIVE0 - 1u);
-    for (unsigned k = 0; k < n; k++) {
-        if (din & (uint32_t)EXH_DIN_DRIVE0 << bilateral_at(cfg, k)) {
-            placed |= (uint32_t)EXH_DIN_DRIVE0 << k;
-        }
-    }
-    return placed;
+    return din;
 }
 
 /* The gate's codes from places back to fingers. */
@@ -190,18 +181,14 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
 {
     const unsigned n = bilateral_n(cfg);
     struct exh_axis_now now[BILATERAL_FINGERS];
-    struct exh_safety_in box = {
-        din_by_place(cfg, in->drive.din), 0, in->missed, in->command, (uint8_t)n, steps_held(cfg)};
+    struct exh_safety_in box = {0, 0, in->missed, in->command, (uint8_t)n, steps_held(cfg)};
     struct exh_permit permit;
     struct exh_current_ledger i[BILATERAL_FINGERS];
     uint32_t limits[BILATERAL_FINGERS];
     struct exh_drive_out placed;
 
-    sense(s, cfg, &in->drive, sig->paper, now);
+    box.din = sense(s, cfg, in, sig->paper, now);
     age_glove(s, in);
-    for (unsigned k = 0; k < n; k++) {
-        exh_precontact_advance(&s->finger[bilateral_at(cfg, k)].precontact, in->missed);
-    }
     bilateral_wire_take(s, cfg, mail, in->missed, params);
     see(s, cfg, in);
     box.raised = bilateral_causes(s, cfg, in);
@@ -228,6 +215,7 @@ void bilateral_tell(
 {
     for (unsigned k = 0; k < bilateral_n(cfg); k++) {
         const unsigned f = bilateral_at(cfg, k);
+        sig->paper[f].f_mon_N_q20 = exh_drive_monitor_N_q20(&cfg->drive[k], s->mon_A_q26[f]);
         tell_finger(&sig->more[f], &s->finger[f]);
     }
     tell_box(&sig->box, s);

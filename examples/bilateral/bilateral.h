@@ -189,8 +189,9 @@ struct bilateral {
     struct exh_supply supply;
     uint32_t unsure_ticks; /* nothing new known of a finger in use since */
     uint8_t broken;        /* 1: configuration or parameters changed (guard.h); of whoever looks */
-    /* Made anew in every tick: how old what the glove says is, UINT32_MAX: it has not said
-     * anything, or not for very long. */
+    /* Made anew in every tick: currents of the monitors; how old what the glove says is,
+     * UINT32_MAX: it has not said anything, or not for very long. */
+    int32_t mon_A_q26[BILATERAL_FINGERS];
     uint32_t glove_age_ticks;
 };
 
