@@ -59,7 +59,7 @@ int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct
         &cfg->glove, &par->glove, &cfg->cal, (struct exh_period){(uint32_t)num, board.T.den});
     cfg->vouches = EXH_ARM_CALIBRATION | EXH_ARM_POLARITY;
     for (unsigned k = 0; err == 0 && k < cfg->n; k++) {
-        err = bilateral_finger_setup(cfg, s, k, board, calib);
+        err = bilateral_finger_setup(cfg, k, board, calib);
         cfg->vouches &= cfg->finger[cfg->at[k]].calib.vouches;
     }
     like_the_first(cfg);
@@ -92,33 +92,23 @@ static void see(struct bilateral *s, const struct bilateral_cfg *cfg, const stru
     }
 }
 
-/* Position and velocity of all fingers in use, by place; force by the monitor. */
-static void sense(struct bilateral *s, const struct bilateral_cfg *cfg,
-    const struct exh_drive_in *in, struct bilateral_paper *p, struct exh_axis_now *now)
+/* Position and velocity of all fingers in use, by place. Returns the drives' inputs by place. */
+static uint32_t sense(struct bilateral *s, const struct bilateral_cfg *cfg,
+    const struct exh_scene_in *in, struct bilateral_paper *p, struct exh_axis_now *now)
 {
     const unsigned n = bilateral_n(cfg);
+    uint32_t din = in->drive.din & (EXH_DIN_DRIVE0 - 1u);
     for (unsigned k = 0; k < n; k++) {
         const unsigned f = bilateral_at(cfg, k);
         const struct exh_axis axis = bilateral_axis(s, cfg, k);
-        s->drive_now[f] = cfg->par->drive[f]; /* it is no state: a tick from bytes has it, too */
-        now[k] = exh_axis_sense(&axis, in, f);
+        now[k] = exh_axis_sense(&axis, &in->drive, f);
         p[f].q_m_q30 = now[k].pos_m_q30;
         p[f].qd_mps_q27 = now[k].vel_mps_q27;
-        p[f].f_mon_N_q20 = exh_drive_monitor_N_q20(&cfg->drive[k], now[k].mon_A_q26);
+        s->mon_A_q26[f] = now[k].mon_A_q26;
+        din |= (in->drive.din / EXH_DIN_DRIVE0 >> f & 1u) * EXH_DIN_DRIVE0 << k;
+        exh_precontact_advance(&s->finger[f].precontact, in->missed);
     }
-}
-
-/* The drives' inputs by place. */
-static uint32_t din_by_place(const struct bilateral_cfg *cfg, uint32_t din)
-{
-    const unsigned n = bilateral_n(cfg);
-    uint32_t placed = din & (EXH_DIN_DRIVE0 - 1u);
-    for (unsigned k = 0; k < n; k++) {
-        if (din & (uint32_t)EXH_DIN_DRIVE0 << bilateral_at(cfg, k)) {
-            placed |= (uint32_t)EXH_DIN_DRIVE0 << k;
-        }
-    }
-    return placed;
+    return din;
 }
 
 /* The gate's codes from places back to fingers. */
@@ -152,15 +142,13 @@ static void tell_finger(struct bilateral_more *m, const struct bilateral_finger 
 
 static int32_t at_most(uint32_t v) { return v < INT32_MAX ? (int32_t)v : INT32_MAX; }
 
-static void tell_box(
-    struct bilateral_box *b, const struct bilateral *s, const struct exh_scene_in *in)
+static void tell_box(struct bilateral_box *b, const struct bilateral *s)
 {
     const struct exh_wire_rx *rx = &s->wire.rx;
     b->state = s->safety.state;
     b->faults = exh_from_u32(s->safety.faults);
     b->present = (int32_t)s->safety.present;
     b->glove_faults = exh_from_u32(s->glove_faults);
-    b->glove_age = in->glove.age_ticks;
     b->age = at_most(s->wire.age_ticks);
     b->trip_us = at_most(s->wire.trip_us);
     b->set = exh_from_u32(s->wire.set);
@@ -193,18 +181,14 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
 {
     const unsigned n = bilateral_n(cfg);
     struct exh_axis_now now[BILATERAL_FINGERS];
-    struct exh_safety_in box = {
-        din_by_place(cfg, in->drive.din), 0, in->missed, in->command, (uint8_t)n, steps_held(cfg)};
+    struct exh_safety_in box = {0, 0, in->missed, in->command, (uint8_t)n, steps_held(cfg)};
     struct exh_permit permit;
     struct exh_current_ledger i[BILATERAL_FINGERS];
     uint32_t limits[BILATERAL_FINGERS];
     struct exh_drive_out placed;
 
-    sense(s, cfg, &in->drive, sig->paper, now);
+    box.din = sense(s, cfg, in, sig->paper, now);
     age_glove(s, in);
-    for (unsigned k = 0; k < n; k++) {
-        exh_precontact_advance(&s->finger[bilateral_at(cfg, k)].precontact, in->missed);
-    }
     bilateral_wire_take(s, cfg, mail, in->missed, params);
     see(s, cfg, in);
     box.raised = bilateral_causes(s, cfg, in);
@@ -222,9 +206,19 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
         sig->paper[f].i_des_A_q26 = i[k].coded_A_q26;
         exh_axis_update(&axis, now[k].cnt, i[k].coded_A_q26);
         sig->more[f].limits = (int32_t)limits[k];
+    }
+    sig->box.glove_age = in->glove.age_ticks;
+}
+
+void bilateral_tell(
+    const struct bilateral *s, const struct bilateral_cfg *cfg, struct bilateral_signals *sig)
+{
+    for (unsigned k = 0; k < bilateral_n(cfg); k++) {
+        const unsigned f = bilateral_at(cfg, k);
+        sig->paper[f].f_mon_N_q20 = exh_drive_monitor_N_q20(&cfg->drive[k], s->mon_A_q26[f]);
         tell_finger(&sig->more[f], &s->finger[f]);
     }
-    tell_box(&sig->box, s, in);
+    tell_box(&sig->box, s);
 }
 
 void bilateral_bytes(struct exh_bytes *c, struct bilateral *s)
@@ -244,6 +238,7 @@ void bilateral_bytes(struct exh_bytes *c, struct bilateral *s)
 static struct bilateral_par active, staged;
 static struct exh_params params;
 static struct bilateral_signals signals;
+static uint8_t untold; /* 1: those of the newest tick are not all filled in */
 static struct bilateral_cfg cfg;
 static struct bilateral state;
 static struct exh_integrity guard;
@@ -281,6 +276,7 @@ static int setup(struct exh_scene_board board)
     int err;
     state = power_on;
     signals = silence;
+    untold = 0;
     mail_in.packets = mail_out.packets = 0;
     /* Into the parameters: the log's header has it, or no replay would be the same. */
     if (active.own.session == 0) {
@@ -297,6 +293,13 @@ static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 {
     state.broken = (uint8_t)exh_integrity_step(&guard);
     bilateral_tick(&state, &cfg, in, &mail_in, &params, out, &signals);
+    untold = 1;
+}
+
+static void show(void)
+{
+    if (untold) { bilateral_tell(&state, &cfg, &signals); }
+    untold = 0;
 }
 
 static void write_mail(void) { bilateral_write(&state, &cfg, &signals, &mail_out); }
@@ -322,7 +325,7 @@ const struct exh_scene exh_scene_bilateral = {
     .apply = exh_params_apply,
     .safety = &state.safety,
     .signals = &bilateral_outputs,
-    .signal = (int32_t *)&signals,
+    .values = (int32_t *)&signals,
     .read_glove = exh_board_read_glove,
     .glove_every = &active.glove_own.every,
     .link = &wire,
@@ -330,5 +333,6 @@ const struct exh_scene exh_scene_bilateral = {
     .defaults = defaults,
     .setup = setup,
     .tick = tick,
+    .show = show,
     .state = state_bytes,
 };

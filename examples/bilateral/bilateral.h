@@ -189,9 +189,9 @@ struct bilateral {
     struct exh_supply supply;
     uint32_t unsure_ticks; /* nothing new known of a finger in use since */
     uint8_t broken;        /* 1: configuration or parameters changed (guard.h); of whoever looks */
-    /* Made anew in every tick: parameters as a material changes them; how old what the glove says
-     * is, UINT32_MAX: it has not said anything, or not for very long. */
-    struct exh_drive_par drive_now[BILATERAL_FINGERS];
+    /* Made anew in every tick: currents of the monitors; how old what the glove says is,
+     * UINT32_MAX: it has not said anything, or not for very long. */
+    int32_t mon_A_q26[BILATERAL_FINGERS];
     uint32_t glove_age_ticks;
 };
 
@@ -200,14 +200,19 @@ struct bilateral {
 int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct bilateral_par *par,
     struct exh_scene_board board, struct exh_scene_calib *calib);
 
-/* One tick; params: where packets stage what they ask for. */
+/* One tick; params: where packets stage what they ask for. Of sig it fills in what its state does
+ * not keep. */
 void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
     const struct exh_scene_in *in, const struct exh_scene_mail *mail, struct exh_params *params,
     struct exh_drive_out *out, struct bilateral_signals *sig);
 
-/* Behind it: the packets that go out. */
+/* The rest of it, for whoever reads it before the next tick. */
+void bilateral_tell(
+    const struct bilateral *s, const struct bilateral_cfg *cfg, struct bilateral_signals *sig);
+
+/* Behind a tick: the packets that go out. */
 void bilateral_write(struct bilateral *s, const struct bilateral_cfg *cfg,
-    const struct bilateral_signals *sig, struct exh_scene_mail *out);
+    struct bilateral_signals *sig, struct exh_scene_mail *out);
 
 void bilateral_bytes(struct exh_bytes *c, struct bilateral *s);
 
@@ -237,8 +242,8 @@ static inline struct exh_axis bilateral_axis(
 
 /* --- parts (finger.c, wire.c, trace.c) --- */
 
-int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsigned place,
-    struct exh_scene_board board, struct exh_scene_calib *calib);
+int bilateral_finger_setup(struct bilateral_cfg *cfg, unsigned place, struct exh_scene_board board,
+    struct exh_scene_calib *calib);
 void bilateral_wire_setup(struct bilateral_wire_cfg *cfg, struct bilateral_wire *s,
     uint32_t session, struct exh_period T);
 void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
@@ -251,8 +256,8 @@ void bilateral_wire_put(
 void bilateral_trace_stop(struct bilateral_trace *t);
 void bilateral_trace_ask(struct bilateral_trace *t, const struct exh_wire_packet *p);
 /* Behind a tick: its frame, and one packet at most. */
-void bilateral_trace_write(
-    struct bilateral *s, const struct bilateral_signals *sig, struct exh_scene_mail *out);
+void bilateral_trace_write(struct bilateral *s, const struct bilateral_cfg *cfg,
+    struct bilateral_signals *sig, struct exh_scene_mail *out);
 void bilateral_trace_bytes(struct exh_bytes *c, struct bilateral_trace *t);
 void bilateral_finger_bytes(struct exh_bytes *c, struct bilateral_finger *s);
 

@@ -19,8 +19,8 @@ uint32_t bilateral_finger_age(
     return s->glove_faults & cfg->finger[f].sensors ? UINT32_MAX : s->glove_age_ticks;
 }
 
-int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsigned place,
-    struct exh_scene_board board, struct exh_scene_calib *calib)
+int bilateral_finger_setup(struct bilateral_cfg *cfg, unsigned place, struct exh_scene_board board,
+    struct exh_scene_calib *calib)
 {
     const unsigned f = cfg->at[place];
     const struct bilateral_par *par = cfg->par;
@@ -28,10 +28,9 @@ int bilateral_finger_setup(struct bilateral_cfg *cfg, struct bilateral *s, unsig
     struct bilateral_finger_cfg *c = &cfg->finger[f];
     const struct exh_calib_finger finger = {f, drive, par->kf_NpA_q20[f]};
     const struct exh_axis_setup parts = {&c->quad, &par->quad[f], &c->velocity, &par->velocity[f],
-        &c->watch, &par->watch[f], &c->track, &par->track[f], &cfg->drive[place], &s->drive_now[f]};
+        &c->watch, &par->watch[f], &c->track, &par->track[f], &cfg->drive[place], drive};
     int err;
 
-    s->drive_now[f] = *drive;
     c->sensors = sensors_of(&exh_hit2_map, f);
     err = exh_calib_set_tables(&c->calib, calib, &par->calib, &finger);
     if (err == 0) {
@@ -61,23 +60,27 @@ void bilateral_finger_see(struct bilateral_finger *s, const struct bilateral_cfg
     }
 }
 
-/* The law and the drive with the material of the plane that is frozen. Else there is no contact,
- * and the drive's own limit holds: it is there since the tick's beginning, with all others. */
+/* The law with the material of the plane that is frozen. Else there is no contact. */
 static struct exh_contact_par touch(
-    struct bilateral *s, const struct bilateral_cfg *cfg, unsigned f)
+    const struct exh_precontact *p, const struct bilateral_cfg *cfg, unsigned f)
 {
-    const struct exh_precontact *p = &s->finger[f].precontact;
     const struct exh_contact_par *own = &cfg->par->contact[f];
-    const struct exh_contact_par law = {p->taken.k_Npm_q10, p->taken.b_Nspm_q20, own->f0_N_q20,
+    return (struct exh_contact_par){p->taken.k_Npm_q10, p->taken.b_Nspm_q20, own->f0_N_q20,
         own->f0_band_m_q30, own->hyst_m_q30};
-    struct exh_drive_par *drive = &s->drive_now[f];
-    if (p->phase == EXH_PRECONTACT_FROZEN && p->taken.f_max_N_q20 < drive->f_max_N_q20) {
-        drive->f_max_N_q20 = p->taken.f_max_N_q20;
+}
+
+/* The drive's own limits, or what the material and a late contact leave of them. */
+static struct exh_drive_most most(
+    const struct exh_precontact *p, const struct bilateral_cfg *cfg, unsigned f)
+{
+    struct exh_drive_most own = {cfg->par->drive[f].f_max_N_q20, cfg->par->drive[f].slew_up_Nps};
+    if (p->phase == EXH_PRECONTACT_FROZEN && p->taken.f_max_N_q20 < own.f_max_N_q20) {
+        own.f_max_N_q20 = p->taken.f_max_N_q20;
     }
-    if (p->late && cfg->par->precontact[f].late_slew_Nps < drive->slew_up_Nps) {
-        drive->slew_up_Nps = cfg->par->precontact[f].late_slew_Nps;
+    if (p->late && cfg->par->precontact[f].late_slew_Nps < own.slew_up_Nps) {
+        own.slew_up_Nps = cfg->par->precontact[f].late_slew_Nps;
     }
-    return law;
+    return own;
 }
 
 /* The finger that met no wall, or left one in haste, went back without the string, which hangs
@@ -114,7 +117,7 @@ uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *
     *bits = (int32_t)exh_precontact_step(&now->precontact, &cfg->finger[f].precontact, &where);
     p->d_m_q30 = now->precontact.d_m_q30;
     q.lim_m_q30 = now->precontact.lim_m_q30;
-    law = touch(s, cfg, f);
+    law = touch(&now->precontact, cfg, f);
     p->c = 0;
     if (exh_precontact_none(&now->precontact)) {
         exh_contact_step_free(&now->contact, &law, q.pos_m_q30, &force);
@@ -122,7 +125,7 @@ uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *
         p->c = exh_contact_step(&now->contact, &law, q, &force);
     }
     wind_in(now, cfg->rest_ticks);
-    limits = exh_axis_force(&axis, permit, &force, i);
+    limits = exh_axis_force_within(&axis, permit, most(&now->precontact, cfg, f), &force, i);
     if (!(limits & EXH_LIMIT_SLEW)) { exh_precontact_arrived(&now->precontact); }
     p->f_des_N_q20 = force.force_N_q20;
     p->q_lim_m_q30 = q.lim_m_q30;

@@ -85,12 +85,13 @@ static void put_frames(struct bilateral_wire *w, struct exh_scene_mail *out, uin
     t->answer = 0;
 }
 
-void bilateral_trace_write(
-    struct bilateral *s, const struct bilateral_signals *sig, struct exh_scene_mail *out)
+void bilateral_trace_write(struct bilateral *s, const struct bilateral_cfg *cfg,
+    struct bilateral_signals *sig, struct exh_scene_mail *out)
 {
     struct bilateral_trace *t = &s->wire.trace;
     uint32_t n;
     if (t->of.what.every == 0 && !t->answer) { return; } /* nobody asked */
+    if (exh_trace_reads(&t->of)) { bilateral_tell(s, cfg, sig); }
     exh_trace_step(of(t), s->safety.tick, (const int32_t *)(const void *)sig);
     n = waiting(t);
     if (n > 0 && t->wait_ticks < WAIT_TICKS) { t->wait_ticks++; }

@@ -159,7 +159,7 @@ static void put_state(struct bilateral *s, const struct bilateral_cfg *cfg,
 }
 
 void bilateral_write(struct bilateral *s, const struct bilateral_cfg *cfg,
-    const struct bilateral_signals *sig, struct exh_scene_mail *out)
+    struct bilateral_signals *sig, struct exh_scene_mail *out)
 {
     struct bilateral_wire *w = &s->wire;
     const uint32_t state_every = (uint32_t)cfg->par->own.state_every;
@@ -178,7 +178,7 @@ void bilateral_write(struct bilateral *s, const struct bilateral_cfg *cfg,
         bilateral_wire_put(w, out, &p);
     }
     w->acks = 0;
-    bilateral_trace_write(s, sig, out);
+    bilateral_trace_write(s, cfg, sig, out);
 }
 
 /* --- state --- */

@@ -87,7 +87,7 @@ static const struct exh_signal *signal_of(uint32_t i, int32_t *raw)
 {
     const uint32_t first = OWN + params();
     if (i < first) { return NULL; }
-    *raw = scene->signal[i - first];
+    *raw = exh_scene_signals(scene)[i - first];
     return exh_signal_at(scene->signals, i - first, NULL);
 }
 
@@ -178,7 +178,7 @@ void unit_reset(void)
     started = 0;
     scene->defaults();
     for (uint32_t i = 0; i < exh_signal_count(scene->signals); i++) {
-        scene->signal[i] = 0;
+        exh_scene_signals(scene)[i] = 0;
     } /* of an instance before */
     for (uint32_t i = 0; i < OWN; i++) {
         if (own_var[i].role == UNIT_INPUT || i == ENC_BITS) { (void)set_own(i, own_var[i].start); }
@@ -228,7 +228,7 @@ void unit_bytes(struct exh_bytes *c)
     exh_bytes_u8(c, &started);
     exh_drive_in_serialize(c, &in.drive, EXH_FINGERS);
     exh_drive_out_serialize(c, &out, EXH_FINGERS);
-    for (uint32_t i = 0; i < n; i++) { exh_bytes_i32(c, &scene->signal[i]); }
+    exh_bytes_i32s(c, exh_scene_signals(scene), n);
     if (c->mode == EXH_BYTES_READ) { scene->params->locked = 0; }
     exh_params_serialize(c, scene->params);
     if (c->mode == EXH_BYTES_READ) { set_up_anew(c); }

@@ -32,6 +32,7 @@ static struct exh_regs regs;
 static struct exh_modbus_rtu line;
 static struct exh_trace trace;
 static struct exh_trace_frame frame[EXH_TRACE_FRAMES];
+static const struct exh_scene *scene;
 static struct exh_params *params;
 static int (*scene_allows)(void);
 static const struct exh_safety *safety;
@@ -117,8 +118,9 @@ static void map(const struct exh_scene *sc)
 {
     memset(&regs, 0, sizeof regs);
     regs.name = sc->name;
-    regs.signals = sc->signal ? sc->signals : NULL;
-    regs.signal = sc->signal;
+    scene = sc;
+    regs.signals = sc->values ? sc->signals : NULL;
+    regs.signal = sc->values;
     regs.fingers = sc->fingers;
     regs.may = EXH_REGS_MAY | (par.remote ? REMOTE : 0u);
     params = sc->params;
@@ -265,6 +267,7 @@ static uint32_t hear(void)
 void pc104_modbus_poll(const struct exh_scene_in *in)
 {
     if (!open) { return; }
+    if (exh_trace_reads(&trace)) { (void)exh_scene_signals(scene); }
     if (regs.trace) { exh_trace_step(&trace, safety->tick, regs.signal); }
     if (sending) {
         send();
@@ -273,6 +276,7 @@ void pc104_modbus_poll(const struct exh_scene_in *in)
     if (hear() > 0 || !exh_modbus_rtu_poll(&line, tick_us * (1u + in->missed))) { return; }
     if (safety) { exh_regs_update(&regs, safety, in->drive.din); }
     regs.locked = params ? params->locked : 0;
+    (void)exh_scene_signals(scene); /* for who reads them */
     answer_B = (uint32_t)exh_modbus_rtu_answer(&line, &regs, answer, sizeof answer);
     sent_B = 0;
     in_fifo_q16 = 0;

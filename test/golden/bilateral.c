@@ -486,6 +486,7 @@ void golden_bilateral(struct golden *g, uint32_t rate_Hz)
         any_in(&r, moves, k);
         bilateral_tick(&rig.s, &rig.cfg, &rig.in, &rig.mail_in, &rig.params, &out, &rig.sig);
         bilateral_write(&rig.s, &rig.cfg, &rig.sig, &rig.mail_out);
+        bilateral_tell(&rig.s, &rig.cfg, &rig.sig);
         if (k % 8 == 7) { (void)exh_params_apply(&rig.params); }
         put_in(g);
         put_out(g, &out);

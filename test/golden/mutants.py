@@ -50,7 +50,7 @@ MUTANTS = (
     ("fix", H + "fix.h", "return INT32_MIN;", "return -INT32_MAX;"),
     ("fix", L + "num/fix.c", "UINT64_C(1001) * T.den", "UINT64_C(1000) * T.den"),
     ("bytes", L + "num/bytes.c", "n <= c->cap - at", "n < c->cap - at"),
-    ("bytes", L + "num/bytes.c", "crc ^= *p;\n        crc = crc >> 4 ^ nibble[crc & 15];",
+    ("bytes", L + "num/crc.c", "crc ^= *p;\n        crc = crc >> 4 ^ nibble[crc & 15];",
      "crc ^= *p;\n        crc = crc >> 4 ^ nibble[crc & 7];"),
     ("bytes", L + "num/bytes.c", "(int32_t)u - 0x10000", "(int32_t)u - 0xFFFF"),
     ("record", L + "talk/record.c", "len_B < end + 4", "len_B < end"),

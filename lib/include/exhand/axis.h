@@ -137,13 +137,23 @@ static inline struct exh_permit exh_axis_permit(struct exh_safety *s,
     return exh_safety_step(s, cfg, box);
 }
 
+/* exh_axis_force() with limits of force of this tick's own. */
+static inline uint32_t exh_axis_force_within(const struct exh_axis *a,
+    const struct exh_permit *permit, struct exh_drive_most own, struct exh_force_ledger *f,
+    struct exh_current_ledger *i)
+{
+    const uint32_t limits = exh_drive_force_within(a->drive, a->drive_cfg, permit, own, f);
+    return limits | exh_drive_current_step(a->drive, a->drive_cfg, f, i);
+}
+
 /* After the law has filled the force ledger: limits of force, then of current. Returns limit bits,
  * which go on to the gate with those of sense. */
 static inline uint32_t exh_axis_force(const struct exh_axis *a, const struct exh_permit *permit,
     struct exh_force_ledger *f, struct exh_current_ledger *i)
 {
-    const uint32_t limits = exh_drive_force_step(a->drive, a->drive_cfg, permit, f);
-    return limits | exh_drive_current_step(a->drive, a->drive_cfg, f, i);
+    const struct exh_drive_par *par = a->drive_cfg->par;
+    const struct exh_drive_most own = {par->f_max_N_q20, par->slew_up_Nps};
+    return exh_axis_force_within(a, permit, own, f, i);
 }
 
 /* After exh_gate_step(): what was coded, for the checks of the next tick. */

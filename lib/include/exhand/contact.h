@@ -65,10 +65,10 @@ struct exh_force_ledger {
     int32_t force_N_q20;     /* the force commanded */
 };
 
-/* One tick. Fills spring, damper and pullback, zeroes the rest. Each term is
- * rounded once: the sum is within 1 LSB (0.95 uN) of exact for every input;
- * penetration q - q_lim saturates at +-2 m. Returns `touching`: it sets at
- * q >= q_lim and clears at q < q_lim - hyst. */
+/* One tick. Fills spring, damper and pullback, zeroes passivity; the rest is drive.h's. Each term
+ * is rounded once: the sum is within 1 LSB (0.95 uN) of exact for every input; penetration q -
+ * q_lim saturates at +-2 m. Returns `touching`: it sets at q >= q_lim and clears at q < q_lim -
+ * hyst. */
 int exh_contact_step(struct exh_contact *s, const struct exh_contact_par *par,
     struct exh_contact_in in, struct exh_force_ledger *out);
 

@@ -114,6 +114,17 @@ struct exh_current_ledger {
 int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, struct exh_period T,
     struct exh_table force_to_cur, struct exh_table cur_to_force);
 
+/* Limits of force that a scene may lower between any two ticks, in place of those of exh_drive_par.
+ */
+struct exh_drive_most {
+    int32_t f_max_N_q20; /* force limit, N, 0 .. 100 */
+    int32_t slew_up_Nps; /* rise of force, N/s, 1 .. 10^7 */
+};
+
+/* exh_drive_force_step() with limits of this tick's own. */
+uint32_t exh_drive_force_within(struct exh_drive *s, const struct exh_drive_cfg *cfg,
+    const struct exh_permit *permit, struct exh_drive_most own, struct exh_force_ledger *f);
+
 /* Completes the force ledger, by the permit's mode, any other being CLOSED.
  * OPEN: 0 <= force <= the share of f_max and of the table's end, |change| <=
  * slew * T (at least 1 LSB). Where the two disagree, because f_max was just lowered,
@@ -121,8 +132,12 @@ int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, 
  * RELEASE: whatever the ledger asks for, the force held in the last tick goes in equal steps,
  * fall of it and at most 1 LSB more, one for each of `ticks`: with fall = 1/n it is zero after n.
  * CLOSED: the force is zero and rises from there when it opens again. Returns limit bits. */
-uint32_t exh_drive_force_step(struct exh_drive *s, const struct exh_drive_cfg *cfg,
-    const struct exh_permit *permit, struct exh_force_ledger *f);
+static inline uint32_t exh_drive_force_step(struct exh_drive *s, const struct exh_drive_cfg *cfg,
+    const struct exh_permit *permit, struct exh_force_ledger *f)
+{
+    const struct exh_drive_most own = {cfg->par->f_max_N_q20, cfg->par->slew_up_Nps};
+    return exh_drive_force_within(s, cfg, permit, own, f);
+}
 
 /* Fills table, peak and i2t for the force commanded; zeroes the rest. The I2t
  * limit leaves the peak untouched while less than 3/4 of the budget is used,

@@ -54,6 +54,12 @@ int exh_trace_setup(
  * -EXH_E_RANGE: an index of none of the signals; nothing changes. */
 int exh_trace_start(struct exh_trace *t, const struct exh_trace_request *what);
 
+/* 1: the coming exh_trace_step() reads the values, in other ticks nobody has to make them. */
+static inline int exh_trace_reads(const struct exh_trace *t)
+{
+    return t->what.every != 0 && t->left == 0;
+}
+
 /* Behind each tick, with the values of the table. */
 void exh_trace_step(struct exh_trace *t, uint32_t tick, const int32_t *signal);
 

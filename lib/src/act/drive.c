@@ -152,21 +152,24 @@ static uint32_t release(struct exh_drive *s, int64_t asked_N_q20, const struct e
     return EXH_LIMIT_RELEASE;
 }
 
-uint32_t exh_drive_force_step(struct exh_drive *s, const struct exh_drive_cfg *cfg,
-    const struct exh_permit *permit, struct exh_force_ledger *f)
+/* More than any force: a longer step ends where this one does, and 32 bits are enough. */
+#define STEP_MAX_N_Q20 (INT32_C(1) << 30)
+EXH_STATIC_ASSERT(no_force_is_beyond_a_step, EXH_FORCE_MAX_N_Q20 < STEP_MAX_N_Q20);
+
+uint32_t exh_drive_force_within(struct exh_drive *s, const struct exh_drive_cfg *cfg,
+    const struct exh_permit *permit, struct exh_drive_most own, struct exh_force_ledger *f)
 {
-    const struct exh_drive_par *par = cfg->par;
     const int64_t asked = exh_wrap_add64(exh_wrap_add64(f->spring_N_q20, f->damper_N_q20),
         exh_wrap_add64(f->pullback_N_q20, f->passivity_N_q20));
-    const int32_t top = par->f_max_N_q20 < cfg->f_top_N_q20 ? par->f_max_N_q20 : cfg->f_top_N_q20;
+    const int32_t top = own.f_max_N_q20 < cfg->f_top_N_q20 ? own.f_max_N_q20 : cfg->f_top_N_q20;
     const int32_t most = (int32_t)((int64_t)top * permit->share_q30 >> 30);
     const int32_t held = exh_clamp(asked, 0, most);
     const int rises = held > s->force_N_q20;
     const int64_t rate =
-        exh_gain_mul(cfg->tick_N_q20, rises ? par->slew_up_Nps : par->slew_down_Nps);
-    const int64_t step = rate > 0 ? rate : 1;
-    const int64_t end = s->force_N_q20 + (rises ? step : -step);
-    const int64_t slewed = (held > end) == rises ? end : held; /* the nearer */
+        exh_gain_mul(cfg->tick_N_q20, rises ? own.slew_up_Nps : cfg->par->slew_down_Nps);
+    const int32_t step = exh_clamp(rate, 1, STEP_MAX_N_Q20);
+    const int32_t end = exh_wrap_add(s->force_N_q20, rises ? step : -step);
+    const int32_t slewed = (held > end) == rises ? end : held; /* the nearer */
     uint32_t limits = 0;
 
     f->clamp_N_q20 = f->slew_N_q20 = f->release_N_q20 = 0;
@@ -178,8 +181,8 @@ uint32_t exh_drive_force_step(struct exh_drive *s, const struct exh_drive_cfg *c
     if (most < top && asked > most) { limits |= EXH_LIMIT_RAMP; }
     if (slewed != held) { limits |= EXH_LIMIT_SLEW; }
     f->clamp_N_q20 = exh_wrap_diff64(held, asked);
-    f->slew_N_q20 = slewed - held;
-    f->force_N_q20 = (int32_t)slewed; /* between held and the last force: both int32 */
+    f->slew_N_q20 = (int64_t)slewed - held;
+    f->force_N_q20 = slewed; /* between held and the last force */
     s->force_N_q20 = f->force_N_q20;
     s->fall_N_q20 = 0;
     return limits;

@@ -54,10 +54,6 @@ int exh_contact_step(struct exh_contact *s, const struct exh_contact_par *par,
         exh_mul_shr(par->b_Nspm_q20 & on, in.vel_mps_q27, EXH_Q_B + EXH_Q_VEL - EXH_Q_FORCE);
     out->pullback_N_q20 = par->f0_N_q20 & -(int32_t)s->inward;
     out->passivity_N_q20 = 0;
-    out->clamp_N_q20 = 0;
-    out->slew_N_q20 = 0;
-    out->release_N_q20 = 0;
-    out->force_N_q20 = 0;
     return touching;
 }
 

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Cursor over a buffer that reads, writes or measures fields; CRC-32. */
+/* Cursor over a buffer that reads, writes or measures fields. */
 #include "exhand/bytes.h"
 
 #include "exhand/fix.h"
+
+#include "word.h"
 
 /* A cursor counts to UINT32_MAX, which must stay beyond every cap. */
 static uint32_t capacity(size_t B) { return B < UINT32_MAX ? (uint32_t)B : UINT32_MAX - 1; }
@@ -45,21 +47,6 @@ static uint8_t *move_past(struct exh_bytes *c, uint32_t n)
 
 /* A value that stays: what is written, or only measured. */
 static int stays(const struct exh_bytes *c) { return c->mode != EXH_BYTES_READ; }
-
-/* Least significant byte first. Written out byte by byte: compilers make one access of them where
- * the machine has it. */
-static uint32_t word_at(const uint8_t *p)
-{
-    return p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
-}
-
-static void put_word(uint8_t *p, uint32_t v)
-{
-    p[0] = (uint8_t)(v & 0xFF);
-    p[1] = (uint8_t)(v >> 8 & 0xFF);
-    p[2] = (uint8_t)(v >> 16 & 0xFF);
-    p[3] = (uint8_t)(v >> 24);
-}
 
 void exh_bytes_u8(struct exh_bytes *c, uint8_t *v)
 {
@@ -106,6 +93,21 @@ void exh_bytes_u32(struct exh_bytes *c, uint32_t *v)
     *v = (uint32_t)i;
 }
 
+/* Of a buffer that ends among them, each goes for itself: what fits is done. */
+void exh_bytes_i32s(struct exh_bytes *c, int32_t *v, uint32_t n)
+{
+    const uint32_t at = c->at;
+    uint8_t *p = move_past(c, 4 * n);
+    if (p == NULL) {
+        c->at = at;
+        for (; n > 0; n--, v++) { exh_bytes_i32(c, v); }
+    } else if (stays(c)) {
+        for (; n > 0; n--, v++, p += 4) { put_word(p, (uint32_t)*v); }
+    } else {
+        for (; n > 0; n--, v++, p += 4) { *v = exh_from_u32(word_at(p)); }
+    }
+}
+
 void exh_bytes_i64(struct exh_bytes *c, int64_t *v)
 {
     uint8_t *const p = move_past(c, 8);
@@ -116,32 +118,4 @@ void exh_bytes_i64(struct exh_bytes *c, int64_t *v)
         put_word(p, (uint32_t)(u & UINT32_MAX));
         put_word(p + 4, (uint32_t)(u >> 32));
     }
-}
-
-uint32_t exh_crc32(uint32_t crc, const void *buf, size_t len_B)
-{
-    /* Steps of 4 bits: 64 bytes of table instead of 1 KiB. Four bytes at once: one load and one
-     * turn for them. */
-    static const uint32_t nibble[16] = {0x00000000u, 0x1DB71064u, 0x3B6E20C8u, 0x26D930ACu,
-        0x76DC4190u, 0x6B6B51F4u, 0x4DB26158u, 0x5005713Cu, 0xEDB88320u, 0xF00F9344u, 0xD6D6A3E8u,
-        0xCB61B38Cu, 0x9B64C2B0u, 0x86D3D2D4u, 0xA00AE278u, 0xBDBDF21Cu};
-    const uint8_t *p = buf;
-    crc = ~crc;
-    for (; len_B >= 4; len_B -= 4, p += 4) {
-        crc ^= word_at(p);
-        crc = crc >> 4 ^ nibble[crc & 15];
-        crc = crc >> 4 ^ nibble[crc & 15];
-        crc = crc >> 4 ^ nibble[crc & 15];
-        crc = crc >> 4 ^ nibble[crc & 15];
-        crc = crc >> 4 ^ nibble[crc & 15];
-        crc = crc >> 4 ^ nibble[crc & 15];
-        crc = crc >> 4 ^ nibble[crc & 15];
-        crc = crc >> 4 ^ nibble[crc & 15];
-    }
-    for (; len_B > 0; len_B--, p++) {
-        crc ^= *p;
-        crc = crc >> 4 ^ nibble[crc & 15];
-        crc = crc >> 4 ^ nibble[crc & 15];
-    }
-    return ~crc;
 }

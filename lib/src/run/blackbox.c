@@ -117,7 +117,7 @@ static int fits(const struct exh_scene *sc)
     uint64_t need;
     if (memory_B < 2 * EXH_LOG_RECORD_B || sc->state == NULL) { return 0; }
     exh_log_keyframe_serialize(&key, sc);
-    exh_log_frame_serialize(&frame, sc, &in, &out, sc->signal);
+    exh_log_frame_serialize(&frame, sc, &in, &out, sc->values);
     need = KEYFRAMES_MIN * (key.at + EXH_RING_HEAD_B) +
            UINT64_C(2) * after_ticks * (frame.at + EXH_RING_HEAD_B);
     return memory_B - EXH_LOG_RECORD_B >= need + need / (EXH_RING_PARTS - 1);
@@ -207,7 +207,7 @@ static uint32_t ones(uint32_t bits)
 
 static void watch(uint32_t tick)
 {
-    const uint32_t now = faults_at < 0 ? 0 : (uint32_t)scene->signal[faults_at];
+    const uint32_t now = faults_at < 0 ? 0 : (uint32_t)exh_scene_signals(scene)[faults_at];
     const uint32_t fresh = now & ~seen;
     seen = now;
     if (is.state == EXH_BLACKBOX_RECORDS && fresh) {

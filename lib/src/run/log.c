@@ -156,7 +156,7 @@ void exh_log_frame_serialize(struct exh_bytes *c, const struct exh_scene *sc,
     exh_drive_in_serialize(c, &in->drive, sc->fingers);
     if (sc->read_glove) { glove_bytes(c, in); }
     exh_drive_out_serialize(c, out, sc->fingers);
-    for (uint32_t i = 0; i < n; i++) { exh_bytes_i32(c, &signal[i]); }
+    exh_bytes_i32s(c, signal, n);
 }
 
 void exh_log_keyframe_serialize(struct exh_bytes *c, const struct exh_scene *sc)
@@ -215,7 +215,7 @@ void exh_log_after(uint32_t tick, const struct exh_scene_in *in, const struct ex
     struct exh_bytes c;
     if (scene->link) { packets(tick, scene->link->in); }
     c = begin(EXH_RECORD_FRAME, tick);
-    exh_log_frame_serialize(&c, scene, &i, &o, scene->signal);
+    exh_log_frame_serialize(&c, scene, &i, &o, exh_scene_signals(scene));
     end(&c);
     /* Here and not in exh_log_before(), where it would delay the output. */
     silent = alone || (tick + 1) % EXH_LOG_KEYFRAME_TICKS != 0;

@@ -74,7 +74,7 @@ static void frame_bytes(struct exh_bytes *c, struct exh_trace_frame *f)
 {
     exh_bytes_u32(c, &f->number);
     exh_bytes_u32(c, &f->tick);
-    for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) { exh_bytes_i32(c, &f->raw[i]); }
+    exh_bytes_i32s(c, f->raw, EXH_TRACE_SIGNALS);
 }
 
 void exh_trace_serialize(struct exh_bytes *c, struct exh_trace *t)

@@ -37,11 +37,6 @@ static void demand(struct exh_bytes *c, int holds)
     if (!holds) { exh_bytes_fail(c); }
 }
 
-static void i32s_bytes(struct exh_bytes *c, int32_t *v, unsigned n)
-{
-    for (unsigned i = 0; i < n; i++) { exh_bytes_i32(c, &v[i]); }
-}
-
 static void hello_bytes(struct exh_bytes *c, struct exh_wire_hello *h)
 {
     exh_bytes_u8(c, &h->role);
@@ -54,6 +49,18 @@ static void hello_bytes(struct exh_bytes *c, struct exh_wire_hello *h)
     demand(c, h->role <= EXH_WIRE_WORLD);
 }
 
+static void finger_bytes(struct exh_bytes *c, struct exh_wire_state *s, unsigned f)
+{
+    int32_t v[] = {s->force_N_q20[f], s->d_m_q30[f], s->q_m_q30[f], s->q_lim_m_q30[f]};
+    exh_bytes_i32s(c, s->joint_turn_q32[f], 3);
+    exh_bytes_i32s(c, s->tip_m_q30[f], 3);
+    exh_bytes_i32s(c, v, 4);
+    s->force_N_q20[f] = v[0];
+    s->d_m_q30[f] = v[1];
+    s->q_m_q30[f] = v[2];
+    s->q_lim_m_q30[f] = v[3];
+}
+
 static void state_bytes(struct exh_bytes *c, struct exh_wire_state *s)
 {
     exh_bytes_u32(c, &s->tick);
@@ -63,14 +70,7 @@ static void state_bytes(struct exh_bytes *c, struct exh_wire_state *s)
     exh_bytes_u8(c, &s->touching);
     exh_bytes_u16(c, &s->age_ms);
     exh_bytes_u32(c, &s->faults);
-    for (unsigned f = 0; f < EXH_FINGERS; f++) {
-        i32s_bytes(c, s->joint_turn_q32[f], 3);
-        i32s_bytes(c, s->tip_m_q30[f], 3);
-        exh_bytes_i32(c, &s->force_N_q20[f]);
-        exh_bytes_i32(c, &s->d_m_q30[f]);
-        exh_bytes_i32(c, &s->q_m_q30[f]);
-        exh_bytes_i32(c, &s->q_lim_m_q30[f]);
-    }
+    for (unsigned f = 0; f < EXH_FINGERS; f++) { finger_bytes(c, s, f); }
     demand(c, (s->fingers | s->frozen | s->touching) <= FINGERS_OF && s->state <= EXH_STATE_FAULT);
 }
 
@@ -79,9 +79,9 @@ static void plane_bytes(struct exh_bytes *c, struct exh_wire_plane *p)
     exh_bytes_u8(c, &p->kind);
     exh_bytes_u8(c, &p->material);
     exh_bytes_u16(c, &p->object);
-    i32s_bytes(c, p->normal_q30, 3);
-    i32s_bytes(c, p->point_m_q30, 3);
-    i32s_bytes(c, p->hit_m_q30, 3);
+    exh_bytes_i32s(c, p->normal_q30, 3);
+    exh_bytes_i32s(c, p->point_m_q30, 3);
+    exh_bytes_i32s(c, p->hit_m_q30, 3);
     demand(c, p->kind <= EXH_PLANE_HIT);
 }
 
@@ -119,7 +119,7 @@ static void trace_bytes(struct exh_bytes *c, struct exh_wire_trace *t)
     demand(c, t->frames <= EXH_WIRE_FRAMES && t->result <= 0 && (t->result == 0 || t->frames == 0));
     for (unsigned i = 0; i < t->frames && i < EXH_WIRE_FRAMES; i++) {
         exh_bytes_u32(c, &t->frame[i].tick);
-        i32s_bytes(c, t->frame[i].raw, EXH_TRACE_SIGNALS);
+        exh_bytes_i32s(c, t->frame[i].raw, EXH_TRACE_SIGNALS);
     }
 }
 

@@ -48,7 +48,7 @@ static int next_row(struct walk *w)
         if (r.type != EXH_RECORD_FRAME) { continue; }
         if ((w->what & CSV_FALLS) && w->fall == 0) { continue; }
         memset(&w->in, 0, sizeof w->in);
-        exh_log_frame_serialize(&c, w->log->scene, &w->in, &out, w->log->scene->signal);
+        exh_log_frame_serialize(&c, w->log->scene, &w->in, &out, w->log->scene->values);
         if (!exh_bytes_ok(&c) || c.at != r.len_B) {
             w->malformed++;
         } else if (w->rows > 0 && w->log->tick <= w->tick) {
@@ -88,7 +88,7 @@ static int write_rows(struct walk *w, const struct columns *c, FILE *to)
     const int glove = sc->read_glove && (w->what & CSV_ALL); /* the codes, too */
     header_line(to, c, glove);
     while (next_row(w)) {
-        line(to, c, (double)w->tick * T.num / T.den, sc->signal, glove ? w->in.glove.raw : NULL);
+        line(to, c, (double)w->tick * T.num / T.den, sc->values, glove ? w->in.glove.raw : NULL);
     }
     return ferror(to) || fflush(to) != 0;
 }

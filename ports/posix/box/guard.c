@@ -21,7 +21,7 @@ void guard_start(struct guard *g, struct exh_scene_board board)
 void guard_after(struct guard *g)
 {
     const struct guarded_signals *s =
-        (const struct guarded_signals *)(const void *)exh_scene_guarded.signal;
+        (const struct guarded_signals *)(const void *)exh_scene_signals(&exh_scene_guarded);
     const double out_J = -(double)s->energy_J_q24 / (1 << 24);
     const double is_N = newton(s->drop.f_des_N_q20);
     double was_N = is_N - newton(s->passivity_N_q20);

@@ -110,7 +110,7 @@ static void see_truth(unsigned f, struct bilateral_sample *s, int touches)
 /* 1 while the finger has something to do. */
 static int one_finger(unsigned f)
 {
-    const struct bilateral_signals *sig = (const void *)exh_scene_bilateral.signal;
+    const struct bilateral_signals *sig = (const void *)exh_scene_signals(&exh_scene_bilateral);
     struct bilateral_track *t = &run.r->finger[f];
     const struct sim_finger *plant = posix_finger(f);
     const enum sim_path_phase phase = plant->path.phase;
@@ -141,7 +141,7 @@ static int one_finger(unsigned f)
 /* A box that will not run is no experiment, unless somebody else commands it. */
 static void watch_arming(void)
 {
-    const struct bilateral_signals *sig = (const void *)exh_scene_bilateral.signal;
+    const struct bilateral_signals *sig = (const void *)exh_scene_signals(&exh_scene_bilateral);
     const enum arming is = arming_is(sig->box.state);
     if (run.ran || is == ARMING_GOES_ON || (run.cfg->more && is != ARMING_RUNS)) { return; }
     run.ran = is == ARMING_RUNS;
@@ -156,7 +156,7 @@ static void watch_arming(void)
 
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
-    const struct bilateral_signals *sig = (const void *)exh_scene_bilateral.signal;
+    const struct bilateral_signals *sig = (const void *)exh_scene_signals(&exh_scene_bilateral);
     int busy = 0;
     dumpfile_after(tick, in, out);
     run.last_tick = tick;
@@ -359,7 +359,9 @@ int bilateral_run(const struct bilateral_run_cfg *c, struct bilateral_run *r)
     }
     if (run.logged && r->T.num != 0) { r->lost = exh_log_end(run.last_tick + 1); }
     if (err == 0) {
-        r->box = ((const struct bilateral_signals *)(const void *)exh_scene_bilateral.signal)->box;
+        r->box = ((const struct bilateral_signals *)(const void *)exh_scene_signals(
+                      &exh_scene_bilateral))
+                     ->box;
         r->faults = (uint32_t)r->box.faults;
         for (int w = 0; w < SIM_LINK_WAYS; w++) { r->way[w] = posix_link()->way[w].counts; }
         r->frames = run.peer.frames;

@@ -132,7 +132,7 @@ static void pass(uint32_t tick, struct drop_signals *s)
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
     struct drop_signals s;
-    memcpy(&s, run.scene->signal, sizeof s);
+    memcpy(&s, exh_scene_signals(run.scene), sizeof s);
     if (run.scene == &exh_scene_guarded) { guard_after(&run.r->guard); }
     dumpfile_after(tick, in, out);
     run.last_tick = tick;

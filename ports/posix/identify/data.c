@@ -52,7 +52,7 @@ void identify_data_tick(struct identify_data *d)
     const struct identify *s = identify_state();
     struct identify_signals sig;
     if (!grow(d)) { return; }
-    memcpy(&sig, exh_scene_identify.signal, sizeof sig);
+    memcpy(&sig, exh_scene_signals(&exh_scene_identify), sizeof sig);
     if (d->n == 0) { d->first_cnt = s->quad.cnt; }
     d->sample[d->n++] = (struct identify_sample){.cnt = s->quad.cnt - d->first_cnt,
         .coded_A = (float)si(sig.i_des_A_q26, EXH_Q_CUR),
@@ -113,7 +113,7 @@ static int on_frame(
     }
     (void)exh_params_apply(exh_scene_identify.params);
     exh_scene_identify.tick(&a->in, &is);
-    if (memcmp(signal, exh_scene_identify.signal, sizeof signal) != 0) {
+    if (memcmp(signal, exh_scene_signals(&exh_scene_identify), sizeof signal) != 0) {
         cli_complain("%s: tick %llu: another scene: exhand replay says what differs", l->path,
             (unsigned long long)a->tick);
         return 2;

@@ -28,7 +28,7 @@ static struct {
 static struct identify_signals signals(void)
 {
     struct identify_signals s;
-    memcpy(&s, exh_scene_identify.signal, sizeof s);
+    memcpy(&s, exh_scene_signals(&exh_scene_identify), sizeof s);
     return s;
 }
 

@@ -47,7 +47,7 @@ void mail_give(void) { pthread_mutex_unlock(&lock); }
 static void copy_values(void)
 {
     const struct exh_params *p = mail.sc->params;
-    memcpy(mail.signal, mail.sc->signal, 4 * (size_t)mail.regs.signals_n);
+    memcpy(mail.signal, exh_scene_signals(mail.sc), 4 * (size_t)mail.regs.signals_n);
     memcpy(mail.active, p->active, 4 * (size_t)mail.regs.params_n);
     memcpy(mail.wanted, p->staged, 4 * (size_t)mail.regs.params_n);
     mail.regs.locked = p->locked;
@@ -127,7 +127,8 @@ static void make_image(void)
 
 void mail_after(const struct exh_scene_in *in)
 {
-    exh_trace_step(&mail.own, mail.sc->safety->tick, mail.sc->signal);
+    if (exh_trace_reads(&mail.own)) { (void)exh_scene_signals(mail.sc); }
+    exh_trace_step(&mail.own, mail.sc->safety->tick, mail.sc->values);
     if (pthread_mutex_trylock(&lock) != 0) { return; }
     exh_trace_copy(&mail.own, &mail.shown);
     copy_values();

@@ -181,7 +181,7 @@ TEST(what_moves_while_it_is_touched_is_not_felt)
     for (i = 0; i < s->n && i < t->n && same_felt(&s->at[i].raw, &t->at[i].raw); i++) {}
     CHECK(i < s->n && s->at[i].approach == 2, "differs in tick %zu, approach %d", i,
         s->at[i].approach);
-    CHECK(((const struct bilateral_signals *)(const void *)exh_scene_bilateral.signal)
+    CHECK(((const struct bilateral_signals *)(const void *)exh_scene_signals(&exh_scene_bilateral))
                   ->more[EXH_INDEX]
                   .ignored > 100,
         "it was not seen to move");
@@ -369,7 +369,7 @@ TEST(five_fingers_are_in_contact_at_once_and_each_as_if_alone)
 
 TEST(a_finger_that_is_off_has_no_current_and_no_drive)
 {
-    const struct bilateral_signals *sig = (const void *)exh_scene_bilateral.signal;
+    const struct bilateral_signals *sig = (const void *)exh_scene_signals(&exh_scene_bilateral);
     struct bilateral_run_cfg c = plain(1u << EXH_RING, 0.87, 1);
     struct bilateral_run r = run(&c);
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {

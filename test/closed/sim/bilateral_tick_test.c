@@ -80,6 +80,7 @@ static int tick(int glove_new, int type)
     from_board.glove_new = (uint8_t)glove_new;
     bilateral_tick(&box, &cfg, &from_board, &in, exh_scene_bilateral.params, &drive, &sig);
     bilateral_write(&box, &cfg, &sig, &out);
+    bilateral_tell(&box, &cfg, &sig);
     in.packets = 0;
     tick_n++;
     for (unsigned i = 0; i < out.packets; i++) { n += out.byte[i][3] == type; }
@@ -542,7 +543,7 @@ TEST(frames_that_had_no_room_are_missed_by_number)
     next = t.first + t.frames;
     for (int k = 0; k < 40; k++) {
         out.packets = EXH_SCENE_PACKETS;
-        bilateral_trace_write(&box, &sig, &out);
+        bilateral_trace_write(&box, &cfg, &sig, &out);
     }
     CHECK_EQ_I64(traced(&t), 1);
     CHECK_EQ_I64(exh_wire_trace_missed(next, &t), 25);

@@ -36,14 +36,14 @@ static void begin(const struct exh_scene *sc, struct exh_scene_board board)
 /* Until it runs: before the first planes the link is a cause, where it is asked for. */
 static void before(uint32_t tick, struct exh_scene_in *in)
 {
-    const struct bilateral_signals *sig = (const void *)exh_scene_bilateral.signal;
+    const struct bilateral_signals *sig = (const void *)exh_scene_signals(&exh_scene_bilateral);
     (void)tick;
     if (sig->box.state == EXH_STATE_OFF && posix_time_s() < 0.5) { in->command = EXH_CMD_RUN; }
 }
 
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
-    const struct bilateral_signals *sig = (const void *)exh_scene_bilateral.signal;
+    const struct bilateral_signals *sig = (const void *)exh_scene_signals(&exh_scene_bilateral);
     (void)tick;
     (void)in;
     (void)out;

@@ -332,7 +332,7 @@ static void silent_for_a_while(uint64_t n)
 
 static void look(uint32_t n, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
-    const struct bilateral_signals *s = (const void *)exh_scene_bilateral.signal;
+    const struct bilateral_signals *s = (const void *)exh_scene_signals(&exh_scene_bilateral);
     const uint32_t here = (uint32_t)s->box.present & EXH_FAULT_GLOVE ? 1 : 0;
     (void)out;
     if (n >= RATE_HZ && n < 2 * RATE_HZ) { box.before += here; }

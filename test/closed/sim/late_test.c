@@ -103,7 +103,6 @@ static void feel(const struct exh_permit *permit)
     const double before_N = is.force_N, down_mps = is.v_mps < 0 ? -is.v_mps : 0;
     double may_N, rise_N;
     int32_t bits;
-    s.drive_now[F] = par.drive[F];
     s.glove_age_ticks = 0;
     s.finger[F].tip_m_q30 =
         (struct exh_vec3){0, 0, MM(1e3 * (is.z_m + real_in(-NOISE_M, NOISE_M)))};

@@ -149,7 +149,8 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     exh_log_after(tick, in, out);
     if (tick < TICKS_MAX) {
         script.at[tick].out = *out;
-        memcpy(&script.at[tick].sig, exh_scene_drop.signal, sizeof script.at[tick].sig);
+        memcpy(
+            &script.at[tick].sig, exh_scene_signals(&exh_scene_drop), sizeof script.at[tick].sig);
     }
     script.ticks++;
 }

@@ -77,7 +77,7 @@ static void begin(void)
     exh_params_setup(&ours.p, sc->params->table, ours.active, ours.wanted);
     ours.p.locked = 1;
     for (uint32_t i = 0; i < exh_signal_count(sc->signals); i++) {
-        sc->signal[i] = (int32_t)check_u64();
+        exh_scene_signals(sc)[i] = (int32_t)check_u64();
     }
     mail_open(&cfg);
     CHECK_EQ_I64(mail_start(sc, board), 0);

@@ -188,6 +188,7 @@ TEST(full_box_within_noise)
         noise_mail();
         bilateral_tick(&box, &cfg, &in, &mail, exh_scene_bilateral.params, &out, &sig);
         bilateral_write(&box, &cfg, &sig, &sent);
+        bilateral_tell(&box, &cfg, &sig);
         open = exh_safety_is_open(&box.safety);
         CHECK(out.enable == (open ? (1 << BILATERAL_FINGERS) - 1 : 0), "enable %x", out.enable);
         for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {

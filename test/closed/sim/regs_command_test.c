@@ -36,8 +36,10 @@ static struct exh_regs regs_of(const struct exh_scene *sc)
     static uint32_t touched[EXH_REGS_WORDS(VALUES)];
     static struct exh_trace trace;
     static struct exh_trace_frame frame[EXH_TRACE_FRAMES];
-    struct exh_regs r = {
-        .name = sc->name, .signals = sc->signals, .signal = sc->signal, .may = EXH_REGS_MAY};
+    struct exh_regs r = {.name = sc->name,
+        .signals = sc->signals,
+        .signal = exh_scene_signals(sc),
+        .may = EXH_REGS_MAY};
     if (sc->defaults) { sc->defaults(); }
     if (sc->params) {
         CHECK(exh_signal_count(sc->params->table) <= VALUES, "%s: more than this test holds",

@@ -64,7 +64,7 @@ static void stage_any(int all)
 static void before(uint32_t tick, struct exh_scene_in *in)
 {
     struct exh_params *p = exh_scene_drop.params;
-    const struct drop_signals *s = (const void *)exh_scene_drop.signal;
+    const struct drop_signals *s = (const void *)exh_scene_signals(&exh_scene_drop);
     const uint32_t n = tick - see.at;
     if (tick == 0) { in->command = EXH_CMD_RUN; }
     if (tick > 0 && s->state == EXH_STATE_OFF) { in->command = EXH_CMD_RUN; }
@@ -92,7 +92,7 @@ static int64_t allowed_N_q20(int32_t slew_Nps)
 
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
-    const struct drop_signals *s = (const void *)exh_scene_drop.signal;
+    const struct drop_signals *s = (const void *)exh_scene_signals(&exh_scene_drop);
     const struct drop_par *par = (const void *)exh_scene_drop.params->active;
     const int open = s->state == EXH_STATE_RUN || s->state == EXH_STATE_LIMIT;
     const int64_t step = (int64_t)s->f_des_N_q20 - see.last_N_q20;

@@ -59,7 +59,7 @@ static char *write_wrapping_log(uint32_t first, uint32_t ticks, size_t *len_B)
     for (uint32_t n = 0; n < ticks; n++) {
         struct exh_scene_in in;
         struct exh_drive_out out;
-        memcpy(&rig.sig, sc->signal, sizeof rig.sig); /* for the monitor */
+        memcpy(&rig.sig, exh_scene_signals(sc), sizeof rig.sig); /* for the monitor */
         in = idle_in(n, n * 7 % 6000 < 3000 ? n * 7 % 6000 : 6000 - n * 7 % 6000);
         exh_log_before(first + n, &in);
         sc->tick(&in, &out);
@@ -89,8 +89,8 @@ static void read_back(const struct exh_record *r, uint32_t *next, int *running)
     memset(&rec, 0, sizeof rec);
     exh_log_frame_serialize(&c, sc, &in, &rec, (int32_t *)&sig);
     sc->tick(&in, &out);
-    must(out.dac_raw[0] == rec.dac_raw[0] && memcmp(&sig, sc->signal, sizeof sig) == 0, "replay",
-        "tick %lu differs", (unsigned long)r->tick);
+    must(out.dac_raw[0] == rec.dac_raw[0] && memcmp(&sig, exh_scene_signals(sc), sizeof sig) == 0,
+        "replay", "tick %lu differs", (unsigned long)r->tick);
     rig.w.ticks++;
 }
 

@@ -516,7 +516,7 @@ static void fall_after(
     (void)in;
     if (at <= PAST) {
         fall.out[at] = *out;
-        memcpy(&fall.sig[at], exh_scene_drop.signal, sizeof fall.sig[at]);
+        memcpy(&fall.sig[at], exh_scene_signals(&exh_scene_drop), sizeof fall.sig[at]);
         fall.enable[at] = chip.line[ENABLE].level;
         fall.alive[at] = chip.line[ALIVE].level;
     }

@@ -6,7 +6,8 @@
 bench_parts := kernels measure number estimate force path law filter glove hand precontact \
                passivity scene minimal modbus params tick box
 bench_obj := $(bench_parts:%=$(B)/posix/test/figures/bench/%.o)
-bench_scenes := examples/drop/drop.c lib/src/run/calib_set.c examples/glove/cal.c \
+bench_scenes := examples/drop/drop.c $(addprefix lib/src/run/,calib_set.c crc_table.c) \
+                examples/glove/cal.c \
                 $(wildcard examples/bilateral/*.c)
 bench_bin := $(B)/bench/kernels $(B)/bench/velocity $(B)/bench/speed
 $(B)/posix/test/figures/bench/kernels.o: \
@@ -38,7 +39,7 @@ sim-built: $(B)/bench/sim_work $(B)/bench/sim_statistics
 # The kernels for a 32-bit CPU, with the same flags and static. Only instructions are counted there.
 bench_i686 := $(B)/bench/kernels-i686
 i686_src   := $(patsubst $(B)/posix/%.o,%.c,$(filter-out %/velocity.o,$(bench_obj))) \
-              test/no_board.c $(bench_scenes) $(lib_src)
+              test/no_board.c $(bench_scenes) $(filter-out lib/src/num/crc.c,$(lib_src))
 $(bench_i686): $(i686_src) \
     $(wildcard test/figures/bench/*.h lib/src/*/*.h lib/include/exhand/*.h test/wide.h) $(stamp)
 	@mkdir -p $(@D)

@@ -292,9 +292,10 @@ static void add(
 
 static void compare(struct scenes_sum *angle, struct scenes_sum *tip, struct scenes_sum *force)
 {
-    const struct glove_signals *sig = box ? NULL : (const struct glove_signals *)scene->signal;
+    const struct glove_signals *sig =
+        box ? NULL : (const struct glove_signals *)exh_scene_signals(scene);
     const struct bilateral_signals *all =
-        box ? (const struct bilateral_signals *)scene->signal : NULL;
+        box ? (const struct bilateral_signals *)exh_scene_signals(scene) : NULL;
     for (int f = 0; f < PIPE_FINGERS; f++) {
         const int32_t *joint = box ? all->more[f].joint_turn_q32 : sig->joint_turn_q32[f];
         const struct exh_vec3 *p = box ? &all->more[f].tip_m_q30 : &sig->tip_m_q30[f];

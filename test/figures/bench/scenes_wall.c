@@ -125,7 +125,7 @@ static int32_t cnt_at(uint32_t i, uint32_t rate_Hz)
 static void compare(
     struct scenes_sum *force, struct scenes_sum *way, struct scenes_sum *energy, int32_t cnt)
 {
-    const int32_t *sig = scene->signal;
+    const int32_t *sig = exh_scene_signals(scene);
     const int32_t f_q20 = scene == &exh_scene_minimal
                               ? minimal_force_N_q20()
                               : ((const struct drop_signals *)sig)->f_des_N_q20;
@@ -163,7 +163,7 @@ void scenes_wall(const char *name, uint32_t rate_Hz, double seconds)
     }
     EXH_ASSERT(exh_safety_is_running(scene->safety));
     scenes_print(name, rate_Hz, "force", "N", &force);
-    if (scene->signal != NULL) { scenes_print(name, rate_Hz, "string", "m", &way); }
+    if (scene->values != NULL) { scenes_print(name, rate_Hz, "string", "m", &way); }
     if (scene == &exh_scene_guarded) { scenes_print(name, rate_Hz, "energy", "J", &energy); }
 }
 

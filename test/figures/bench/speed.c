@@ -48,7 +48,7 @@ int main(int argc, char **argv)
     start = clock();
     err = exh_loop(&exh_scene_drop, RATE_HZ, NULL);
     cpu_s = (double)(clock() - start) / CLOCKS_PER_SEC;
-    if (err < 0 || ((const struct drop_signals *)exh_scene_drop.signal)->faults != 0) {
+    if (err < 0 || ((const struct drop_signals *)exh_scene_signals(&exh_scene_drop))->faults != 0) {
         fprintf(stderr, "speed: %s\n", err < 0 ? exh_error_text(err) : "the box stopped");
         return 1;
     }

@@ -138,7 +138,7 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     f->command = in->command;
     f->glove_new = in->glove_new;
     f->glove = in->glove;
-    if (!put(f, sizeof *f) || !put(sc->signal, run.signals * sizeof sc->signal[0]) ||
+    if (!put(f, sizeof *f) || !put(exh_scene_signals(sc), run.signals * sizeof(int32_t)) ||
         (sc->link && (!put(sc->link->in, sizeof *sc->link->in) ||
                          !put(sc->link->out, sizeof *sc->link->out)))) {
         posix_stop();

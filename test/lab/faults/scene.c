@@ -30,7 +30,7 @@ unsigned faults_finger(uint8_t scene) { return scene == FAULTS_BILATERAL ? FAULT
 
 static void look_at_drop(struct faults_view *v)
 {
-    const struct drop_signals *s = (const void *)exh_scene_drop.signal;
+    const struct drop_signals *s = (const void *)exh_scene_signals(&exh_scene_drop);
     v->state = s->state;
     v->faults = (uint32_t)s->faults;
     v->present = (uint32_t)s->present;
@@ -41,7 +41,7 @@ static void look_at_drop(struct faults_view *v)
 
 static void look_at_bilateral(struct faults_view *v)
 {
-    const struct bilateral_signals *s = (const void *)exh_scene_bilateral.signal;
+    const struct bilateral_signals *s = (const void *)exh_scene_signals(&exh_scene_bilateral);
     v->state = s->box.state;
     v->faults = (uint32_t)s->box.faults;
     v->present = (uint32_t)s->box.present;

@@ -119,7 +119,7 @@ int glove_rest_log(struct glove_rest *r, const char *path)
         struct exh_bytes c = exh_bytes_reader(rec.payload, rec.len_B);
         if (rec.type != EXH_RECORD_FRAME) { continue; }
         memset(&in, 0, sizeof in);
-        exh_log_frame_serialize(&c, l.scene, &in, &out, l.scene->signal);
+        exh_log_frame_serialize(&c, l.scene, &in, &out, l.scene->values);
         if (exh_bytes_ok(&c) && c.at == rec.len_B && in.glove_new) {
             memcpy(r->frames.raw[r->frames.n++], in.glove.raw, sizeof in.glove.raw);
         }

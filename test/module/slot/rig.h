@@ -28,7 +28,7 @@ static inline struct run_cfg rig(double rate_Hz, double k, double b)
 
 static inline const struct custom_signals *rig_signals(void)
 {
-    return (const struct custom_signals *)(const void *)exh_scene_custom.signal;
+    return (const struct custom_signals *)(const void *)exh_scene_signals(&exh_scene_custom);
 }
 
 /* A run whose log replays: from the beginning, and from a keyframe, where the controller's memory

@@ -43,14 +43,15 @@ TEST(truth_table)
     }
 }
 
-TEST(the_rest_of_the_ledger_is_zeroed)
+TEST(the_rest_of_the_ledger_is_of_others)
 {
     struct exh_contact s = {0};
     struct exh_force_ledger f = {1, 2, 3, 4, 5, 6, 7, 8};
     (void)exh_contact_step(&s, &par_20k, (struct exh_contact_in){0, 0, 1}, &f);
     CHECK(f.spring_N_q20 == 0 && f.damper_N_q20 == 0, "terms without contact");
-    CHECK(f.passivity_N_q20 == 0 && f.clamp_N_q20 == 0, "passivity, clamp");
-    CHECK(f.slew_N_q20 == 0 && f.release_N_q20 == 0 && f.force_N_q20 == 0, "slew, release, force");
+    CHECK(f.pullback_N_q20 == 0 && f.passivity_N_q20 == 0, "pull-back, passivity");
+    CHECK(f.clamp_N_q20 == 5 && f.slew_N_q20 == 6 && f.release_N_q20 == 7, "what the drive makes");
+    CHECK(f.force_N_q20 == 8, "force");
 }
 
 /* c = 1 at q >= q_lim, one LSB decides; 0 again below q_lim - hyst only. */
@@ -208,7 +209,7 @@ TEST(nothing_to_touch)
     }
 }
 
-TEST_MAIN("unit/contact", truth_table, the_rest_of_the_ledger_is_zeroed,
+TEST_MAIN("unit/contact", truth_table, the_rest_of_the_ledger_is_of_others,
     contact_boundary_and_hysteresis, no_hysteresis_by_default, far_ends_do_not_wrap,
     pullback_follows_the_direction, at_most_one_switch_per_reversal_under_noise, state_round_trip,
     nothing_to_touch);

@@ -38,8 +38,13 @@ def from_u64_keeps_bits():
 
 
 def wrapped_sum_is_the_sum():
-    """exh_wrap_add64() and exh_wrap_diff64() are exact wherever the result has 64 bits."""
-    a, b = z3.BitVecs("a b", 64)
+    """exh_wrap_add(), exh_wrap_add64() and exh_wrap_diff64() are exact wherever the result has as
+    many bits."""
+    return all(wrapped_of(bits) for bits in (32, 64))
+
+
+def wrapped_of(bits):
+    a, b = z3.BitVecs("a b", bits)
     wide = z3.SignExt(1, a) + z3.SignExt(1, b)
     less = z3.SignExt(1, a) - z3.SignExt(1, b)
     fits = z3.And(z3.BVAddNoOverflow(a, b, True), z3.BVAddNoUnderflow(a, b))

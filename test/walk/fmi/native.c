@@ -45,7 +45,7 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
         in->drive.mon_raw[0], in->drive.supply_raw, (unsigned long)in->drive.din,
         (unsigned long)in->missed, in->command, out->dac_raw[0], out->enable, out->alive);
     for (uint32_t i = 0; i < exh_signal_count(sc->signals); i++) {
-        printf(" %ld", (long)sc->signal[i]);
+        printf(" %ld", (long)exh_scene_signals(sc)[i]);
     }
     printf("\n");
 }

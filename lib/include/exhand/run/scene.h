@@ -73,7 +73,7 @@ struct exh_scene {
     uint8_t fingers;
     struct exh_params *params;              /* NULL: constants in ROM */
     const struct exh_signal_table *signals; /* outputs per tick, or NULL */
-    int32_t *signal;                        /* their values, or NULL */
+    int32_t *values;                        /* theirs, or NULL: exh_scene_signals() reads them */
     /* exh_board_read_glove, or NULL: only a scene that names it links it. */
     int (*read_glove)(struct exh_glove_in *in);
     const int32_t *glove_every;        /* asks for a frame every so many ticks; NULL: every tick */
@@ -86,6 +86,9 @@ struct exh_scene {
     int (*setup)(struct exh_scene_board board);
     /* One tick. */
     void (*tick)(const struct exh_scene_in *in, struct exh_drive_out *out);
+    /* Fills in the signals that are of the state a tick left and nothing else: no tick pays for
+     * them that nobody reads. NULL: a tick fills in all. */
+    void (*show)(void);
     /* Words for people through exh_board_log, behind the outputs, where it delays none of them; or
      * NULL. */
     void (*tell)(void);
@@ -107,5 +110,13 @@ struct exh_scene {
     /* exh_params_apply with params, else NULL: only a scene that names it links it. */
     int (*apply)(struct exh_params *params);
 };
+
+/* The signals of the newest tick, until the next; NULL: it has none. Whoever reads some of them
+ * asks here in that tick, and nowhere else. */
+static inline int32_t *exh_scene_signals(const struct exh_scene *sc)
+{
+    if (sc->show) { sc->show(); }
+    return sc->values;
+}
 
 #endif

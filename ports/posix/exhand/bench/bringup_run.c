@@ -208,7 +208,7 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     double cur_A;
     (void)tick;
     (void)in;
-    memcpy(&sig, exh_scene_bringup.signal, sizeof sig);
+    memcpy(&sig, exh_scene_signals(&exh_scene_bringup), sizeof sig);
     cur_A = si(sig.i_des_A_q26, EXH_Q_CUR);
     read_balance();
     for (unsigned i = 0; i < EXH_FINGERS; i++) { /* the others' drives */

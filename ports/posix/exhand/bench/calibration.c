@@ -31,7 +31,7 @@ static double si(int32_t raw, int frac) { return (double)raw / (double)(INT64_C(
 static struct calibrate_signals signals(void)
 {
     struct calibrate_signals s;
-    memcpy(&s, exh_scene_calibrate.signal, sizeof s);
+    memcpy(&s, exh_scene_signals(&exh_scene_calibrate), sizeof s);
     return s;
 }
 

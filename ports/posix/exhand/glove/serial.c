@@ -100,7 +100,8 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     if (run.o->pose && in->glove_new) {
         glove_poses_row(stdout, run.o->pose, in->glove.raw);
     } else if (!run.o->record && in->glove_new) {
-        glove_line(run.o, t_s, (const struct glove_signals *)exh_scene_glove.signal, NULL);
+        glove_line(
+            run.o, t_s, (const struct glove_signals *)exh_scene_signals(&exh_scene_glove), NULL);
     }
     watch_silence(in->glove.age_ticks / run.rate_Hz);
     if (run.tty.in.frames == 0 && t_s >= NEVER_S) {

@@ -49,7 +49,7 @@ static double value(const char *name)
     const struct exh_signal_table *t = status.sc->signals;
     const struct exh_signal *row = cli_signal_find(t, name, NULL);
     const int32_t i = row ? exh_signal_find(t, row->id, (uint16_t)status.finger) : -1;
-    return i < 0 ? 0 : cli_signal_value(row, status.sc->signal[i]);
+    return i < 0 ? 0 : cli_signal_value(row, exh_scene_signals(status.sc)[i]);
 }
 
 static double seconds(void)

@@ -138,7 +138,7 @@ static int on_frame(struct replay *p, const struct exh_record *r)
         sc->link->write();
         sc->link->in->packets = 0;
     }
-    memcpy(p->ours, sc->signal, exh_signal_count(sc->signals) * sizeof(int32_t));
+    memcpy(p->ours, exh_scene_signals(sc), exh_signal_count(sc->signals) * sizeof(int32_t));
     p->digest = exh_crc32(p->digest, r->payload, r->len_B);
     note_fault(p);
     if (p->ticks++ == 0) { p->first_tick = p->log.tick; }

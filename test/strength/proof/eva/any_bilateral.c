@@ -145,7 +145,7 @@ static void any_drive_cfg(struct exh_drive_cfg *c, unsigned f)
 {
     ANY(*c);
     /*@ admit drive_made(c); */
-    c->par = &state.drive_now[f];
+    c->par = &active.drive[f];
     c->force_to_cur.knot = cfg.finger[f].calib.force_to_cur;
     c->force_to_cur.n = (uint8_t)Frama_C_unsigned_int_interval(2, EXH_CALIB_POINTS_MAX + 2);
     c->cur_to_force.knot = cfg.finger[f].calib.cur_to_force;
@@ -174,7 +174,6 @@ static void any_cfg(void)
         struct exh_contact_par *const contact = &active.contact[f];
         struct exh_precontact_par *const precontact = &active.precontact[f];
         /*@ admit taken: drive_par(drive) && watch_par(watch) && contact_par(contact) && precontact_par(precontact); */
-        state.drive_now[f] = *drive;
         any_finger_cfg(&cfg.finger[f], f);
         any_drive_cfg(&cfg.drive[f], f);
     }
@@ -188,10 +187,8 @@ static void kept(void)
 {
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
         const struct bilateral_finger *const now = &state.finger[f];
-        const struct exh_drive_par *const drive = &state.drive_now[f];
         /*@ assert next_finger: velocity(&now->velocity) && contact(&now->contact) && drive(&now->drive) &&
               precontact(&now->precontact); */
-        /*@ assert next_drive: drive_par(drive); */
     }
     /*@ assert next: safety(&state.safety) && state.wire.trace.result <= 0 && state.wire.trace.answer <= 1; */
 }
@@ -215,6 +212,7 @@ static void one_tick(uint8_t least, uint8_t most, uint8_t packets)
     }
     exh_scene_bilateral.tick(&in, &out);
     exh_scene_bilateral.link->write();
+    (void)exh_scene_signals(&exh_scene_bilateral);
     kept();
     END();
 }

@@ -8,7 +8,7 @@
  * PLANT: examples/bilateral/bilateral.c: if (!(mask >> f & 1u)) { cfg->at[at++] = (uint8_t)f; } -> cfg->at[at++] = (uint8_t)f;
  * PLANT: examples/bilateral/bilateral.c: cfg->drive[k] = cfg->drive[0]; -> (void)0;
  * PLANT: examples/bilateral/bilateral.c: if (cfg->n == 0) { return -EXH_E_RANGE; } -> (void)0;
- * PLANT: examples/bilateral/finger.c: &cfg->drive[place], &s->drive_now[f]}; -> &cfg->drive[place], &s->drive_now[f + 1]};
+ * PLANT: examples/bilateral/finger.c: &cfg->drive[place], drive}; -> &cfg->drive[place], drive + BILATERAL_FINGERS};
  * PLANT: examples/bilateral/finger.c: err = exh_hand_couple(&c->hand, &exh_hit2_map, f); -> err = exh_hand_couple(&c->hand, &exh_hit2_map, f + 1);
  * PLANT: examples/bilateral/finger.c: UINT32_C(1) << joint->sensor[t]; -> UINT32_C(1) << (joint->sensor[t] + 64);
  */

@@ -6,12 +6,13 @@
  * EVA: -eva-slevel 200
  * PLANT: lib/src/num/bytes.c: at <= c->cap && n <= c->cap - at -> n <= c->cap - at
  * PLANT: lib/src/num/bytes.c: at <= c->cap && n <= c->cap - at -> at <= c->cap
- * PLANT: lib/src/num/bytes.c: for (; len_B >= 4; -> for (; len_B >= 3;
+ * PLANT: lib/src/num/crc.c: for (; len_B >= 4; -> for (; len_B >= 3;
  * PLANT: lib/src/num/bytes.c: (int32_t)u - 0x10000 -> (int32_t)u
- * PLANT: lib/src/num/bytes.c: nibble[16] -> nibble[15]
+ * PLANT: lib/src/num/crc.c: nibble[16] -> nibble[15]
  * PLANT: lib/src/num/bytes.c: (uint32_t)B : UINT32_MAX - 1 -> (uint32_t)B : UINT32_MAX
  */
 #include "num/bytes.c"
+#include "num/crc.c"
 
 #include "any.h"
 
@@ -27,6 +28,7 @@ static void field(unsigned kind, struct exh_bytes *c)
     uint32_t u32 = any_u32();
     int32_t i32 = any32();
     int64_t i64 = any64();
+    int32_t i32s[2] = {any32(), any32()};
     struct exh_vec3 v = {any32(), any32(), any32()};
     c->at = any_u32();
     switch (kind) {
@@ -36,6 +38,7 @@ static void field(unsigned kind, struct exh_bytes *c)
     case 3: exh_bytes_u32(c, &u32); break;
     case 4: exh_bytes_i32(c, &i32); break;
     case 5: exh_bytes_i64(c, &i64); break;
+    case 6: exh_bytes_i32s(c, i32s, 2); break;
     default: exh_bytes_vec3(c, &v); break;
     }
     (void)exh_bytes_ok(c);
@@ -61,7 +64,7 @@ int main(void)
     c = exh_bytes_reader(buf, any_u32());
     /*@ assert a_reader_ends: c.cap < 0xFFFFFFFF; */
     ANY(buf);
-    for (unsigned kind = 0; kind < 7; kind++) {
+    for (unsigned kind = 0; kind < 8; kind++) {
         for (uint32_t B = 0; B <= MOST_B; B++) { cursor(kind, B); }
     }
     ANY(buf);

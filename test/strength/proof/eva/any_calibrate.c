@@ -12,6 +12,7 @@
  * PLANT: lib/src/bench/calibrate.c: if (n < 1 || n > EXH_CALIB_POINTS_MAX) { return -EXH_E_RANGE; } -> (void)0;
  */
 #include "num/bytes.c"
+#include "num/crc.c"
 #include "num/fix.c"
 #define exh_gain_set any_gain
 #include "bench/calibrate.c"

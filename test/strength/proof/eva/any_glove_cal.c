@@ -9,6 +9,7 @@
  * PLANT: lib/src/sense/glove_cal.c: struct head h = {0, 0, 0}; -> struct head h;
  */
 #include "num/bytes.c"
+#include "num/crc.c"
 #include "sense/glove_cal.c"
 
 #include "any.h"

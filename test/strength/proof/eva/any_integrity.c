@@ -10,6 +10,7 @@
  * PLANT: lib/src/safe/integrity.c: if (g->params) { look_at_params(g); } -> look_at_params(g);
  */
 #include "num/bytes.c"
+#include "num/crc.c"
 #include "num/fix.c"
 #include "safe/integrity.c"
 #include "num/params.c"

@@ -16,6 +16,7 @@
  * PLANT: lib/src/num/params.c: if (len_B < body_B + IMAGE_CRC_B) { return -EXH_E_SHORT; } -> (void)0;
  */
 #include "num/bytes.c"
+#include "num/crc.c"
 #include "num/fix.c"
 #define exh_signal_crc table_crc /* its proof is any_signal.c */
 struct exh_signal_table;

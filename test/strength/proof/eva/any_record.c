@@ -10,6 +10,7 @@
  * PLANT: lib/src/talk/record.c: c->mode == EXH_BYTES_WRITE ? exh_crc32(0, c->p, end) : 0 -> exh_crc32(0, c->p, end)
  */
 #include "num/bytes.c"
+#include "num/crc.c"
 #include "talk/record.c"
 
 #include "any.h"

@@ -17,12 +17,10 @@
 #include <stddef.h>
 #include <stdint.h>
 #include "__fc_builtin.h"
-#include <string.h>             /* the contract of memcpy */
-#define volatile                /* for who reads it interrupted; nobody else writes */
-#define exh_crc32 crc32_of_each /* its proof is any_bytes.c */
+#include <string.h> /* the contract of memcpy */
+#define volatile    /* for who reads it interrupted; nobody else writes */
 #include "num/bytes.c"
-#undef exh_crc32
-#define exh_crc32 crc32
+#define exh_crc32 crc32 /* its proof is any_bytes.c */
 static uint32_t crc32(uint32_t crc, const void *buf, size_t len_B)
 {
     const uint8_t *p = buf;

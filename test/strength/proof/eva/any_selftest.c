@@ -8,6 +8,7 @@
  * PLANT: lib/src/safe/selftest.c: k < sizeof want / sizeof want[0] -> k <= sizeof want / sizeof want[0]
  */
 #include "num/bytes.c"
+#include "num/crc.c"
 #include "num/fix.c"
 #include "sense/filter.c"
 #include "sense/filter_low.c"

@@ -14,6 +14,7 @@
  * PLANT: lib/src/law/contact.c: s->inward = s->inward != 0; -> (void)0;
  */
 #include "num/bytes.c"
+#include "num/crc.c"
 #define exh_udiv64 udiv64_by_steps
 #include "num/fix.c"
 #undef exh_udiv64

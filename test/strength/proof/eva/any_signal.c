@@ -11,6 +11,7 @@
  * PLANT: lib/src/num/signal.c: uint8_t head[2]; -> uint8_t head[1];
  */
 #include "num/bytes.c"
+#include "num/crc.c"
 #include "num/signal.c" /* not that of Frama-C */
 
 #include "any.h"

@@ -12,6 +12,7 @@
  * PLANT: lib/src/talk/slots.c: uint32_t magic = MAGIC, len_B = (uint32_t)image_B, sequence, crc; -> uint32_t magic = MAGIC, len_B = (uint32_t)image_B + 1, sequence, crc;
  */
 #include "num/bytes.c"
+#include "num/crc.c"
 #include "talk/slots.c"
 
 #include "any.h"

@@ -11,6 +11,7 @@
  * PLANT: lib/src/talk/wire.c: if (cap_B < end + CRC_B) { return -EXH_E_SHORT; } -> (void)0;
  */
 #include "num/bytes.c"
+#include "num/crc.c"
 #include "num/fix.c"
 #include "num/params.c"
 #include "num/signal.c"      /* not that of Frama-C */

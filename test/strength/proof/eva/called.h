@@ -140,11 +140,12 @@ int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, 
     return 0;
 }
 
-uint32_t exh_drive_force_step(struct exh_drive *s, const struct exh_drive_cfg *cfg,
-    const struct exh_permit *p, struct exh_force_ledger *f)
+uint32_t exh_drive_force_within(struct exh_drive *s, const struct exh_drive_cfg *cfg,
+    const struct exh_permit *p, struct exh_drive_most own, struct exh_force_ledger *f)
 {
     struct exh_force_ledger out = *f;
     /*@ assert drive_force: drive(s) && drive_cfg(cfg) && permit(p) && asked(f); */
+    /*@ assert drive_most: 0 <= own.f_max_N_q20 <= 104857600 && 1 <= own.slew_up_Nps <= 10000000; */
     *s = any_drive();
     out.clamp_N_q20 = any64();
     out.slew_N_q20 = any64();
