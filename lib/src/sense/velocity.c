@@ -109,12 +109,11 @@ int exh_velocity_foaw_setup(
 /* Slopes as whole numbers: of M = 12252240, which each n and each n(n+1)(n+2)/6 up to 16 divides,
  * M/n and M over the other. */
 static const struct part {
-    int32_t n, each, fit;
-} part[EXH_VELOCITY_N] = {{1, 12252240, 12252240}, {2, 6126120, 3063060}, {3, 4084080, 1225224},
-    {4, 3063060, 612612}, {5, 2450448, 350064}, {6, 2042040, 218790}, {7, 1750320, 145860},
-    {8, 1531530, 102102}, {9, 1361360, 74256}, {10, 1225224, 55692}, {11, 1113840, 42840},
-    {12, 1021020, 33660}, {13, 942480, 26928}, {14, 875160, 21879}, {15, 816816, 18018},
-    {16, 765765, 15015}};
+    int32_t each, fit;
+} part[EXH_VELOCITY_N] = {{12252240, 12252240}, {6126120, 3063060}, {4084080, 1225224},
+    {3063060, 612612}, {2450448, 350064}, {2042040, 218790}, {1750320, 145860}, {1531530, 102102},
+    {1361360, 74256}, {1225224, 55692}, {1113840, 42840}, {1021020, 33660}, {942480, 26928},
+    {875160, 21879}, {816816, 18018}, {765765, 15015}};
 
 /* g*m rounded half up and saturated, for |m| < 2^42. Where m needs more than 32
  * bits, a gain of 1 and more saturates anyway, and below the product is taken in
@@ -134,35 +133,34 @@ static int32_t wide_gain(struct exh_gain g, int64_t m)
 int32_t exh_velocity_foaw_step(
     struct exh_velocity_foaw *s, const struct exh_velocity_foaw_cfg *cfg, int32_t cnt)
 {
+    const int32_t longest = cfg->n < EXH_VELOCITY_N ? cfg->n : EXH_VELOCITY_N;
+    const int32_t most = longest < s->have ? longest : s->have;
     const int64_t less = -(int64_t)cfg->tol_cnt;
-    const unsigned at = s->at < EXH_VELOCITY_N ? s->at + 1u : 0;
-    const unsigned longest = cfg->n < EXH_VELOCITY_N ? cfg->n : EXH_VELOCITY_N;
-    const struct part *const end = part + (longest < s->have ? longest : s->have);
-    const struct part *of = part, *fits = part, *stop = part + at; /* where the ring turns */
-    const int32_t *y = &s->cnt[at];
     int64_t lo = INT64_MIN / 4, hi = INT64_MAX / 4, off = 0; /* off: below 0 once one does not */
     int64_t sum = 0, m = 0, best = 0;
+    int32_t best_n = 1;
+    unsigned at = s->at < EXH_VELOCITY_N ? s->at + 1u : 0;
 
     s->at = (uint8_t)at;
     s->cnt[at] = cnt;
     if (s->have <= EXH_VELOCITY_N) { s->have++; }
-    for (stop = stop < end ? stop : end;; stop = end, y = &s->cnt[EXH_VELOCITY_N + 1]) {
-        for (; of != stop; of++) {
-            const int64_t d = exh_wrap_diff(*--y, cnt);
-            const int64_t pass = d * of->each, reach = less * of->each;
-            int64_t slope;
-            m += of->n * d - sum; /* twice the sum of each times its n, less n times their sum */
-            sum += d;
-            lo = lo > pass + reach ? lo : pass + reach;
-            hi = hi < pass - reach ? hi : pass - reach;
-            slope = m * of->fit;
-            off |= (slope - lo) | (hi - slope);
-            best = off < 0 ? best : m;
-            fits = off < 0 ? fits : of;
-        }
-        if (of == end) { break; }
+    for (int32_t n = 1; n <= most; n++) {
+        const struct part of = part[n - 1];
+        int64_t d, pass, reach, slope;
+        at = at > 0 ? at - 1 : EXH_VELOCITY_N;
+        d = exh_wrap_diff(s->cnt[at], cnt);
+        m += n * d - sum; /* twice the sum of each times its n, less n times their sum */
+        sum += d;
+        pass = d * of.each;
+        reach = less * of.each;
+        lo = lo > pass + reach ? lo : pass + reach;
+        hi = hi < pass - reach ? hi : pass - reach;
+        slope = m * of.fit;
+        off |= (slope - lo) | (hi - slope);
+        best = off < 0 ? best : m;
+        best_n = off < 0 ? best_n : n;
     }
-    return wide_gain(cfg->gain[fits->n - 1], -best);
+    return wide_gain(cfg->gain[best_n - 1], -best);
 }
 
 void exh_velocity_foaw_serialize(struct exh_bytes *c, struct exh_velocity_foaw *s)
