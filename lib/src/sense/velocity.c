@@ -106,18 +106,14 @@ int exh_velocity_foaw_setup(
     return err;
 }
 
-/* d[j] = y[k-j] - y[k]: does every sample of the window of n lie within tol of the
- * line through the newest whose slope per tick is 6*m / (n(n+1)(n+2))? */
-static int line_fits(const int32_t *d, int32_t n, int64_t m, int32_t tol)
-{
-    const int64_t den = (int64_t)n * (n + 1) * (n + 2);
-    int fits = 1;
-    for (int32_t j = 1; j <= n; j++) {
-        const int64_t off = d[j] * den + 6 * j * m;
-        fits &= off <= tol * den && off >= -tol * den;
-    }
-    return fits;
-}
+/* Slopes as whole numbers: of M = 12252240, which each n and each n(n+1)(n+2)/6 up to 16 divides,
+ * M/n and M over the other. */
+static const struct part {
+    int32_t each, fit;
+} part[EXH_VELOCITY_N] = {{12252240, 12252240}, {6126120, 3063060}, {4084080, 1225224},
+    {3063060, 612612}, {2450448, 350064}, {2042040, 218790}, {1750320, 145860}, {1531530, 102102},
+    {1361360, 74256}, {1225224, 55692}, {1113840, 42840}, {1021020, 33660}, {942480, 26928},
+    {875160, 21879}, {816816, 18018}, {765765, 15015}};
 
 /* g*m rounded half up and saturated, for |m| < 2^42. Where m needs more than 32
  * bits, a gain of 1 and more saturates anyway, and below the product is taken in
@@ -131,36 +127,40 @@ static int32_t wide_gain(struct exh_gain g, int64_t m)
         (m >> 31) * g.mant + ((m & INT32_MAX) * g.mant >> 31), ((g.shift - 32u) & 31u) + 1u));
 }
 
+/* A window fits if its slope lies between those of the lines through the newest that pass each
+ * sample by no more than tol. What the samples so far allow is kept from window to window. Windows
+ * look back, so slopes here are those of -y. */
 int32_t exh_velocity_foaw_step(
     struct exh_velocity_foaw *s, const struct exh_velocity_foaw_cfg *cfg, int32_t cnt)
 {
-    int32_t d[EXH_VELOCITY_N + 1] = {0};
-    const int32_t most = cfg->n < EXH_VELOCITY_N ? cfg->n : EXH_VELOCITY_N;
-    int64_t sum = 0, weighted = 0, best = 0;
+    const int32_t longest = cfg->n < EXH_VELOCITY_N ? cfg->n : EXH_VELOCITY_N;
+    const int32_t most = longest < s->have ? longest : s->have;
+    const int64_t less = -(int64_t)cfg->tol_cnt;
+    int64_t lo = INT64_MIN / 4, hi = INT64_MAX / 4, off = 0; /* off: below 0 once one does not */
+    int64_t sum = 0, m = 0, best = 0;
     int32_t best_n = 1;
-    unsigned at;
-    int good = 1;
+    unsigned at = s->at < EXH_VELOCITY_N ? s->at + 1u : 0;
 
-    s->at = (uint8_t)(s->at < EXH_VELOCITY_N ? s->at + 1 : 0);
-    s->cnt[s->at] = cnt;
+    s->at = (uint8_t)at;
+    s->cnt[at] = cnt;
     if (s->have <= EXH_VELOCITY_N) { s->have++; }
-    at = s->at;
     for (int32_t n = 1; n <= most; n++) {
-        int64_t m;
-        int fits;
+        const struct part of = part[n - 1];
+        int64_t d, pass, reach, slope;
         at = at > 0 ? at - 1 : EXH_VELOCITY_N;
-        d[n] = exh_wrap_diff(s->cnt[at], cnt);
-        sum += d[n];
-        weighted += (int64_t)n * d[n];
-        m = n * sum - 2 * weighted;
-        fits = n == 1 || line_fits(d, n, m, cfg->tol_cnt);
-        good &= n < s->have && fits;
-        if (good) {
-            best = m;
-            best_n = n;
-        }
+        d = exh_wrap_diff(s->cnt[at], cnt);
+        m += n * d - sum; /* twice the sum of each times its n, less n times their sum */
+        sum += d;
+        pass = d * of.each;
+        reach = less * of.each;
+        lo = lo > pass + reach ? lo : pass + reach;
+        hi = hi < pass - reach ? hi : pass - reach;
+        slope = m * of.fit;
+        off |= (slope - lo) | (hi - slope);
+        best = off < 0 ? best : m;
+        best_n = off < 0 ? best_n : n;
     }
-    return wide_gain(cfg->gain[best_n - 1], best);
+    return wide_gain(cfg->gain[best_n - 1], -best);
 }
 
 void exh_velocity_foaw_serialize(struct exh_bytes *c, struct exh_velocity_foaw *s)

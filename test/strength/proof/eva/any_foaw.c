@@ -5,8 +5,8 @@
  *
  * EVA: -eva-slevel 20
  * PLANT: lib/src/sense/velocity.c: if (s->at > EXH_VELOCITY_N) { s->at = EXH_VELOCITY_N; } -> (void)0;
- * PLANT: lib/src/sense/velocity.c: (int64_t)n * d[n] -> n * d[n]
- * PLANT: lib/src/sense/velocity.c: const int64_t off = d[j] * den -> const int64_t off = d[j] * (int32_t)den
+ * PLANT: lib/src/sense/velocity.c: m += n * d - sum -> m += n * (int32_t)d - sum
+ * PLANT: lib/src/sense/velocity.c: slope = m * of.fit -> slope = m * m
  * PLANT: lib/src/sense/velocity.c: at > 0 ? at - 1 : EXH_VELOCITY_N -> at - 1
  */
 #include "num/bytes.c"
