@@ -15,9 +15,15 @@
 
 #define RESULT_MAX_B 1024 /* with its index below PIPE_BUF: a write is whole */
 
+/* The work takes the bytes for its own structure, so they are aligned for any. */
 struct message {
+    union {
+        long long whole;
+        long double real;
+        void *address;
+        unsigned char bytes[RESULT_MAX_B];
+    } result;
     int i;
-    unsigned char bytes[RESULT_MAX_B];
 };
 
 int jobs_cores(void)
@@ -87,7 +93,7 @@ static void run_child(const struct jobs *j, int i, int to)
     struct message m;
     memset(&m, 0, sizeof m);
     m.i = i;
-    j->work(j->ctx, i, m.bytes);
+    j->work(j->ctx, i, m.result.bytes);
     outpart_remove_all(); /* as exit() would */
     _exit(write(to, &m, sizeof m) == (ssize_t)sizeof m ? 0 : 1);
 }
@@ -129,7 +135,7 @@ static int take_result(const struct jobs *j, int from)
 {
     struct message m;
     if (read(from, &m, sizeof m) != (ssize_t)sizeof m || m.i < 0 || m.i >= j->n) { return 0; }
-    memcpy((unsigned char *)j->result + (size_t)m.i * j->result_B, m.bytes, j->result_B);
+    memcpy((unsigned char *)j->result + (size_t)m.i * j->result_B, m.result.bytes, j->result_B);
     return 1;
 }
 
