@@ -106,9 +106,8 @@ static int same_file(const char *a, const char *b)
 static int survey(struct logfile *l, unsigned what)
 {
     struct walk w = {.log = l, .what = what};
-    const uint32_t begin = l->at;
     while (next_row(&w)) {}
-    logfile_rewind(l, begin);
+    logfile_rewind(l);
     if (w.malformed || w.unordered) {
         cli_complain("%s: %lu records of a wrong length and %lu frames whose tick does not rise: "
                      "left out",
