@@ -36,8 +36,8 @@ static int open_file(struct logfile *l)
         return 3;
     }
     if (fstat(l->fd, &st) != 0 || !S_ISREG(st.st_mode)) {
-        return complain(l, "can't be read whole, twice: give a regular file, not a pipe, a device "
-                           "or a directory");
+        return complain(l, "not a log that can be read twice: give a regular file, no pipe, device "
+                           "or directory");
     }
     l->len = (uint64_t)st.st_size; /* what a box still adds is not read */
     l->bytes = malloc(BUFFER_B);

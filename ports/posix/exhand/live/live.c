@@ -7,6 +7,7 @@
 #include "box/glove_line.h"
 #include "box/world_line.h"
 #include "live/live.h"
+#include "live/log_turn.h"
 #include "slave/slave.h"
 #include "base/option.h"
 #include "base/outfile.h"
@@ -170,7 +171,11 @@ static int prepare(struct live_options *o, const struct exh_scene *sc)
     }
     if (err == 0) { err = contacts_check(&o->gpio, o->pace); }
     if (err == 0) { err = read_params(o); }
-    if (err == 0) { err = live_log_open(o->log, o->pace, o->seconds > 0); }
+    if (err == 0 && ((o->log_size.B && !o->log) || (o->log_size.keep >= 0 && !o->log_size.B))) {
+        cli_complain("--log-keep goes with --log-size, and this with --log");
+        err = 2;
+    }
+    if (err == 0) { err = live_log_open(o->log, o->pace, o->seconds > 0, &o->log_size); }
     if (err == 0) { err = contacts_begin(&o->gpio); }
     if (err == 0) { err = open_modbus(o); }
     if (err == 0 && o->glove) {
@@ -211,6 +216,7 @@ static void defaults(struct live_options *o)
     o->slack_s = -1;
     o->record_Hz = o->hand.record_Hz;
     o->live.on = 1;
+    o->log_size.keep = -1;
 }
 
 static int list(struct live_options *o)
@@ -227,6 +233,7 @@ int cli_run(int argc, char **argv)
     static struct live_options o;
     struct cli_call set = {take_set, &o}, fingers = {take_fingers, &o}, speed = {take_speed, &o};
     struct cli_call gpio = {contacts_take, &o.gpio};
+    struct cli_call log_size = {log_turn_take_size, &o.log_size.B};
     const struct cli_option option[] = {
         {"scene", CLI_TEXT, &o.scene, 0, 0, "NAME",
             "drop, guarded or bilateral (drop); custom where the program has one"},
@@ -267,6 +274,9 @@ int cli_run(int argc, char **argv)
             "its user's, of `exhand calibrate --glove` (nobody's)"},
         {"gpio", CLI_CALL, &gpio, 0, 0, CONTACTS_ARG, CONTACTS_HELP},
         {"log", CLI_TEXT, &o.log, 0, 0, "FILE", "for `exhand replay` and `exhand csv`"},
+        {"log-size", CLI_CALL, &log_size, 0, 0, "BYTES[k|M|G]",
+            "then another file: FILE is the newest, FILE.1 the one before, each a whole log"},
+        {"log-keep", CLI_INT, &o.log_size.keep, 0, 1e6, "N", "so many old ones stay (all)"},
         {"blackbox", CLI_TEXT, &o.blackbox, 0, 0, "FILE", "the last seconds before a fault, a log"},
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
         {"params", CLI_FLAG, &o.list, 0, 0, NULL, "list the scene's parameters"},
