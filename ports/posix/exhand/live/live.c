@@ -232,8 +232,7 @@ int cli_run(int argc, char **argv)
 {
     static struct live_options o;
     struct cli_call set = {take_set, &o}, fingers = {take_fingers, &o}, speed = {take_speed, &o};
-    struct cli_call gpio = {contacts_take, &o.gpio};
-    struct cli_call log_size = {log_turn_take_size, &o.log_size.B};
+    struct cli_call gpio = {contacts_take, &o.gpio}, size = {log_turn_take_size, &o.log_size.B};
     const struct cli_option option[] = {
         {"scene", CLI_TEXT, &o.scene, 0, 0, "NAME",
             "drop, guarded or bilateral (drop); custom where the program has one"},
@@ -249,8 +248,7 @@ int cli_run(int argc, char **argv)
             "of bilateral: slow, natural, fast or m/s (natural)"},
         {"udp", CLI_TEXT, &o.udp, 0, 0, "HOST:PORT",
             "of bilateral: the world is another process there; with --pace"},
-        {"record", CLI_TEXT, &o.record, 0, 0, "FILE",
-            "of bilateral: the fingers do what a glove recorded, again and again"},
+        {"record", CLI_TEXT, &o.record, 0, 0, "FILE", "of bilateral: fingers do this recording"},
         {"record-rate", CLI_REAL, &o.record_Hz, 0.1, 10000, "HZ",
             "of its rows, if they have no clock (100)"},
         {"record-columns", CLI_TEXT, &o.hand.columns, 0, 0, "LIST", "of `exhand glove`"},
@@ -263,8 +261,7 @@ int cli_run(int argc, char **argv)
             "it is let go then: a fault; without --grip for good (never)"},
         {"modbus", CLI_TEXT, &o.modbus, 0, 0, "WHERE",
             "serve the registers at tcp:ADDRESS:PORT or rtu:DEVICE:BAUD"},
-        {"save", CLI_TEXT, &o.save, 0, 0, "FILE",
-            "clients may save the parameters there, for --load-params"},
+        {"save", CLI_TEXT, &o.save, 0, 0, "FILE", "clients may save there, for --load-params"},
         {"remote", CLI_FLAG, &o.remote, 0, 0, NULL,
             "clients may command RUN and CLEAR; the dead-man holds all the same"},
         {"glove-serial", CLI_TEXT, &o.glove, 0, 0, "DEVICE",
@@ -274,8 +271,7 @@ int cli_run(int argc, char **argv)
             "its user's, of `exhand calibrate --glove` (nobody's)"},
         {"gpio", CLI_CALL, &gpio, 0, 0, CONTACTS_ARG, CONTACTS_HELP},
         {"log", CLI_TEXT, &o.log, 0, 0, "FILE", "for `exhand replay` and `exhand csv`"},
-        {"log-size", CLI_CALL, &log_size, 0, 0, "BYTES[k|M|G]",
-            "then another file: FILE is the newest, FILE.1 the one before, each a whole log"},
+        {"log-size", CLI_CALL, &size, 0, 0, "BYTES[k|M|G]", "of a file; then it becomes FILE.1"},
         {"log-keep", CLI_INT, &o.log_size.keep, 0, 1e6, "N", "so many old ones stay (all)"},
         {"blackbox", CLI_TEXT, &o.blackbox, 0, 0, "FILE", "the last seconds before a fault, a log"},
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
