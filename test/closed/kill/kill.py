@@ -46,7 +46,7 @@ WRITERS = (
     ("record", "exhand", "glove --does poses --seconds 4 --record {d}/g.exh", "log"),
     ("identify", "exhand", "identify --rate 100 --repeats 2 --out {d}", "log"),
     ("watch", "exhand", "watch --modbus {box} --seconds 0.6 --csv {d}/w.csv", "rows"),
-    ("sweep", "lab", "drop --sweep --rate 90 --grid 3x1 --falls 1 --jobs 2 --out {d}", "rows"),
+    ("sweep", "lab", "drop --sweep --rate 90 --grid 2x2 --falls 1 --jobs 2 --out {d}", "rows"),
     ("readings", "lab", "drop --readings --rate 500 --falls 2 --runs 2 --out {d}", "rows"),
     ("list", "world", "--headless --script --frames 20 --scene {scene} --png {d}/a.png", "same"),
 )
