@@ -105,12 +105,12 @@ int log_turn_open(const char *path, int turns, int64_t keep)
     return err ? 2 : 0;
 }
 
-/* The file that is written stays, under its next name, and the descriptor gets another. */
+/* The file that is written stays, under its next name, and the descriptor gets another. No fsync():
+ * the box goes on meanwhile, and a disk that takes long for it would cost records. */
 int log_turn(int fd)
 {
     struct stat st;
-    int fresh, err = fsync(fd) != 0 && errno != EINVAL ? errno : 0;
-    if (err == 0 && fstat(fd, &st) != 0) { err = errno; }
+    int fresh, err = fstat(fd, &st) != 0 ? errno : 0;
     if (err == 0) { err = shift(); }
     if (err) { return err; }
     fresh = open(turn.path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, st.st_mode & 0777);
