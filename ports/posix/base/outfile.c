@@ -178,7 +178,7 @@ int outfile_turn(int fd, int (*make_way)(void))
         if (open_now[i].f && open_now[i].part.fd == fd) { e = &open_now[i]; }
     }
     if (e) { err = make_way(); }
-    if (err == 0) { err = outpart_commit(&e->part); }
+    if (err == 0) { err = outpart_name(&e->part); }
     if (err == 0) { err = go_on(e); }
     (void)pthread_mutex_unlock(&lock);
     return err;

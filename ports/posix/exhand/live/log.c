@@ -34,7 +34,7 @@ static struct {
     uint32_t header_B;
 } file;
 
-static uint8_t header[EXH_LOG_RECORD_B]; /* of the first file, a record */
+static uint8_t header[EXH_LOG_RECORD_B]; /* a record, for the next file */
 
 static uint8_t ring[RING_B];
 
@@ -90,7 +90,7 @@ static uint32_t end_record(uint8_t to[64], const uint8_t *key)
     return exh_record_end(&c);
 }
 
-/* The first file's, with the number before the keyframe's. */
+/* The newest that came, with the number before the keyframe's. */
 static void number_header(const uint8_t *key)
 {
     struct exh_bytes c = exh_bytes_writer(header, sizeof header);
@@ -126,10 +126,13 @@ static void turn(const uint8_t *key, size_t len_B)
 
 static void follow(const uint8_t *rec, size_t len_B)
 {
-    if (rec[TYPE_AT] == EXH_RECORD_HEADER && len_B <= sizeof header) {
+    const int is_record = len_B >= EXH_RECORD_OVERHEAD && rec[0] == (EXH_RECORD_SYNC & 0xFF) &&
+                          rec[1] == EXH_RECORD_SYNC >> 8; /* else a scene's words */
+    if (is_record && rec[TYPE_AT] == EXH_RECORD_HEADER && len_B <= sizeof header) {
         memcpy(header, rec, len_B);
         file.header_B = (uint32_t)len_B;
-    } else if (rec[TYPE_AT] == EXH_RECORD_KEYFRAME && file.header_B && file.bytes > file.header_B) {
+    } else if (is_record && rec[TYPE_AT] == EXH_RECORD_KEYFRAME && file.header_B &&
+               file.bytes > file.header_B) {
         turn(rec, len_B);
         file.key_B = file.bytes;
     }

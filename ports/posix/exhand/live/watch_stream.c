@@ -6,7 +6,7 @@
 #include "udp.h"
 #include "base/until.h"
 
-#include "log/pieces.h"
+#include "box/pieces.h"
 
 #include "exhand/error.h"
 #include "exhand/fix.h"

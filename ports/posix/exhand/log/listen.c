@@ -9,7 +9,7 @@
 #include "base/until.h"
 #include "posix.h"
 
-#include "log/pieces.h"
+#include "box/pieces.h"
 
 #include <errno.h>
 #include <inttypes.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "log/pieces.h"
+#include "box/pieces.h"
 
 #include "base/option.h"
 
