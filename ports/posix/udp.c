@@ -87,9 +87,9 @@ int udp_send(struct udp *u, const void *buf, size_t len_B)
     return (int)n;
 }
 
-static int is_peer(const struct udp *u, const struct sockaddr_in *from)
+int udp_from(const struct udp *u, const struct sockaddr_in *peer)
 {
-    return from->sin_addr.s_addr == u->peer.sin_addr.s_addr && from->sin_port == u->peer.sin_port;
+    return peer->sin_addr.s_addr == u->from.sin_addr.s_addr && peer->sin_port == u->from.sin_port;
 }
 
 int udp_recv(struct udp *u, void *buf, size_t cap_B)
@@ -108,11 +108,11 @@ int udp_recv(struct udp *u, void *buf, size_t cap_B)
         if (n < 0 && errno == EINTR) { continue; }
         if (n < 0) { return 0; }
         if (n == 0 || m.msg_flags & MSG_TRUNC) { continue; }
-        if (!u->learns && !is_peer(u, &from)) {
+        u->from = from;
+        if (!u->learns && !udp_from(u, &u->peer)) {
             u->strangers++;
             continue;
         }
-        u->from = from;
         return (int)n;
     }
     return 0;

@@ -33,6 +33,9 @@ int udp_send(struct udp *u, const void *buf, size_t len_B);
  * dropped, as are empty ones. */
 int udp_recv(struct udp *u, void *buf, size_t cap_B);
 
+/* 1: the packet just received came from this peer. */
+int udp_from(const struct udp *u, const struct sockaddr_in *peer);
+
 /* The packet just received was whole and wanted: its sender is the peer from now on, unless one was
  * given. Never to be called for a packet that was not checked: anybody could turn the answers away.
  */

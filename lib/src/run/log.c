@@ -120,10 +120,16 @@ uint32_t exh_log_images_B(void)
     return n;
 }
 
+static void put_header(uint32_t tick)
+{
+    struct exh_bytes c = begin(EXH_RECORD_HEADER, tick);
+    exh_log_header_serialize(&c);
+    end(&c);
+}
+
 void exh_log_start(const struct exh_scene *sc, struct exh_scene_board board)
 {
     static const struct exh_record_header none;
-    struct exh_bytes c;
 
     scene = sc;
     seq = lost = lost_here = 0;
@@ -136,9 +142,7 @@ void exh_log_start(const struct exh_scene *sc, struct exh_scene_board board)
     header.fingers = sc->fingers;
     copy_name(header.scene, sc->name);
     copy_name(header.board, exh_board_info.name);
-    c = begin(EXH_RECORD_HEADER, 0);
-    exh_log_header_serialize(&c);
-    end(&c);
+    put_header(0);
     keyframe(0);
 }
 
@@ -221,6 +225,9 @@ void exh_log_after(uint32_t tick, const struct exh_scene_in *in, const struct ex
     silent = alone || (tick + 1) % EXH_LOG_KEYFRAME_TICKS != 0;
     if (!silent || (tap && tap->due())) { keyframe(tick + 1); }
     silent = alone;
+    if (!alone && (tick + 1) % EXH_LOG_HEADER_TICKS == EXH_LOG_KEYFRAME_TICKS / 2) {
+        put_header(tick + 1);
+    }
 }
 
 uint32_t exh_log_end(uint32_t tick)

@@ -2,6 +2,8 @@
 /* The log as datagrams. */
 #include "exhand/run/stream.h"
 
+#include "exhand/bytes.h"
+
 #include <string.h>
 
 static struct {
@@ -32,7 +34,8 @@ size_t stream_piece(uint8_t to[STREAM_PIECE_B], const uint8_t *byte, unsigned n,
     put32(to + 12, out.place);
     put32(to + 16, last != 0);
     memcpy(to + STREAM_HEAD_B, byte, n);
-    return STREAM_HEAD_B + n;
+    put32(to + STREAM_HEAD_B + n, exh_crc32(0, to, STREAM_HEAD_B + n));
+    return STREAM_HEAD_B + n + STREAM_CRC_B;
 }
 
 void stream_sent(unsigned n)
@@ -43,13 +46,17 @@ void stream_sent(unsigned n)
 
 uint32_t stream_pieces(void) { return out.number; }
 
-int stream_read(struct stream_piece *p, const uint8_t *datagram, size_t len_B)
+enum stream_is stream_read(struct stream_piece *p, const uint8_t *datagram, size_t len_B)
 {
-    if (len_B < STREAM_HEAD_B || len_B > STREAM_PIECE_B || get32(datagram) != STREAM_MAGIC ||
-        get32(datagram + 16) > 1) {
-        return 0;
+    const size_t all_B = len_B - STREAM_CRC_B; /* that the CRC is of */
+    if (len_B < STREAM_HEAD_B) { return STREAM_NONE; }
+    if (get32(datagram) == STREAM_MAGIC_1) { return STREAM_OLD; }
+    if (get32(datagram) != STREAM_MAGIC) { return STREAM_NONE; }
+    if (len_B < STREAM_HEAD_B + STREAM_CRC_B || len_B > STREAM_PIECE_B ||
+        get32(datagram + all_B) != exh_crc32(0, datagram, all_B) || get32(datagram + 16) > 1) {
+        return STREAM_DAMAGED;
     }
     *p = (struct stream_piece){get32(datagram + 4), get32(datagram + 8), get32(datagram + 12),
-        get32(datagram + 16), datagram + STREAM_HEAD_B, len_B - STREAM_HEAD_B};
-    return 1;
+        get32(datagram + 16), datagram + STREAM_HEAD_B, all_B - STREAM_HEAD_B};
+    return STREAM_PIECE;
 }

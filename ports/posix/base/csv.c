@@ -99,9 +99,8 @@ static int write_rows(struct walk *w, const struct columns *c, FILE *to)
 static int survey(struct logfile *l, unsigned what)
 {
     struct walk w = {.log = l, .what = what};
-    const uint32_t begin = l->at;
     while (next_row(&w)) {}
-    logfile_rewind(l, begin);
+    logfile_rewind(l);
     if (w.malformed || w.unordered) {
         cli_complain("%s: %lu records of a wrong length and %lu frames whose tick does not rise: "
                      "left out",

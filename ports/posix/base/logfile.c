@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#define _FILE_OFFSET_BITS 64 /* where long has 32 bits, too */
 #include "base/logfile.h"
 
 #include "base/option.h"
@@ -9,9 +10,16 @@
 #include "exhand/exhand.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define RECORD_MAX_B (EXH_RECORD_OVERHEAD + 65535u)
+#define BUFFER_B     (4u * RECORD_MAX_B)
 
 static int complain(const struct logfile *l, const char *what)
 {
@@ -19,27 +27,68 @@ static int complain(const struct logfile *l, const char *what)
     return 2;
 }
 
-static int read_file(struct logfile *l)
+static int open_file(struct logfile *l)
 {
-    FILE *f = fopen(l->path, "rb");
-    long len = -1;
-    if (f == NULL) {
+    struct stat st;
+    l->fd = open(l->path, O_RDONLY | O_CLOEXEC);
+    if (l->fd < 0) {
         (void)complain(l, strerror(errno));
         return 3;
     }
-    if (fseek(f, 0, SEEK_END) == 0) { len = ftell(f); }
-    rewind(f);
-    if (len >= 0 && len < 0x7FFFFFFF) { l->bytes = malloc((size_t)len + 1); }
-    if (l->bytes != NULL) { l->len = (uint32_t)fread(l->bytes, 1, (size_t)len, f); }
-    fclose(f);
-    return l->bytes != NULL && l->len == (uint32_t)len ? 0 : complain(l, "can't be read whole");
+    if (fstat(l->fd, &st) != 0 || !S_ISREG(st.st_mode)) {
+        return complain(l, "not a log that can be read twice: give a regular file, no pipe, device "
+                           "or directory");
+    }
+    l->len = (uint64_t)st.st_size; /* what a box still adds is not read */
+    l->bytes = malloc(BUFFER_B);
+    return l->bytes != NULL ? 0 : complain(l, strerror(ENOMEM));
+}
+
+/* Bytes at the place of the next record: all that are left of the log, or a record's at least. */
+static uint32_t fill(struct logfile *l)
+{
+    const uint32_t have = l->filled - l->taken;
+    if (have >= RECORD_MAX_B || l->at + have >= l->len) { return have; }
+    memmove(l->bytes, l->bytes + l->taken, have);
+    l->taken = 0;
+    l->filled = have;
+    while (l->filled < BUFFER_B && l->at + l->filled < l->len) {
+        const uint64_t left = l->len - l->at - l->filled;
+        const size_t most = left < BUFFER_B - l->filled ? (size_t)left : BUFFER_B - l->filled;
+        const ssize_t n = pread(l->fd, l->bytes + l->filled, most, (off_t)(l->at + l->filled));
+        if (n < 0 && errno == EINTR) { continue; }
+        if (n <= 0) { /* the disk fails, or somebody cut the file */
+            l->error = n < 0 ? errno : 0;
+            l->len = l->at + l->filled;
+            break;
+        }
+        l->filled += (uint32_t)n;
+    }
+    return l->filled;
+}
+
+static void take(struct logfile *l, uint32_t n)
+{
+    l->taken += n;
+    l->at += n;
+}
+
+/* The header's payload has to outlive the buffer. */
+static int keep_header(struct logfile *l, const struct exh_record *r, uint32_t head_B)
+{
+    l->head = malloc((size_t)r->len_B + 1);
+    if (l->head == NULL) { return complain(l, strerror(ENOMEM)); }
+    memcpy(l->head, r->payload, r->len_B);
+    l->params = l->head + head_B;
+    l->params_len = r->len_B - head_B;
+    return 0;
 }
 
 static int read_header(struct logfile *l)
 {
     struct exh_record r;
     struct exh_bytes c;
-    if (exh_record_decode(l->bytes, l->len, &r) == -EXH_E_VERSION) {
+    if (exh_record_decode(l->bytes, fill(l), &r) == -EXH_E_VERSION) {
         cli_complain("%s: a log of record version %u, this program's is %d: read it with the "
                      "program that made it",
             l->path, r.version, EXH_RECORD_VERSION);
@@ -52,8 +101,11 @@ static int read_header(struct logfile *l)
     c = exh_bytes_reader(r.payload, r.len_B);
     exh_record_header_serialize(&c, &l->header);
     if (!exh_bytes_ok(&c)) { return complain(l, "its header is too short"); }
-    l->params = r.payload + c.at;
-    l->params_len = r.len_B - c.at;
+    if (keep_header(l, &r, c.at)) { return 2; }
+    l->next_seq = r.seq + 1; /* one that begins in mid-run goes on with its numbers */
+    l->gaps = 0;
+    logfile_place(l, &l->begin);
+    l->begin.damaged = 0;
     l->scene = cli_scene_find(l->header.scene);
     if (l->scene == NULL) { return complain(l, "made by a scene this program does not have"); }
     if (l->header.lib_version != EXH_VERSION_NUMBER) {
@@ -74,7 +126,7 @@ int logfile_open(struct logfile *l, const char *path)
     int err;
     memset(l, 0, sizeof *l);
     l->path = path;
-    err = read_file(l);
+    err = open_file(l);
     return err ? err : read_header(l);
 }
 
@@ -108,17 +160,33 @@ int logfile_calibrations(const struct logfile *l)
 
 void logfile_close(struct logfile *l)
 {
+    if (l->path != NULL && l->fd >= 0) { (void)close(l->fd); }
     free(l->bytes);
-    l->bytes = NULL;
+    free(l->head);
+    l->bytes = l->head = NULL;
+    l->fd = -1;
 }
 
-void logfile_rewind(struct logfile *l, uint32_t at)
+void logfile_place(const struct logfile *l, struct logfile_place *p)
 {
-    l->at = at;
-    l->next_seq = 1;
-    l->damaged = l->gaps = l->lost = 0;
-    l->ended = l->started = 0;
+    *p = (struct logfile_place){
+        l->at, l->tick, l->damaged, l->next_seq, l->gaps, l->lost, l->started};
 }
+
+void logfile_go(struct logfile *l, const struct logfile_place *p)
+{
+    l->at = p->at;
+    l->taken = l->filled = 0;
+    l->tick = p->tick;
+    l->damaged = p->damaged;
+    l->next_seq = p->next_seq;
+    l->gaps = p->gaps;
+    l->lost = p->lost;
+    l->started = p->started;
+    l->ended = 0;
+}
+
+void logfile_rewind(struct logfile *l) { logfile_go(l, &l->begin); }
 
 /* Forward or back by less than half a wrap. */
 static void follow_tick(struct logfile *l, const struct exh_record *r)
@@ -136,16 +204,27 @@ static void follow_tick(struct logfile *l, const struct exh_record *r)
     l->started = 1;
 }
 
+/* No record begins here: on to the next byte that one may begin with. */
+static void skip(struct logfile *l, uint32_t have)
+{
+    const uint8_t *const here = l->bytes + l->taken;
+    const uint8_t *const next = memchr(here + 1, EXH_RECORD_SYNC & 0xFF, have - 1);
+    const uint32_t n = next ? (uint32_t)(next - here) : have;
+    l->damaged += n;
+    take(l, n);
+}
+
 int logfile_next(struct logfile *l, struct exh_record *r)
 {
-    while (l->at < l->len && !l->ended) { /* what comes behind the end is not the log's, either */
-        const int32_t n = exh_record_decode(l->bytes + l->at, l->len - l->at, r);
+    uint32_t have;
+    while (
+        !l->ended && (have = fill(l)) > 0) { /* what is behind the end is not the log's, either */
+        const int32_t n = exh_record_decode(l->bytes + l->taken, have, r);
         if (n < 0) {
-            l->damaged++;
-            l->at++;
+            skip(l, have);
             continue;
         }
-        l->at += (uint32_t)n;
+        take(l, (uint32_t)n);
         l->gaps += r->seq - l->next_seq;
         l->next_seq = r->seq + 1;
         follow_tick(l, r);
@@ -163,10 +242,16 @@ int logfile_next(struct logfile *l, struct exh_record *r)
 
 int logfile_complain(const struct logfile *l)
 {
+    char end[96] = "end reached";
     /* Bytes between records of which none is missing are a box's words on the same line. */
     if (l->gaps == 0 && l->ended) { return 0; }
-    cli_complain("%s: %lu damaged bytes, %lu records missing (%lu reported lost by the writer), %s",
-        l->path, (unsigned long)l->damaged, (unsigned long)l->gaps, (unsigned long)l->lost,
-        l->ended ? "end reached" : "cut off before its end");
+    if (!l->ended) {
+        snprintf(end, sizeof end,
+            "cut off before its end: read to its last whole record, tick %" PRIu64, l->tick);
+    }
+    if (l->error) { cli_complain("%s: can't be read on: %s", l->path, strerror(l->error)); }
+    cli_complain("%s: %" PRIu64 " damaged bytes, %lu records missing (%lu reported lost by the "
+                 "writer), %s",
+        l->path, l->damaged, (unsigned long)l->gaps, (unsigned long)l->lost, end);
     return 1;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A log file in memory, record by record. */
+/* A log file, record by record, of any length, in constant memory. */
 #ifndef CLI_LOGFILE_H
 #define CLI_LOGFILE_H
 
@@ -9,26 +9,38 @@
 
 #include <stddef.h>
 
+/* Where a reader is, between two records. */
+struct logfile_place {
+    uint64_t at, tick, damaged;
+    uint32_t next_seq, gaps, lost;
+    int started;
+};
+
 struct logfile {
     const char *path;
+    int fd, error; /* error: errno of the read that ended it early */
+    uint64_t len;  /* of the file, as it was opened */
+    uint64_t at;   /* of the next record in it */
     uint8_t *bytes;
-    uint32_t len, at;
-    uint32_t damaged; /* bytes skipped because no record could be read there */
-    uint32_t gaps;    /* records missing by their sequence numbers */
-    uint32_t lost;    /* records the writer said it lost */
-    int ended;        /* the end record was seen */
+    uint32_t taken, filled; /* of the buffer: the next record begins at taken */
+    uint64_t damaged;       /* bytes skipped because no record could be read there */
+    uint32_t gaps;          /* records missing by their sequence numbers */
+    uint32_t lost;          /* records the writer said it lost */
+    int ended;              /* the end record was seen */
     uint32_t next_seq;
     uint64_t tick; /* of the last record: unlike a record's own it does not wrap */
     int started;   /* `tick` is known */
+    struct logfile_place begin;
     struct exh_record_header header;
     const struct exh_scene *scene;
-    const uint8_t *params; /* the parameter image of the header */
+    uint8_t *head;         /* payload of the header */
+    const uint8_t *params; /* in it, the parameter image and what follows */
     uint32_t params_len;
 };
 
-/* Reads the file and its header, which words may stand between
- * records of (a serial line's), finds the scene and checks versions and tables.
- * 0; 2 after a line on stderr that says what is wrong with it. */
+/* Opens the file and reads its header, which words may stand before, as between records of a
+ * serial line, finds the scene and checks versions and tables. 0; 2 after a line on stderr that
+ * says what is wrong with it; 3: it is not there. */
 int logfile_open(struct logfile *l, const char *path);
 void logfile_close(struct logfile *l);
 
@@ -36,10 +48,12 @@ void logfile_close(struct logfile *l);
  * or 2 after a line on stderr: what is there is none. */
 int logfile_calibrations(const struct logfile *l);
 
-/* Back to just behind the header, where `at` was after opening. */
-void logfile_rewind(struct logfile *l, uint32_t at);
+/* Where it is; back to there; back to just behind the header. */
+void logfile_place(const struct logfile *l, struct logfile_place *p);
+void logfile_go(struct logfile *l, const struct logfile_place *p);
+void logfile_rewind(struct logfile *l);
 
-/* The next good record; 0 at the end. */
+/* The next good record, there until the next call; 0 at the end. */
 int logfile_next(struct logfile *l, struct exh_record *r);
 
 /* A line on stderr about what is damaged or missing, if anything; 1 if so. */

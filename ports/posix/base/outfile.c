@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <pthread.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -147,6 +148,40 @@ int outfile_goes_on(FILE *f)
     (void)pthread_mutex_unlock(&lock);
     if (e && err) { failed(e, err); }
     return err != 0;
+}
+
+/* The name, and its lock, are the next one's. */
+static int go_on(struct entry *e)
+{
+    struct outpart next;
+    int err;
+    (void)flock(e->part.fd, LOCK_UN);
+    err = outpart_open(&next, e->path);
+    if (err == 0 && dup2(next.fd, e->part.fd) < 0) { err = errno; }
+    if (err) {
+        outpart_abandon(&next);
+        return err;
+    }
+    (void)close(next.fd);
+    (void)fcntl(e->part.fd, F_SETFD, FD_CLOEXEC);
+    next.fd = e->part.fd;
+    e->part = next;
+    return 0;
+}
+
+int outfile_turn(int fd, int (*make_way)(void))
+{
+    struct entry *e = NULL;
+    int err = EBADF;
+    (void)pthread_mutex_lock(&lock);
+    for (int i = 0; i < OUTPART_MAX && e == NULL; i++) {
+        if (open_now[i].f && open_now[i].part.fd == fd) { e = &open_now[i]; }
+    }
+    if (e) { err = make_way(); }
+    if (err == 0) { err = outpart_name(&e->part); }
+    if (err == 0) { err = go_on(e); }
+    (void)pthread_mutex_unlock(&lock);
+    return err;
 }
 
 int outfile_close(FILE *f)

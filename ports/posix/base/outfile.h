@@ -26,6 +26,11 @@ int outfile_close(FILE *f);
 /* The same, and it goes on: more is appended at its name, and other writers are kept away. */
 int outfile_goes_on(FILE *f);
 
+/* It is whole, and the stream behind this descriptor goes on into the next file of that name.
+ * Before it takes the name, make_way() moves what is there. The box goes on meanwhile, so nobody
+ * waits for the disk. errno, or 0. */
+int outfile_turn(int fd, int (*make_way)(void));
+
 /* It is not, and will not be. NULL is none. */
 void outfile_abandon(FILE *f);
 

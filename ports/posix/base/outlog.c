@@ -11,8 +11,7 @@
 
 #define START_B 65536 /* a frame comes before that many bytes */
 
-/* What was written in place can't be read again, and stays as it is. */
-static int has_frame(FILE *f)
+int outlog_has_frame(FILE *f)
 {
     static uint8_t start[START_B];
     struct stat st;
@@ -71,7 +70,7 @@ int outlog_mend(FILE *f, uint32_t taken, uint32_t lost)
 
 int outlog_close(FILE *f)
 {
-    if (fflush(f) == 0 && !ferror(f) && !has_frame(f)) {
+    if (fflush(f) == 0 && !ferror(f) && !outlog_has_frame(f)) {
         outfile_abandon(f);
         return 0;
     }

@@ -6,6 +6,9 @@
 #include <stdint.h>
 #include <stdio.h>
 
+/* 1: it has a header and a frame, or is no regular file and cannot be read again. */
+int outlog_has_frame(FILE *f);
+
 /* It has ended. Whole is one with a header and a frame: else nothing of it is left. 0, or 1 after a
  * line on stderr: it could not be written. */
 int outlog_close(FILE *f);

@@ -272,18 +272,26 @@ static void sync_folder(const char *path)
     (void)close(fd);
 }
 
-int outpart_commit(struct outpart *p)
+/* err: what went wrong before: then nothing of it is left. */
+static int take_name(struct outpart *p, int err)
 {
     sigset_t was;
-    int err;
-    if (p->slot < 0) { return 0; }
-    err = fsync(p->fd) != 0 ? errno : 0;
     no_signals(&was);
     if (!err && rename(list[p->slot].part, p->path) != 0) { err = errno; }
     if (err) { (void)unlink(list[p->slot].part); }
     give_slot(p->slot);
     p->slot = -1;
     signals(&was);
+    return err;
+}
+
+int outpart_name(struct outpart *p) { return p->slot < 0 ? 0 : take_name(p, 0); }
+
+int outpart_commit(struct outpart *p)
+{
+    int err;
+    if (p->slot < 0) { return 0; }
+    err = take_name(p, fsync(p->fd) != 0 ? errno : 0);
     if (!err) { sync_folder(p->path); }
     return err;
 }

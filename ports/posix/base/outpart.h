@@ -24,6 +24,10 @@ int outpart_open(struct outpart *p, const char *path);
  * away until it is closed. */
 int outpart_commit(struct outpart *p);
 
+/* The same without waiting for the disk, which may take long: it is whole whatever ends the
+ * program, but perhaps not after the power has failed. */
+int outpart_name(struct outpart *p);
+
 /* Nothing of it is left. Closes it. */
 void outpart_abandon(struct outpart *p);
 

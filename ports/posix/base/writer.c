@@ -12,11 +12,24 @@
 #define LOOK_NS     100000000L
 #define LOOKS_PER_S 10
 
-/* What can be written in one piece from the ring's head on; the lock is held. */
+/* What can be written in one piece from the ring's head on, up to a cut; the lock is held. */
 static size_t piece(const struct writer *w)
 {
-    const size_t straight = w->cap_B - w->head, n = w->held < straight ? w->held : straight;
+    const uint64_t whole = w->cuts ? w->cut_B - w->written_B : w->held;
+    const size_t straight = w->cap_B - w->head;
+    const size_t n = whole < straight ? (size_t)whole : straight;
     return n < PIECE_B ? n : PIECE_B;
+}
+
+/* The lock is held, but for the hook. */
+static void cut(struct writer *w)
+{
+    int error;
+    pthread_mutex_unlock(&w->lock);
+    error = w->hooks.cut(w->fd);
+    pthread_mutex_lock(&w->lock);
+    w->error = error;
+    w->cuts = 0;
 }
 
 /* errno of it, without the lock. */
@@ -41,9 +54,13 @@ static void *write_on(void *ctx)
     int error = open_path(w);
     pthread_mutex_lock(&w->lock);
     w->error = error;
-    while (w->error == 0 && (w->held || !w->ends)) {
+    while (w->error == 0 && (w->held || w->cuts || !w->ends)) {
         const size_t n = piece(w);
         ssize_t done;
+        if (n == 0 && w->cuts) {
+            cut(w);
+            continue;
+        }
         if (n == 0) {
             pthread_cond_wait(&w->moved, &w->lock);
             continue;
@@ -53,9 +70,11 @@ static void *write_on(void *ctx)
             done = write(w->fd, w->ring + w->head, n);
         } while (done < 0 && errno == EINTR);
         error = done < 0 ? errno : 0;
+        if (w->hooks.wrote && done > 0) { w->hooks.wrote(w->written_B + (uint64_t)done); }
         pthread_mutex_lock(&w->lock);
         w->error = error;
         if (done > 0) {
+            w->written_B += (uint64_t)done;
             w->head = (w->head + (size_t)done) % w->cap_B;
             w->held -= (size_t)done;
         }
@@ -138,9 +157,35 @@ int writer_put(struct writer *w, const void *bytes, size_t n, double patience_s)
     memcpy(w->ring, (const uint8_t *)bytes + straight, n - straight);
     pthread_mutex_lock(&w->lock);
     w->held += n;
+    w->put_B += n;
     pthread_cond_broadcast(&w->moved);
     pthread_mutex_unlock(&w->lock);
     return 1;
+}
+
+void writer_hook(struct writer *w, const struct writer_hooks *hooks)
+{
+    pthread_mutex_lock(&w->lock);
+    w->hooks = *hooks;
+    pthread_mutex_unlock(&w->lock);
+}
+
+int writer_takes(struct writer *w, size_t n)
+{
+    int takes;
+    pthread_mutex_lock(&w->lock);
+    takes = w->error == 0 && !w->cuts && n <= w->cap_B - w->held;
+    pthread_mutex_unlock(&w->lock);
+    return takes;
+}
+
+void writer_cut(struct writer *w)
+{
+    pthread_mutex_lock(&w->lock);
+    w->cut_B = w->put_B;
+    w->cuts = 1;
+    pthread_cond_broadcast(&w->moved);
+    pthread_mutex_unlock(&w->lock);
 }
 
 size_t writer_held(struct writer *w)

@@ -10,15 +10,24 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* Called by the writer's thread, without its lock. */
+struct writer_hooks {
+    int (*cut)(int fd);            /* what was put before writer_cut() is written: errno, or 0 */
+    void (*wrote)(uint64_t all_B); /* so much since it began */
+};
+
 struct writer {
     int fd;
     const char *path; /* the thread opens and closes it; NULL: fd is the caller's */
     struct outpart part;
     uint8_t *ring; /* cap_B of it, the caller's, as is the writer: for ever */
     size_t cap_B;
-    size_t head, held; /* where the thread reads, and how much of it is its */
-    int error;         /* errno of what ended it: nothing is taken any more */
-    int ends, over;    /* asked to, has */
+    size_t head, held;                /* where the thread reads, and how much of it is its */
+    uint64_t put_B, written_B, cut_B; /* in all; where the cut is */
+    int cuts;                         /* one is asked for */
+    struct writer_hooks hooks;
+    int error;      /* errno of what ended it: nothing is taken any more */
+    int ends, over; /* asked to, has */
     pthread_mutex_t lock;
     pthread_cond_t moved;
 };
@@ -33,6 +42,13 @@ int writer_start_file(struct writer *w, const char *path, void *ring, size_t cap
 /* One caller, in its order: 1: all of it will be written, unless the file fails; 0: none, there was
  * no room, and nothing moved for so long; -1: the file failed. */
 int writer_put(struct writer *w, const void *bytes, size_t n, double patience_s);
+
+/* To be given before anything is put. */
+void writer_hook(struct writer *w, const struct writer_hooks *hooks);
+/* Room for so much, and no cut under way. */
+int writer_takes(struct writer *w, size_t n);
+/* Behind all that was put: the hook. One at a time. */
+void writer_cut(struct writer *w);
 
 /* Bytes that were put and are not written yet. */
 size_t writer_held(struct writer *w);

@@ -41,6 +41,7 @@ WRITERS = (
     ("bilateral", "exhand",
      "bilateral --rate 500 --speed natural --approaches 1 --seeds 1 --out {d}", "log"),
     ("run-log", "exhand", "run --seconds 20 --log {d}/a.exh", "log"),
+    ("run-turns", "exhand", "run --seconds 20 --log {d}/a.exh --log-size 256k", "log"),
     ("run-paced", "exhand", "run --pace --rate 200 --seconds 0.6 --log {d}/a.exh", "log"),
     ("blackbox", "exhand", "run --seconds 4 --let-go 2 --blackbox {d}/b.exh", "log"),
     ("record", "exhand", "glove --does poses --seconds 4 --record {d}/g.exh", "log"),
@@ -138,7 +139,7 @@ class Writer:
     def whole(self, name, data):
         if data == self.reference.get(name):
             return True
-        if name.endswith(".exh") and self.kind != "same":
+        if ".exh" in name and self.kind != "same":
             path = os.path.join(self.dir, name)
             return subprocess.run([self.given["exhand"], "csv", path], stdin=subprocess.DEVNULL,
                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
@@ -147,12 +148,17 @@ class Writer:
             data = data[:data.rfind(b"\n") + 1]
         return self.kind == "rows" and name.endswith(".csv") and whole_rows(data)
 
+    def is_final(self, name):
+        """Of a log that has many files, more than there were may be left: FILE.N."""
+        return (name in self.reference or name == "stability.csv" or
+                self.name == "run-turns" and name.startswith("a.exh.") and name[6:].isdigit())
+
     def judge(self, old, killed, how):
         """What stands at the names, and beside them."""
         held = files(self.dir)
         for name, data in held.items():
-            if name in self.reference or name == "stability.csv":
-                if name in old and data == old[name]:
+            if self.is_final(name):
+                if data in old.values():
                     self.counts["old"] += 1
                 elif self.whole(name, data):
                     self.counts["new"] += 1
@@ -161,7 +167,7 @@ class Writer:
             elif not (killed and name.endswith(".part")):
                 fault(self.name, f"{how}: {name} is left")
         for name in old:
-            if name not in held and not name.endswith(".png"):
+            if name not in held and old[name] not in held.values():
                 fault(self.name, f"{how}: the old {name} is lost")
         self.counts["absent"] += not held
 

@@ -16,7 +16,8 @@
 /* of a dump, by reading it */
 struct held {
     int64_t first, last; /* ticks of its first keyframe and its last frame */
-    uint32_t frames, keyframes, damaged, gaps;
+    uint32_t frames, keyframes, gaps;
+    uint64_t damaged;
     int32_t c; /* contact in the first frame */
     struct exh_event froze;
     int ended;

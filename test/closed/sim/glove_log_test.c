@@ -131,8 +131,9 @@ TEST(a_changed_code_is_found)
         crc = exh_crc32(0, record, 14u + r.len_B);
         exh_bytes_u32(&c, &crc);
     }
-    f = fopen(log, "wb");
-    CHECK(f != NULL && fwrite(l.bytes, 1, l.len, f) == l.len, "write");
+    f = fopen(log, "r+b");
+    CHECK(f != NULL && fseek(f, (long)l.at - 18 - r.len_B, SEEK_SET) == 0, "write");
+    CHECK(fwrite(r.payload - 14, 1, 18u + r.len_B, f) == 18u + r.len_B, "write");
     fclose(f);
     logfile_close(&l);
     replay_from(dir, log, "0", 1);

@@ -16,7 +16,8 @@
 
 /* of a log read to its end */
 struct counted {
-    uint32_t frames, events, keyframes, last_tick, damaged, gaps;
+    uint32_t frames, events, keyframes, last_tick, gaps;
+    uint64_t damaged;
     int ended, complained;
 };
 

@@ -146,6 +146,42 @@ TEST(lost_pieces_are_told)
     said_clean(dir);
 }
 
+/* Words of others before and among it change nothing, and who looks late sees what is then. */
+TEST(strangers_change_nothing_and_late_is_early_enough)
+{
+    const char *log;
+    FILE *f;
+    uint8_t byte[STREAM_DATA_B], junk[STREAM_PIECE_B];
+    struct udp other;
+    size_t n, len;
+    int lines, same;
+    dir = said_dir();
+    log = a_log("4");
+    said(&s, dir, cli_csv, WORDS("csv", log, "--out", said_path(dir, "c.csv")));
+    CHECK_EQ_I64(s.status, 0);
+    start("--hz", "20");
+    CHECK_EQ_I64(udp_open(&other, "127.0.0.1:0", at), 0);
+    stream_open(5);
+    memset(byte, 'Z', sizeof byte);
+    len = stream_piece(junk, byte, 100, 0);
+    (void)udp_send(&other, junk, len);
+    stream_open(77);
+    f = fopen(log, "rb");
+    CHECK(f != NULL && fseek(f, said_size(log) / 4, SEEK_SET) == 0, "no log");
+    while ((n = fread(byte, 1, sizeof byte, f)) > 0) {
+        piece(byte, (unsigned)n, 0, 0);
+        if (number % 10 == 0) { (void)udp_send(&other, junk, len); }
+    }
+    fclose(f);
+    end();
+    udp_close(&other);
+    CHECK(s.status == 0 && strstr(s.err, "datagrams from 127.0.0.1:"), "%d %s", s.status, s.err);
+    CHECK(!strstr(s.err, "ticks were lost"), "%s", s.err);
+    same = found_in(said_path(dir, "w.csv"), said_path(dir, "c.csv"), &lines);
+    CHECK(same == lines && lines > 20 && lines < 40, "%d of %d", same, lines);
+    said_clean(dir);
+}
+
 /* Of a hand before no world, or before one that is known from the third tick on. */
 static const char *a_log_of_a_hand(const char *world_from)
 {
@@ -205,11 +241,13 @@ TEST(a_picture_is_drawn)
         return;
     }
     for (size_t i = 0; i < 2; i++) {
+        const char *log;
         char option[32];
         dir = said_dir();
+        log = a_log("4");
         snprintf(option, sizeof option, "--signals=%s", signals[i]);
         start(option, said_path_as_option("plot", "it's.png"));
-        send_file(a_log("4"), 0);
+        send_file(log, 0);
         end();
         CHECK(s.status == 0 && strstr(s.err, "picture: ") && strstr(s.err, "it's.png"), "%d %s",
             s.status, s.err);
@@ -237,16 +275,18 @@ static int count(const char *text, const char *part)
 TEST(a_terminal_is_drawn_over)
 {
     static char text[262144];
+    const char *log;
     FILE *f;
     uint8_t byte[STREAM_DATA_B];
     size_t n;
     if (terminal_open(&tty) < 0) { return; }
     dir = said_dir();
+    log = a_log("4");
     watch = watch_on_terminal;
     start("--signals", "q,state");
     watch = cli_watch;
     text[0] = '\0';
-    f = fopen(a_log("4"), "rb");
+    f = fopen(log, "rb");
     CHECK(f != NULL, "no log");
     while ((n = fread(byte, 1, sizeof byte, f)) ==
            sizeof byte) { /* but its last bytes: it falls silent */
@@ -284,7 +324,7 @@ TEST(what_there_is_none_of_leaves_its_place_empty)
     size_t empty;
     if (terminal_open(&tty) < 0) { return; }
     dir = said_dir();
-    log = a_log_of_a_hand("100");
+    log = a_log_of_a_hand("100"); /* before it watches for some seconds */
     watch = watch_on_terminal;
     start("--signals", "d,c");
     watch = cli_watch;
@@ -340,21 +380,24 @@ TEST(bad_usage)
         {{"watch", "--listen", "here", NULL}, "give ADDRESS:PORT"},
         {{"watch", "--listen", "127.0.0.1:0", "--finger=nose", NULL}, "--finger: nose"},
         {{"watch", "--listen", "127.0.0.1:0", "--csv=/nowhere/x", NULL}, "--csv: /nowhere/x"}};
+    const char *log;
     dir = said_dir();
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
         said(&s, dir, cli_watch, row[i].word);
         CHECK(
             s.status == 2 && strstr(s.err, row[i].said), "%s: %d %s", row[i].said, s.status, s.err);
     }
+    log = a_log("0.5");
     start("--signals", "q,nose");
-    send_file(a_log("0.5"), 0);
+    send_file(log, 0);
     end();
     CHECK(s.status == 2 && strstr(s.err, "nose: no such signal: one of q qd f_des"), "%d %s",
         s.status, s.err);
     said_clean(dir);
 }
 
-TEST_MAIN("watch", samples_are_the_logs_values, lost_pieces_are_told, a_picture_is_drawn,
+TEST_MAIN("watch", samples_are_the_logs_values, lost_pieces_are_told,
+    strangers_change_nothing_and_late_is_early_enough, a_picture_is_drawn,
     what_there_is_none_of_is_left_out, what_there_is_none_of_leaves_its_place_empty,
     a_terminal_is_drawn_over, silence_is_told_with_its_age, another_table_is_refused_by_name,
     bad_usage);

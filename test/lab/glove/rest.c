@@ -97,13 +97,26 @@ int glove_rest_board(struct glove_rest *r, const struct glove_options *o)
     return posix_interrupted() ? 130 : settle_rate(r);
 }
 
+/* A tick with a new glove frame; 0 at the end. */
+static int next_glove(struct logfile *l, struct exh_scene_in *in)
+{
+    struct exh_record rec;
+    struct exh_drive_out out;
+    while (logfile_next(l, &rec)) {
+        struct exh_bytes c = exh_bytes_reader(rec.payload, rec.len_B);
+        if (rec.type != EXH_RECORD_FRAME) { continue; }
+        memset(in, 0, sizeof *in);
+        exh_log_frame_serialize(&c, l->scene, in, &out, l->scene->values);
+        if (exh_bytes_ok(&c) && c.at == rec.len_B && in->glove_new) { return 1; }
+    }
+    return 0;
+}
+
 /* The glove frames of a log. */
 int glove_rest_log(struct glove_rest *r, const char *path)
 {
     struct logfile l;
-    struct exh_record rec;
     struct exh_scene_in in;
-    struct exh_drive_out out;
     int err = logfile_open(&l, path);
     if (err == 0 && l.scene->read_glove == NULL) {
         cli_complain("%s: made by scene %s, which reads no glove", path, l.scene->name);
@@ -111,18 +124,13 @@ int glove_rest_log(struct glove_rest *r, const char *path)
     }
     r->frames.T = l.header.T;
     if (err == 0) {
-        r->cap = (long)(l.len / EXH_RECORD_OVERHEAD);
-        r->frames.raw = malloc((size_t)r->cap * sizeof *r->frames.raw);
+        while (next_glove(&l, &in)) { r->cap++; }
+        logfile_rewind(&l);
+        r->frames.raw = malloc((size_t)(r->cap + 1) * sizeof *r->frames.raw);
         err = r->frames.raw == NULL;
     }
-    while (err == 0 && logfile_next(&l, &rec)) {
-        struct exh_bytes c = exh_bytes_reader(rec.payload, rec.len_B);
-        if (rec.type != EXH_RECORD_FRAME) { continue; }
-        memset(&in, 0, sizeof in);
-        exh_log_frame_serialize(&c, l.scene, &in, &out, l.scene->values);
-        if (exh_bytes_ok(&c) && c.at == rec.len_B && in.glove_new) {
-            memcpy(r->frames.raw[r->frames.n++], in.glove.raw, sizeof in.glove.raw);
-        }
+    while (err == 0 && next_glove(&l, &in)) {
+        memcpy(r->frames.raw[r->frames.n++], in.glove.raw, sizeof in.glove.raw);
     }
     if (err == 0) { err = logfile_complain(&l); }
     logfile_close(&l);

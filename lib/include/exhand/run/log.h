@@ -10,6 +10,9 @@
 
 /* Ticks between keyframes: a replay may start at each. */
 #define EXH_LOG_KEYFRAME_TICKS 1024u
+/* Ticks between headers, half of a keyframe's behind one, so that no tick has both: who comes late
+ * reads from the keyframe behind it. */
+#define EXH_LOG_HEADER_TICKS 4096u
 /* The largest record: header or keyframe with all parameters of a scene. */
 #define EXH_LOG_RECORD_B 5120u
 

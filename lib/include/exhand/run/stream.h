@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* The log as datagrams, pieces of a stream of bytes: whoever listens sees what is missing by its
- * place. Nothing is sent again.
+ * place. Nothing is sent again; the log itself has its header again now and then (log.h).
  *
- *   0  u32 "EXHL"    4  u32 session    8  u32 number of the piece, from 0
+ *   0  u32 "EXL2"    4  u32 session    8  u32 number of the piece, from 0
  *  12  u32 place of its first byte in the stream, modulo 2^32
- *  16  u32 1: the last one            20  bytes
+ *  16  u32 1: the last one            20  bytes, then u32 CRC-32 of all before
  *
  * Little-endian. Portable: the host's `exhand listen` reads them by the same file. */
 #ifndef EXHAND_RUN_STREAM_H
@@ -15,8 +15,10 @@
 
 #define STREAM_HEAD_B  20u
 #define STREAM_DATA_B  1408u
-#define STREAM_PIECE_B (STREAM_HEAD_B + STREAM_DATA_B)
-#define STREAM_MAGIC   0x4C485845u
+#define STREAM_CRC_B   4u
+#define STREAM_PIECE_B (STREAM_HEAD_B + STREAM_DATA_B + STREAM_CRC_B)
+#define STREAM_MAGIC   0x324C5845u
+#define STREAM_MAGIC_1 0x4C485845u /* "EXHL": version 1, without CRC */
 
 /* --- out: one stream --- */
 void stream_open(uint32_t session);
@@ -32,6 +34,8 @@ struct stream_piece {
     const uint8_t *byte;
     size_t n;
 };
-int stream_read(struct stream_piece *p, const uint8_t *datagram, size_t len_B); /* 0: is none */
+/* What a datagram is. */
+enum stream_is { STREAM_NONE, STREAM_PIECE, STREAM_DAMAGED, STREAM_OLD };
+enum stream_is stream_read(struct stream_piece *p, const uint8_t *datagram, size_t len_B);
 
 #endif

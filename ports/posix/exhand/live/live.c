@@ -7,6 +7,7 @@
 #include "box/glove_line.h"
 #include "box/world_line.h"
 #include "live/live.h"
+#include "live/log_turn.h"
 #include "slave/slave.h"
 #include "base/option.h"
 #include "base/outfile.h"
@@ -172,13 +173,17 @@ static int prepare(struct live_options *o, const struct exh_scene *sc)
     }
     if (err == 0) { err = contacts_check(&o->gpio, o->pace); }
     if (err == 0) { err = read_params(o); }
+    if (err == 0 && ((o->log_size.B && !o->log) || (o->log_size.keep >= 0 && !o->log_size.B))) {
+        cli_complain("--log-keep goes with --log-size, and this with --log");
+        err = 2;
+    }
     if (err == 0 && o->log && !o->pace && o->seconds <= 0) { /* gigabytes a minute */
         cli_complain("--log: without an end it fills the disk as fast as it goes: give --seconds, "
                      "or --pace");
         err = 2;
     }
     if (err == 0) { err = outfile_try(leaves, sizeof leaves / sizeof leaves[0]); }
-    if (err == 0) { err = live_log_open(o->log, o->pace); }
+    if (err == 0) { err = live_log_open(o->log, o->pace, &o->log_size); }
     if (err == 0) { err = contacts_begin(&o->gpio); }
     if (err == 0) { err = open_modbus(o); }
     if (err == 0 && o->glove) {
@@ -219,6 +224,7 @@ static void defaults(struct live_options *o)
     o->slack_s = -1;
     o->record_Hz = o->hand.record_Hz;
     o->live.on = 1;
+    o->log_size.keep = -1;
 }
 
 static int list(struct live_options *o)
@@ -234,7 +240,7 @@ int cli_run(int argc, char **argv)
 {
     static struct live_options o;
     struct cli_call set = {take_set, &o}, fingers = {take_fingers, &o}, speed = {take_speed, &o};
-    struct cli_call gpio = {contacts_take, &o.gpio};
+    struct cli_call gpio = {contacts_take, &o.gpio}, size = {log_turn_take_size, &o.log_size.B};
     const struct cli_option option[] = {
         {"scene", CLI_TEXT, &o.scene, 0, 0, "NAME",
             "drop, guarded or bilateral (drop); custom where the program has one"},
@@ -250,8 +256,7 @@ int cli_run(int argc, char **argv)
             "of bilateral: slow, natural, fast or m/s (natural)"},
         {"udp", CLI_TEXT, &o.udp, 0, 0, "HOST:PORT",
             "of bilateral: the world is another process there; with --pace"},
-        {"record", CLI_TEXT, &o.record, 0, 0, "FILE",
-            "of bilateral: the fingers do what a glove recorded, again and again"},
+        {"record", CLI_TEXT, &o.record, 0, 0, "FILE", "of bilateral: fingers do this recording"},
         {"record-rate", CLI_REAL, &o.record_Hz, 0.1, 10000, "HZ",
             "of its rows, if they have no clock (100)"},
         {"record-columns", CLI_TEXT, &o.hand.columns, 0, 0, "LIST", "of `exhand glove`"},
@@ -264,8 +269,7 @@ int cli_run(int argc, char **argv)
             "it is let go then: a fault; without --grip for good (never)"},
         {"modbus", CLI_TEXT, &o.modbus, 0, 0, "WHERE",
             "serve the registers at tcp:ADDRESS:PORT or rtu:DEVICE:BAUD"},
-        {"save", CLI_TEXT, &o.save, 0, 0, "FILE",
-            "clients may save the parameters there, for --load-params"},
+        {"save", CLI_TEXT, &o.save, 0, 0, "FILE", "clients may save there, for --load-params"},
         {"remote", CLI_FLAG, &o.remote, 0, 0, NULL,
             "clients may command RUN and CLEAR; the dead-man holds all the same"},
         {"glove-serial", CLI_TEXT, &o.glove, 0, 0, "DEVICE",
@@ -275,6 +279,8 @@ int cli_run(int argc, char **argv)
             "its user's, of `exhand calibrate --glove` (nobody's)"},
         {"gpio", CLI_CALL, &gpio, 0, 0, CONTACTS_ARG, CONTACTS_HELP},
         {"log", CLI_TEXT, &o.log, 0, 0, "FILE", "for `exhand replay` and `exhand csv`"},
+        {"log-size", CLI_CALL, &size, 0, 0, "BYTES[k|M|G]", "of a file; then it becomes FILE.1"},
+        {"log-keep", CLI_INT, &o.log_size.keep, 0, 1e6, "N", "so many old ones stay (all)"},
         {"blackbox", CLI_TEXT, &o.blackbox, 0, 0, "FILE", "the last seconds before a fault, a log"},
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
         {"params", CLI_FLAG, &o.list, 0, 0, NULL, "list the scene's parameters"},

@@ -16,9 +16,16 @@
 
 #define LIVE_SETTINGS_MAX 64
 
+/* --log-size and --log-keep. */
+struct live_log_size {
+    uint64_t B;   /* of a file, about; 0: one file without end */
+    int64_t keep; /* old ones that stay; < 0: all */
+};
+
 struct live_options {
     const char *scene, *params, *log, *blackbox, *modbus, *save, *glove, *glove_image, *udp,
         *record;
+    struct live_log_size log_size;
     double rate_Hz, seconds, let_go_s;
     double slack_s; /* < 0: not given */
     double record_Hz;
@@ -67,7 +74,7 @@ void live_status_end(void);
 /* live_log.c. --log: paced, no tick waits for it either: what finds no room is lost and counted.
  * An exit status, after a line on stderr; 0: fine, also without a path.
  */
-int live_log_open(const char *path, int paced);
+int live_log_open(const char *path, int paced, const struct live_log_size *size);
 FILE *live_log_file(void);                       /* NULL: none */
 int live_log_put(const void *rec, size_t len_B); /* posix_config.log_put */
 uint64_t live_log_lost(void);                    /* records */

@@ -21,7 +21,7 @@
 #define LATE_S   0.05 /* Ctrl-C and --seconds wait no longer */
 
 static struct {
-    const char *modbus, *listen, *names, *finger, *csv, *plot;
+    const char *modbus, *listen, *peer, *names, *finger, *csv, *plot;
     double hz, seconds, last_s;
     int64_t trace; /* ticks from frame to frame; 0: none */
     struct watch_box box;
@@ -213,7 +213,9 @@ static int prepare(void)
         return 2;
     }
     if (w.plot) { err = watch_plot_open(w.plot, w.last_s); }
-    if (err == 0) { err = w.modbus ? watch_modbus_open(w.modbus) : watch_stream_open(w.listen); }
+    if (err == 0) {
+        err = w.modbus ? watch_modbus_open(w.modbus) : watch_stream_open(w.listen, w.peer);
+    }
     if (err == 0) { err = outfile_try(leaves, sizeof leaves / sizeof leaves[0]); }
     if (err == 0 && w.csv) {
         w.file = outfile_open("csv", w.csv);
@@ -229,6 +231,8 @@ int cli_watch(int argc, char **argv)
             "a box that serves its registers: tcp:ADDRESS:PORT or rtu:DEVICE:BAUD"},
         {"listen", CLI_TEXT, &w.listen, 0, 0, "ADDRESS:PORT",
             "a box that sends its log there (pc104: log=udp)"},
+        {"peer", CLI_TEXT, &w.peer, 0, 0, "ADDRESS:PORT",
+            "with --listen: the box, as it sends (whoever sends the first whole header)"},
         {"trace", CLI_INT, &w.trace, 0, 1e6, "N",
             "of Modbus: every N-th tick, four signals, what is lost is told"},
         {"signals", CLI_TEXT, &w.names, 0, 0, "A[,B[I]...]",

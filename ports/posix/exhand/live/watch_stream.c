@@ -6,9 +6,7 @@
 #include "udp.h"
 #include "base/until.h"
 
-#include "exhand/run/log.h"
-
-#include "exhand/run/stream.h"
+#include "box/pieces.h"
 
 #include "exhand/error.h"
 #include "exhand/fix.h"
@@ -22,21 +20,35 @@
 
 static struct {
     struct udp udp;
-    uint32_t session, place; /* of the byte behind the last */
+    struct pieces pieces;
+    struct sockaddr_in peer;
+    uint64_t end; /* of the log, of the byte behind the last */
     double heard_s;
-    int begun;
     uint8_t byte[BUFFER_B]; /* not yet records */
     uint32_t n;
 } in;
 
-int watch_stream_open(const char *at)
+int watch_stream_open(const char *at, const char *peer)
 {
+    if (peer != NULL && udp_open(&in.udp, "0.0.0.0:0", peer) < 0) {
+        cli_complain("--peer: %s: %s: give ADDRESS:PORT of the box", peer, strerror(errno));
+        return 2;
+    }
+    if (peer != NULL) {
+        in.peer = in.udp.peer;
+        udp_close(&in.udp);
+    }
+    pieces_open(&in.pieces, peer ? &in.peer : NULL);
     if (udp_open(&in.udp, at, NULL) == 0) { return 0; }
     cli_complain("--listen: %s: %s: give ADDRESS:PORT of this machine", at, strerror(errno));
     return 2;
 }
 
-void watch_stream_close(void) { udp_close(&in.udp); }
+void watch_stream_close(void)
+{
+    udp_close(&in.udp);
+    pieces_complain(&in.pieces);
+}
 
 /* --- records --- */
 
@@ -108,28 +120,43 @@ static int records(struct watch_box *b, watch_fresh fresh)
 
 /* --- pieces --- */
 
-/* In their order; what comes late is not waited for. */
-static int piece(struct watch_box *b, const struct stream_piece *p, watch_fresh fresh)
+static void add(const uint8_t *byte, uint32_t n)
 {
-    const double now_s = until_now_s();
-    if (in.begun && p->session != in.session && now_s - in.heard_s < NEW_S) { return 0; }
-    if (!in.begun || p->session != in.session) {
-        in.session = p->session;
-        in.place = p->place;
+    if (n == 0) { return; }
+    memcpy(in.byte + in.n, byte, n);
+    in.n += n;
+}
+
+/* In their order; what comes late is not waited for. */
+static int take(struct watch_box *b, const struct pieces_part *part, watch_fresh fresh)
+{
+    if (part->more) { /* a log begins */
         in.n = 0;
-        in.begun = 1;
+        in.end = 0;
         b->heard = 0;
+        b->ended = 0;
     }
-    if (p->place - in.place >= UINT32_C(0x80000000)) { return 0; }
-    if (p->place != in.place) { in.n = 0; }
-    in.heard_s = now_s;
-    in.place = p->place + (uint32_t)p->n;
-    memcpy(in.byte + in.n, p->byte, p->n);
-    in.n += (uint32_t)p->n;
-    b->trouble =
-        b->scene ? NULL
-                 : "the log's beginning, which names the scene, is not heard: start the box anew";
+    if (part->at < in.end) { return 0; }
+    if (part->at != in.end) { in.n = 0; }
+    in.heard_s = until_now_s();
+    in.end = part->at + part->n + part->more_n;
+    add(part->byte, part->n);
+    add(part->more, part->more_n);
+    b->trouble = NULL;
     return records(b, fresh);
+}
+
+/* Silent for long: another box, or the same anew, may begin; who was strange stays counted. */
+static void let_others(void)
+{
+    struct pieces *p = &in.pieces;
+    const uint64_t foreign = p->foreign;
+    struct pieces_source source[PIECES_SOURCES];
+    if (!p->begun || until_now_s() - in.heard_s < NEW_S) { return; }
+    memcpy(source, p->source, sizeof source);
+    pieces_open(p, p->given ? &in.peer : NULL);
+    memcpy(p->source, source, sizeof source);
+    p->foreign = foreign;
 }
 
 int watch_stream_look(struct watch_box *b, double until_s, watch_fresh fresh)
@@ -140,8 +167,14 @@ int watch_stream_look(struct watch_box *b, double until_s, watch_fresh fresh)
     int err = 0, n;
     (void)poll(&f, 1, left_s > 0 ? 1 + (int)(1000 * left_s) : 0);
     while (err == 0 && (n = udp_recv(&in.udp, datagram, sizeof datagram)) > 0) {
-        struct stream_piece p;
-        if (stream_read(&p, datagram, (size_t)n)) { err = piece(b, &p, fresh); }
+        struct pieces_part part;
+        let_others();
+        if (pieces_take(&in.pieces, &in.udp.from, datagram, (size_t)n, &part)) {
+            err = take(b, &part, fresh);
+        } else if (!in.pieces.begun && b->scene == NULL) {
+            b->trouble = "no header of a log came yet, which names the scene: it comes every "
+                         "4096 ticks";
+        }
         if (until_now_s() > until_s + 0.2) { break; } /* the picture, too, wants to be drawn */
     }
     return err;

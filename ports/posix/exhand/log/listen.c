@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#define _FILE_OFFSET_BITS 64
 /* exhand listen: the log of a box that sends it over UDP (log=udp), as a file. */
 #include "base/cli.h"
 
@@ -8,7 +9,7 @@
 #include "base/until.h"
 #include "posix.h"
 
-#include "exhand/run/stream.h"
+#include "box/pieces.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -16,17 +17,15 @@
 #include <stdio.h>
 #include <string.h>
 
-#define BACK 64u /* pieces that may still come, late */
+#define END_B (EXH_RECORD_OVERHEAD + 4u) /* the record that ends a log */
 
 struct listen {
-    const char *at, *out;
+    const char *at, *peer, *out;
     double silence_s, wait_s, heard_s;
     FILE *file;
-    uint32_t session, next; /* number */
-    uint64_t end;           /* of the stream, as far as it came */
-    uint64_t seen;          /* bit i: piece next - 1 - i came */
-    uint64_t pieces, missing, late, twice, other, bytes;
-    int begun, ended, gap;
+    uint64_t bytes;
+    int in_mid; /* it began before it was listened to */
+    struct pieces pieces;
 };
 
 static int complain(const struct listen *l)
@@ -36,67 +35,45 @@ static int complain(const struct listen *l)
     return 2;
 }
 
-/* 1: came for the first time. */
-static int count(struct listen *l, uint32_t number)
+static int put(struct listen *l, const uint8_t *byte, uint32_t n)
 {
-    const uint32_t ahead = number - l->next, back = l->next - 1 - number;
-    if (ahead < UINT32_C(0x80000000)) {
-        l->missing += ahead;
-        l->seen = ahead < 63 ? l->seen << (ahead + 1) | 1 : 1;
-        l->next = number + 1;
-        return 1;
-    }
-    if (back >= BACK || l->seen >> back & 1) {
-        l->twice++;
-        return 0;
-    }
-    l->seen |= UINT64_C(1) << back;
-    l->missing--;
-    l->late++;
-    return 1;
+    l->bytes += n;
+    return n > 0 && fwrite(byte, 1, n, l->file) != n;
 }
 
-/* Its place says where it belongs; what never comes stays zeros, which no reader takes for a
- * record. */
-static int put(struct listen *l, const struct stream_piece *p)
+/* What never comes stays zeros, which no reader takes for a record. */
+static int take(struct listen *l, const struct udp *u, const uint8_t *datagram, size_t n)
 {
-    const uint32_t ahead = p->place - (uint32_t)l->end;
-    const uint64_t at =
-        ahead < UINT32_C(0x80000000) ? l->end + ahead : l->end - (UINT64_C(0x100000000) - ahead);
-    if (p->n == 0) { return 0; }
-    if (fseek(l->file, (long)at, SEEK_SET) != 0 || fwrite(p->byte, 1, p->n, l->file) != p->n) {
+    struct pieces_part part;
+    if (!pieces_take(&l->pieces, &u->from, datagram, n, &part)) { return 0; }
+    l->heard_s = until_now_s();
+    l->in_mid |= part.more_n > 0 && part.n > 0;
+    if (fseeko(l->file, (off_t)part.at, SEEK_SET) != 0 || put(l, part.byte, part.n) ||
+        put(l, part.more, part.more_n)) {
         return complain(l);
     }
-    l->bytes += p->n;
-    l->end = at + p->n > l->end ? at + p->n : l->end;
     return 0;
 }
 
-static int take(struct listen *l, const uint8_t *datagram, size_t n)
+/* 1: what was written last is the record that ends a log. */
+static int ends(struct listen *l)
 {
-    struct stream_piece p;
-    if (!stream_read(&p, datagram, n) || (l->begun && p.session != l->session)) {
-        l->other++;
-        return 0;
-    }
-    l->heard_s = until_now_s();
-    if (!l->begun) {
-        l->begun = 1;
-        l->session = p.session;
-    }
-    if (!count(l, p.number)) { return 0; }
-    l->pieces++;
-    l->ended |= p.last != 0;
-    return put(l, &p);
+    uint8_t byte[END_B];
+    struct exh_record r;
+    return l->pieces.end >= END_B &&
+           fseeko(l->file, (off_t)(l->pieces.end - END_B), SEEK_SET) == 0 &&
+           fread(byte, 1, END_B, l->file) == END_B && exh_record_decode(byte, END_B, &r) > 0 &&
+           r.type == EXH_RECORD_END;
 }
 
 /* What is heard and not the log's is no reason to wait for longer. Never long: a signal may come
  * just before poll(). 0: it is over. */
 static int wait_ms(const struct listen *l)
 {
-    const double most_s = l->ended ? 0.2 : l->begun ? l->silence_s : l->wait_s;
+    const int begun = l->pieces.begun;
+    const double most_s = l->pieces.ended ? 0.2 : begun ? l->silence_s : l->wait_s;
     const double left_s = most_s - (until_now_s() - l->heard_s);
-    if (!l->begun && l->wait_s <= 0) { return 1000; }
+    if (!begun && l->wait_s <= 0) { return 1000; }
     return left_s <= 0 ? 0 : left_s >= 1 ? 1000 : 1 + (int)(1000 * left_s);
 }
 
@@ -105,31 +82,53 @@ static int go(struct listen *l, struct udp *u)
     uint8_t datagram[STREAM_PIECE_B];
     struct pollfd f = {u->fd, POLLIN, 0};
     int err = 0;
-    while (err == 0 && !posix_interrupted() && !(l->ended && l->missing == 0)) {
+    while (err == 0 && !posix_interrupted() && !(l->pieces.ended && l->pieces.missing == 0)) {
         const int ms = wait_ms(l);
         int n;
         if (ms == 0) { break; }
         (void)poll(&f, 1, ms);
         while (err == 0 && (n = udp_recv(u, datagram, sizeof datagram)) > 0) {
-            err = take(l, datagram, (size_t)n);
+            err = take(l, u, datagram, (size_t)n);
         }
     }
     return err;
 }
 
-static int report(const struct listen *l)
+static int report(const struct listen *l, int ended)
 {
-    if (!l->begun) {
+    const struct pieces *p = &l->pieces;
+    pieces_complain(p);
+    if (!p->begun) {
         cli_complain("--at: %s: nothing of a log came%s: is it the box's log_port=, and this "
                      "machine its peer=?",
             l->at, posix_interrupted() ? "" : " in time");
         return 1;
     }
     printf("%s: %" PRIu64 " bytes in %" PRIu64 " pieces; missing %" PRIu64 ", late %" PRIu64
-           ", twice %" PRIu64 ", not the log's %" PRIu64 "; %s\n",
-        l->out, l->bytes, l->pieces, l->missing, l->late, l->twice, l->other,
-        l->ended ? "its end came" : "its end did not come");
-    return l->ended && l->missing == 0 ? 0 : 1;
+           ", twice %" PRIu64 ", not the log's %" PRIu64 "; %s%s\n",
+        l->out, l->bytes, p->pieces, p->missing, p->late, p->twice,
+        p->foreign + p->damaged + p->old + p->beyond,
+        l->in_mid ? "it begins in mid-run, at a keyframe; " : "",
+        !p->ended ? "its end did not come"
+        : ended   ? "its end came"
+                  : "its end came, but not the record that ends a log");
+    return p->ended && ended && p->missing == 0 ? 0 : 1;
+}
+
+static int open_line(struct listen *l, struct udp *u)
+{
+    struct udp to;
+    if (l->peer != NULL) {
+        if (udp_open(&to, "0.0.0.0:0", l->peer) < 0) {
+            cli_complain("--peer: %s: %s: give ADDRESS:PORT of the box", l->peer, strerror(errno));
+            return 2;
+        }
+        udp_close(&to);
+    }
+    pieces_open(&l->pieces, l->peer ? &to.peer : NULL);
+    if (udp_open(u, l->at, NULL) == 0) { return 0; }
+    cli_complain("--at: %s: %s: give ADDRESS:PORT of this machine", l->at, strerror(errno));
+    return 2;
 }
 
 int cli_listen(int argc, char **argv)
@@ -137,6 +136,8 @@ int cli_listen(int argc, char **argv)
     struct listen l = {.at = "0.0.0.0:4748", .silence_s = 5};
     const struct cli_option option[] = {
         {"at", CLI_TEXT, &l.at, 0, 0, "ADDRESS:PORT", "where the box sends its log (0.0.0.0:4748)"},
+        {"peer", CLI_TEXT, &l.peer, 0, 0, "ADDRESS:PORT",
+            "the box, as it sends (whoever sends the first whole header)"},
         {"out", CLI_TEXT, &l.out, 0, 0, "FILE", "the log, for `exhand replay` and `exhand csv`"},
         {"silence", CLI_REAL, &l.silence_s, 0.1, 1e6, "S",
             "once it began, so much of it is its end (5)"},
@@ -145,19 +146,18 @@ int cli_listen(int argc, char **argv)
     };
     const struct cli_command c = {"listen", "--out FILE [options]",
         "The log of a box that sends it over UDP (pc104: log=udp), until its end or Ctrl-C.\n"
-        "What is lost on the way is lost: it is told, and the readers skip it.",
+        "What is lost on the way is lost: it is told, and the readers skip it. Who comes late has "
+        "the log\n"
+        "from a later keyframe on.",
         option, (int)(sizeof option / sizeof option[0]), 0};
     struct udp u;
-    int err = cli_parse(&c, argc, argv, NULL);
+    int ended = 0, err = cli_parse(&c, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }
     if (l.out == NULL) {
         cli_complain("--out: is missing: give the file to be written");
         return 2;
     }
-    if (udp_open(&u, l.at, NULL) < 0) {
-        cli_complain("--at: %s: %s: give ADDRESS:PORT of this machine", l.at, strerror(errno));
-        return 2;
-    }
+    if (open_line(&l, &u)) { return 2; }
     l.file = outfile_open("out", l.out);
     if (l.file == NULL) {
         err = 2;
@@ -167,10 +167,11 @@ int cli_listen(int argc, char **argv)
             l.wait_s > 0 ? "" : "; Ctrl-C or --wait ends it");
         l.heard_s = until_now_s();
         err = go(&l, &u);
+        ended = err == 0 && ends(&l);
         if (outfile_end(l.file, err == 0 && l.bytes > 0) != 0) { err = 2; }
     }
     udp_close(&u);
     if (err) { return err; }
-    err = report(&l);
+    err = report(&l, ended);
     return posix_interrupted() ? 130 : err;
 }

@@ -33,7 +33,7 @@ struct replay {
     uint64_t foretold_tick;
     uint64_t start; /* the last keyframe not after it */
     uint64_t first_tick, expect_tick;
-    uint32_t ticks, keyframes;
+    uint64_t ticks, keyframes;
     uint32_t digest;          /* CRC of all outputs */
     int32_t *recorded, *ours; /* signals of one frame */
     uint8_t *bytes;           /* a keyframe of ours */
@@ -219,42 +219,50 @@ static int foretell(struct replay *p, const struct exh_record *r)
     return 1;
 }
 
-/* Where to start: the last keyframe at or before the tick asked for. Asked for none: the beginning;
- * of a dump, and of a log that begins with a later one, the first keyframe: a dump's header has the
- * parameters of its end. 0 when there is none. */
-static int find_start(struct replay *p)
+/* Asked for a tick: the last keyframe not after it, whose place is all that is kept; what is
+ * behind the next one is not looked at. 0: there is none. */
+static int find_from(struct replay *p)
 {
-    const uint32_t begin = p->log.at;
+    struct logfile_place here, found;
     struct exh_record r;
-    int found = 0, frames = 0, first = 0, dump = 0;
-    uint64_t first_tick = 0;
+    int is_found = 0;
+    logfile_place(&p->log, &here);
+    while (logfile_next(&p->log, &r)) {
+        if (r.type == EXH_RECORD_KEYFRAME) {
+            if (p->log.tick > p->from) { break; }
+            p->start = p->log.tick;
+            found = here;
+            is_found = 1;
+        }
+        logfile_place(&p->log, &here);
+    }
+    if (is_found) { logfile_go(&p->log, &found); }
+    return is_found;
+}
+
+/* Asked for none: the beginning; of a dump, and of a log that begins with a later one, the first
+ * keyframe: a dump's header has the parameters of its end. */
+static void find_begin(struct replay *p)
+{
+    struct exh_record r;
+    int frames = 0, first = 0, dump = 0;
     while (logfile_next(&p->log, &r)) {
         if (r.type == EXH_RECORD_EVENT) { dump |= foretell(p, &r); }
         frames |= r.type == EXH_RECORD_FRAME;
-        if (r.type != EXH_RECORD_KEYFRAME) { continue; }
-        if (!first && !frames) {
-            first = 1;
-            first_tick = p->log.tick;
-        }
-        if (p->from != 0 && p->log.tick <= p->from) {
-            p->start = p->log.tick;
-            found = 1;
-        }
+        if (r.type != EXH_RECORD_KEYFRAME || first || frames) { continue; }
+        first = 1;
+        p->start = p->log.tick;
     }
-    logfile_rewind(&p->log, begin);
-    if (p->from == 0 && first && (dump || first_tick > 0)) {
-        p->start = first_tick;
-        found = 1;
-    }
-    p->running = p->from == 0 && !found;
-    return found || p->running;
+    logfile_rewind(&p->log);
+    p->running = !(first && (dump || p->start > 0));
 }
 
 static int replay(struct replay *p)
 {
     struct exh_record r;
     int err = start_scene(p);
-    if (err == 0 && !find_start(p)) {
+    if (err == 0 && p->from == 0) { find_begin(p); }
+    if (err == 0 && p->from != 0 && !find_from(p)) {
         cli_complain("%s: no keyframe at or before tick %" PRIu64 ": choose a later --from",
             p->log.path, p->from);
         return 2;
@@ -320,9 +328,8 @@ int cli_replay(int argc, char **argv)
     p.from = (uint64_t)from;
     err = logfile_open(&p.log, path);
     if (err == 0 && timeline) {
-        const uint32_t begin = p.log.at;
         err = timeline_print(&p.log, stdout);
-        logfile_rewind(&p.log, begin);
+        logfile_rewind(&p.log);
     }
     if (err == 0) {
         p.faults_at = find_faults(p.log.scene->signals);
@@ -332,13 +339,12 @@ int cli_replay(int argc, char **argv)
         p.bytes = malloc(EXH_LOG_RECORD_B);
         err = p.recorded && p.ours && p.bytes ? replay(&p) : 1;
         if (err == 0) { err = judge_fault(&p); }
-        if (err == 0) { err = logfile_complain(&p.log); }
         if (err == 0) {
-            printf("%s: %lu ticks from tick %" PRIu64
-                   " and %lu keyframes identical, digest %08lx\n",
-                path, (unsigned long)p.ticks, p.first_tick, (unsigned long)p.keyframes,
-                (unsigned long)p.digest);
+            printf("%s: %" PRIu64 " ticks from tick %" PRIu64 " and %" PRIu64
+                   " keyframes identical, digest %08lx\n",
+                path, p.ticks, p.first_tick, p.keyframes, (unsigned long)p.digest);
         }
+        if (err == 0) { err = logfile_complain(&p.log); }
     }
     free(p.recorded);
     free(p.ours);

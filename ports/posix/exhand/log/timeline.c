@@ -23,8 +23,9 @@ struct walk {
     struct exh_scene_in in;
     struct exh_drive_out out;
     int32_t *now, *before; /* signals of this frame and the last */
-    int frames;            /* 1: there was one, */
-    uint64_t first;        /* at this tick */
+    int begun;
+    int frames;     /* 1: there was one, */
+    uint64_t first; /* at this tick */
     uint32_t din;
     uint64_t gap;
     uint32_t command; /* at this tick, enum exh_command + 1 */
@@ -307,10 +308,12 @@ static void on_count(struct walk *w, const struct exh_record *r)
 
 static void walk(struct walk *w)
 {
+    const int looks = w->notes.to == NULL;
     struct exh_record r;
     uint64_t end = 0;
-    while (logfile_next(w->log, &r)) {
-        if (w->notes.n == 0) {
+    while (!(looks && w->notes.has_fault) && logfile_next(w->log, &r)) {
+        if (!w->begun) {
+            w->begun = 1;
             timeline_say(&w->notes, w->log->tick, "the log begins%s",
                 r.type == EXH_RECORD_KEYFRAME ? ", with a keyframe" : "");
         }
@@ -330,6 +333,23 @@ static void walk(struct walk *w)
     count(w, &w->lost, 0, end, "packets lost", 0);
 }
 
+/* All but the log, the signals' memory and the fault is of one walk. */
+static void begin(struct walk *w, FILE *to)
+{
+    struct walk fresh = {.log = w->log,
+        .now = w->now,
+        .before = w->before,
+        .notes = {.log = w->log,
+            .to = to,
+            .fault_tick = w->notes.fault_tick,
+            .has_fault = w->notes.has_fault}};
+    *w = fresh;
+    w->gap = (uint64_t)GAP_MS * w->log->header.T.den / (1000 * (uint64_t)w->log->header.T.num);
+    find_signals(w);
+    logfile_rewind(w->log);
+}
+
+/* Twice, since each line tells its distance to the first fault. */
 int timeline_print(struct logfile *l, FILE *to)
 {
     static struct walk w; /* too large for a stack to like */
@@ -341,12 +361,14 @@ int timeline_print(struct logfile *l, FILE *to)
     w.now = calloc(n + 1, sizeof *w.now);
     w.before = calloc(n + 1, sizeof *w.before);
     if (w.now != NULL && w.before != NULL) {
-        find_signals(&w);
-        w.gap = (uint64_t)GAP_MS * l->header.T.den / (1000 * (uint64_t)l->header.T.num);
+        begin(&w, NULL);
         walk(&w);
+        begin(&w, to);
         fprintf(to, "scene %.16s on %.16s, a tick is %" PRIu32 "/%" PRIu32 " s\n", l->header.scene,
             l->header.board, l->header.T.num, l->header.T.den);
-        timeline_out(&w.notes, l, to);
+        timeline_head(&w.notes);
+        walk(&w);
+        timeline_out(&w.notes);
     }
     bad = w.now == NULL || w.before == NULL || w.notes.no_memory;
     free(w.now);

@@ -11,14 +11,19 @@
 /* The whole log, from its first record on. 0, or 1 after a line on stderr (memory). */
 int timeline_print(struct logfile *l, FILE *to);
 
-/* timeline_note.c: lines that are put in order at the end. */
+#define TIMELINE_NOTES 65536u
+
+/* timeline_note.c: lines that are put in order at the end; of more than TIMELINE_NOTES the older
+ * half goes out before, and what lasted for longer than they did stands late. */
 struct timeline_notes {
+    const struct logfile *log;
+    FILE *to; /* NULL: nothing is kept, the fault alone is looked for */
     struct timeline_note {
         uint64_t tick;
         size_t order;
         char text[160];
     } * at;
-    size_t n, cap;
+    size_t n, cap, said;
     int no_memory;
     uint64_t fault_tick; /* the first of them; told beside each line if has_fault */
     int has_fault;
@@ -27,8 +32,9 @@ struct timeline_notes {
 __attribute__((format(printf, 3, 4)))
 #endif
 void timeline_say(struct timeline_notes *n, uint64_t tick, const char *format, ...);
-/* In order of ticks, with times; frees them. */
-void timeline_out(struct timeline_notes *n, const struct logfile *l, FILE *to);
+/* The line above them all; and what is left, in order of ticks, with times, and frees them. */
+void timeline_head(const struct timeline_notes *n);
+void timeline_out(struct timeline_notes *n);
 
 /* Something that is on or off in a tick; on again within `gap` ticks is the same. */
 struct timeline_span {
