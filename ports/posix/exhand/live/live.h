@@ -19,6 +19,7 @@
 struct live_options {
     const char *scene, *params, *log, *blackbox, *modbus, *save, *glove, *glove_image, *udp,
         *record;
+    const char *fingers, *speed; /* as they were given; NULL: they were not */
     double rate_Hz, seconds, let_go_s;
     double slack_s; /* < 0: not given */
     double record_Hz;
