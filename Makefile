@@ -15,13 +15,25 @@ ifneq ($(words [$(B)]) $(words $(B)),1 1)
 $(error B="$(B)": the build folder must have a name without blanks)
 endif
 
+ports := $(notdir $(patsubst %/port.mk,%,$(wildcard ports/*/port.mk)))
+$(if $(filter $(PORT),$(ports)),,$(error PORT=$(PORT): no such port: give one of $(ports)))
 include ports/$(PORT)/port.mk
 scene_dirs := examples test/image/hil test/port test/figures/bench
 scene_mk   := $(or $(wildcard $(scene_dirs:%=%/$(SCENE)/scene.mk)),examples/$(SCENE)/scene.mk)
+scenes     := $(notdir $(patsubst %/scene.mk,%,$(wildcard $(scene_dirs:%=%/*/scene.mk))))
+$(if $(wildcard $(scene_mk)),,$(error SCENE=$(SCENE): no such scene: give one of $(scenes)))
 include $(scene_mk)
 
+# Any C compiler called cc will do. Goals that build install the port's compiler where they may, or
+# name its packages.
+PORT_PKGS ?= gcc libc6-dev
+builds    := $(filter all image run demo test world lab,$(or $(MAKECMDGOALS),all))
 ifeq ($(origin CC),default)
-CC := $(CROSS)$(if $(shell command -v $(CROSS)gcc),gcc,cc)
+CC := $(CROSS)$(if $(or $(CROSS),$(shell command -v gcc)),gcc,cc)
+ifeq ($(and $(builds),$(shell command -v $(CC)))$(if $(builds),,none),)
+$(info $(shell DEPS=$(DEPS) .ci/deps "PORT=$(PORT)" $(CC) $(PORT_PKGS)))
+$(if $(shell command -v $(CC)),,$(error PORT=$(PORT): no compiler $(CC)))
+endif
 endif
 OBJCOPY ?= $(CROSS)objcopy
 version := $(shell awk '/define EXH_VERSION_(MAJOR|MINOR|PATCH)/{v=v s $$3; s="."} END{print v}' \
@@ -71,7 +83,7 @@ lib     := $(out)/libexhand.a
 parts = $(filter Makefile %.mk,$(MAKEFILE_LIST))
 help:
 	@awk -v few=1 -f .ci/help.awk $(parts) | sort | cut -c 2-
-	@echo "  PORT=$(PORT)   one of: $(notdir $(patsubst %/port.mk,%,$(wildcard ports/*/port.mk)))"
+	@echo "  PORT=$(PORT)   one of: $(ports)"
 	@echo "  SCENE=$(SCENE)   one of:" \
 	    "$(notdir $(patsubst %/scene.mk,%,$(wildcard examples/*/scene.mk)))"
 ##8 List all targets by subject.
@@ -175,6 +187,7 @@ run: all
 ifeq ($(PORT),posix)
 	$(Q)$(program) $(ARGS)
 else
+	$(if $(PORT_QEMU),@.ci/deps "make run" $(PORT_QEMU) || exit 3)
 	$(Q)$(or $(PORT_RUN),$(error PORT=$(PORT) cannot run images: PORT_RUN in ports/$(PORT)/port.mk \
 	    names what does)) $(image) $(ARGS)
 endif

@@ -30,7 +30,7 @@ check:
 	@$(timed) demo > $(B)/demo.txt && tail -n 40 $(B)/demo.txt
 	@$(timed) $(variants:%=variant-%)
 	@$(timed) linux-program
-	@$(timed) link porting
+	@$(timed) link porting shards
 	@$(timed) $(patsubst %,golden-%,$(filter-out i686%,$(variants)))
 	@$(timed) bits
 	@$(timed) undef undef-cortex-m3 undef-cortex-m0

@@ -2,6 +2,8 @@
 PORT_DESC      := bare-metal Cortex-M3 (Arm MPS2 with AN385), runs under qemu-system-arm; a \
                   loop-back for drives
 CROSS          ?= arm-none-eabi-
+PORT_PKGS      := gcc-arm-none-eabi
+PORT_QEMU      := qemu-system-arm qemu-system-arm
 PORT_SRC       := $(addprefix ports/mps2/,start.c board.c box.c say.c mem.c)
 PORT_CFLAGS    := -mcpu=cortex-m3 -mthumb -ffreestanding
 PORT_LDFLAGS   := -mcpu=cortex-m3 -mthumb -nostdlib -static -Wl,--build-id=none

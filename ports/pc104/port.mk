@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 PORT_DESC     := bare-metal 32-bit x86 (i686), multiboot; CARDS=real, or none for a smoke image
 CROSS         ?= i686-linux-gnu-
+PORT_PKGS     := gcc-i686-linux-gnu libc6-dev-i386-cross
+PORT_QEMU     := qemu-system-i386 qemu-system-x86
 # real: the drivers over port instructions. none: constants instead of cards.
 CARDS         ?= real
 cards_real    := $(wildcard ports/cards/*.c) ports/pc104/port_io.c

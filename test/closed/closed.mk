@@ -50,7 +50,7 @@ SEEDS    ?= 5
 comma    := ,
 empty    :=
 NETWORKS ?= $(subst $(empty) $(empty),$(comma),$(wildcard $(addprefix $(or \
-            $(EXH_DATA),../shared/data)/,net-ethernet-direct/*.csv.xz net-internet-ping/*.dat)))
+            $(EXH_DATA),none)/,net-ethernet-direct/*.csv.xz net-internet-ping/*.dat)))
 ## Feel every shipped scene by every finger at three speeds over good and bad links; none may be
 ## missed (SEEDS=5; table in build/contacts/contacts.csv).
 .PHONY: contacts

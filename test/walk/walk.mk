@@ -13,6 +13,11 @@ scale: $(lab)
 	    slurm-client slurmctld slurmd munge || :
 	@test/walk/sweep/scale.sh $(B)/sweep
 
+## Deal sweeps to shards as Slurm arrays and GNU parallel call them, and compare with one process.
+.PHONY: shards
+shards: $(lab)
+	@EXHAND="$(abspath $(lab))" test/walk/sweep/shards.sh $(B)/shards
+
 ## Type docs/PORTING.md anew: from the template to a port that passes the contract test.
 .PHONY: porting
 porting:

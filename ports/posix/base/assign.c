@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/assign.h"
 
+#include "base/names.h"
+#include "base/near.h"
 #include "base/option.h"
 
 #include "sim/plant.h"
@@ -13,10 +15,13 @@ int assign_split(const char *option, const char *text, char name[ASSIGN_NAME_B],
 {
     const char *equals = strchr(text, '=');
     const size_t len = equals ? (size_t)(equals - text) : ASSIGN_NAME_B;
-    char *end = NULL;
-    if (equals != NULL) { *value = strtod(equals + 1, &end); }
-    if (len == 0 || len >= ASSIGN_NAME_B || end == equals + 1 || *end != '\0') {
-        cli_complain("--%s: %s: give NAME=VALUE", option, text);
+    if (len == 0 || len >= ASSIGN_NAME_B) {
+        cli_complain("--%s: %.60s: give NAME=VALUE", option, text[0] ? text : "nothing");
+        return 2;
+    }
+    if (!cli_number(equals + 1, 0, value)) {
+        cli_complain("--%s: %.60s: the value is no number: give it in plain digits, without a unit",
+            option, text);
         return 2;
     }
     memcpy(name, text, len);
@@ -27,12 +32,15 @@ int assign_split(const char *option, const char *text, char name[ASSIGN_NAME_B],
 int assign_refused(
     const char *command, const char *name, double value, const struct sim_device_row *row)
 {
+    struct near n = near_to(name, strlen(name));
+    char mean[NEAR_B];
+    for (int i = 0; i < sim_device_rows; i++) { near_try(&n, sim_device_row[i].name); }
     if (row != NULL) {
         cli_complain("--device: %s: %.12g (allowed %.12g..%.12g%s%s): choose a value in that range",
-            name, value, row->min, row->max, row->unit[0] ? " " : "", row->unit);
+            name, value, row->min, row->max, row->unit[0] ? " " : "", names_unit(row->unit));
     } else {
-        cli_complain("--device: %s: no such value of the device: `exhand %s --params` lists them",
-            name, command);
+        cli_complain("--device: %s: no such value of the device%s: `exhand %s --params` lists them",
+            name, near_text(mean, &n, ""), command);
     }
     return 2;
 }
@@ -44,6 +52,15 @@ int assign_device(struct sim_device *d, const char *command, const char *text)
     double value;
     if (assign_split("device", text, name, &value)) { return 2; }
     return sim_device_set(d, name, value, &row) ? assign_refused(command, name, value, row) : 0;
+}
+
+const char *assign_hint(const char *name, size_t len)
+{
+    for (int i = 0; i < sim_device_rows; i++) {
+        const char *row = sim_device_row[i].name;
+        if (strlen(row) == len && strncmp(row, name, len) == 0) { return row; }
+    }
+    return NULL;
 }
 
 int assign_step(struct sim_device *d, double hand_npm, double hand_nspm)

@@ -5,6 +5,8 @@
 
 #include "sim/device.h"
 
+#include <stddef.h>
+
 #define ASSIGN_NAME_B   32
 #define ASSIGN_GRID_MAX 200 /* columns, rows */
 
@@ -26,5 +28,8 @@ int assign_step(struct sim_device *d, double hand_npm, double hand_nspm);
 
 /* "12x9". 0, or 2 after a line on stderr. */
 int assign_grid(const char *text, int *columns, int *rows);
+
+/* For cli_hint (option.h). */
+const char *assign_hint(const char *name, size_t len);
 
 #endif

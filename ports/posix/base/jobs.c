@@ -2,6 +2,7 @@
 #include "base/jobs.h"
 
 #include "base/ends.h"
+#include "base/lines.h"
 #include "base/option.h"
 #include "base/outpart.h"
 
@@ -83,7 +84,7 @@ static void restore(const struct handlers *h)
 
 static void progress(const struct jobs *j, int done)
 {
-    if (j->label == NULL || !isatty(2)) { return; }
+    if (j->label == NULL || !lines_terminal(2)) { return; }
     fprintf(stderr, "\r%s: %d/%d%s", j->label, done, j->n, done == j->n || interrupted ? "\n" : "");
     fflush(stderr);
 }

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/lines.h"
 
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 int lines_next(FILE *f, char *to, size_t cap_B)
 {
@@ -44,4 +46,10 @@ void lines_plain(char *to, size_t cap_B, const char *from)
         from += len ? len : 1;
     }
     to[n] = '\0';
+}
+
+int lines_terminal(int fd)
+{
+    const char *term = getenv("TERM");
+    return isatty(fd) && !(term && strcmp(term, "dumb") == 0);
 }

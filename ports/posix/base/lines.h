@@ -14,4 +14,7 @@ int lines_next(FILE *f, char *to, size_t cap_B);
  * become \xHH. What does not fit is cut off. */
 void lines_plain(char *to, size_t cap_B, const char *from);
 
+/* Whether it is a terminal that can move its cursor: TERM=dumb can't. */
+int lines_terminal(int fd);
+
 #endif

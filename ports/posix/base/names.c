@@ -95,3 +95,39 @@ void names_faults(char *to, size_t cap_B, uint32_t bits)
 {
     names_bits(to, cap_B, &names_fault, bits);
 }
+
+const char *names_unit(const char *ascii)
+{
+    static const char *const unit[][2] = {{"n", "N"}, {"a", "A"}, {"v", "V"}, {"hz", "Hz"},
+        {"n_per_m", "N/m"}, {"ns_per_m", "Ns/m"}, {"m_per_s", "m/s"}, {"n_per_s", "N/s"},
+        {"n_per_a", "N/A"}, {"per_a", "1/A"}, {"per_m", "1/m"}, {"rad_per_s", "rad/s"},
+        {"percent", "%"}};
+    for (unsigned i = 0; i < LEN(unit); i++) {
+        if (strcmp(ascii, unit[i][0]) == 0) { return unit[i][1]; }
+    }
+    return ascii;
+}
+
+/* What its cause needs to be gone: a new set-up, or power-on (docs/SAFETY.md). */
+#define RESTART \
+    ((uint32_t)(EXH_FAULT_ENCODER | EXH_FAULT_CARD | EXH_FAULT_WATCHDOG | EXH_FAULT_CONFIG))
+
+uint32_t names_restart(uint32_t latched) { return latched & RESTART; }
+
+void names_clear(char to[NAMES_CLEAR_B], uint32_t latched, uint32_t present)
+{
+    const uint32_t stays = present & ~(uint32_t)EXH_FAULT_DEADMAN;
+    char which[NAMES_B];
+    to[0] = '\0';
+    if (latched == 0) { return; }
+    if (names_restart(latched)) {
+        names_faults(which, sizeof which, names_restart(latched));
+        (void)snprintf(to, NAMES_CLEAR_B, "only a new start of the box clears %s", which);
+    } else if (stays) {
+        names_faults(which, sizeof which, stays);
+        (void)snprintf(to, NAMES_CLEAR_B, "first end what causes %s", which);
+    } else {
+        (void)snprintf(
+            to, NAMES_CLEAR_B, "let go of the dead-man switch, hold it again, then command CLEAR");
+    }
+}

@@ -29,4 +29,14 @@ int names_find(const struct names *t, const char *word); /* its number, or -1 */
 void names_bits(char *to, size_t cap_B, const struct names *t, uint32_t bits);
 void names_faults(char *to, size_t cap_B, uint32_t bits);
 
+/* A row's unit as people write it: N/m for n_per_m. CSV headers and files keep the row's. */
+const char *names_unit(const char *ascii);
+
+/* Those of the faults that a new start alone clears. */
+uint32_t names_restart(uint32_t latched);
+
+/* What a person does to clear these faults, of which those in `present` still have their cause. */
+#define NAMES_CLEAR_B (NAMES_B + 64)
+void names_clear(char to[NAMES_CLEAR_B], uint32_t latched, uint32_t present);
+
 #endif

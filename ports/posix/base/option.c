@@ -2,7 +2,12 @@
 #include "base/option.h"
 
 #include "base/lines.h"
+#include "base/near.h"
 
+#include "exhand/board.h"
+#include "exhand/exhand.h"
+
+#include <ctype.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -13,6 +18,8 @@ const char *cli_program = "exhand";
 static const char *command = ""; /* for cli_complain() */
 
 #define LINE_B 8192
+#define SHOWN  60 /* characters of a value that is refused */
+const char *(*cli_hint)(const char *name, size_t len);
 void (*cli_complain_by)(const char *line);
 
 /* Between the program and its command. */
@@ -32,6 +39,22 @@ void cli_complain(const char *format, ...)
     } else {
         fprintf(stderr, "%s\n", plain);
     }
+}
+
+const char *cli_by(const char *option, const char *value)
+{
+    static char text[1100];
+    (void)snprintf(text, sizeof text, "--%s: %.1000s", option, value);
+    return text;
+}
+
+void cli_version(void)
+{
+    printf("exhand %d.%d.%d, record %d, board %d, parameters %d, calibration %d, of the glove "
+           "%d, wire %d\n",
+        EXH_VERSION_MAJOR, EXH_VERSION_MINOR, EXH_VERSION_PATCH, EXH_RECORD_VERSION,
+        EXH_BOARD_VERSION, EXH_PARAMS_VERSION, EXH_CALIB_VERSION, EXH_GLOVE_CAL_VERSION,
+        EXH_WIRE_VERSION);
 }
 
 int cli_finish(int status)
@@ -58,21 +81,63 @@ static void help(const struct cli_command *c, const struct cli_more *more)
     printf("  %-24s %s\n", "--help", "this");
 }
 
-static int bad(const struct cli_command *c, const char *what, const char *why)
+/* What: so many characters of it. */
+static int bad(const struct cli_command *c, const char *what, size_t len, const char *why)
 {
-    cli_complain("%s: %s: `%s%s%s --help` lists the options", what, why, cli_program,
-        blank(c->name), c->name);
+    cli_complain("%.*s: %s: `%s%s%s --help` lists the options", (int)(len < SHOWN ? len : SHOWN),
+        what, why, cli_program, blank(c->name), c->name);
     return 2;
+}
+
+/* A name after the dashes that no option has. */
+static int unknown(
+    const struct cli_command *c, const struct cli_more *more, const char *word, size_t len)
+{
+    const size_t dashes = word[1] == '-' ? 2 : 1;
+    struct near n = near_to(word + dashes, len - dashes);
+    char why[200], mean[NEAR_B];
+    const char *device = NULL;
+    for (int i = 0; i < c->options + more->options; i++) {
+        const char *name = row(c, more, i)->name;
+        near_try(&n, name);
+        if (strcmp(name, "device") == 0 && cli_hint) { device = cli_hint(n.word, n.len); }
+    }
+    (void)snprintf(why, sizeof why, "no such option%s", near_text(mean, &n, "--"));
+    if (device) {
+        (void)snprintf(why, sizeof why, "no such option: give --device %s=VALUE", device);
+    }
+    return bad(c, word, len, why);
+}
+
+/* The operand that is missing, as the usage calls it. */
+static int missing(const struct cli_command *c, int n)
+{
+    const char *at = c->args;
+    for (; n > 0; n--) {
+        at += strcspn(at, " ");
+        at += strspn(at, " ");
+    }
+    return bad(c, at, strcspn(at, " "), "this word is missing");
+}
+
+int cli_number(const char *text, int whole, double *v)
+{
+    const char *digits = text + (text[0] == '-' || text[0] == '+');
+    char *end;
+    if (!isdigit((unsigned char)digits[digits[0] == '.']) || digits[strcspn(digits, "xX")]) {
+        return 0;
+    }
+    *v = whole ? (double)strtoll(text, &end, 10) : strtod(text, &end);
+    return *end == '\0';
 }
 
 static int take_number(const struct cli_option *o, const char *text)
 {
     const int whole = o->kind == CLI_INT;
-    char *end;
-    const double v = whole ? (double)strtoll(text, &end, 10) : strtod(text, &end);
-    if (end == text || *end != '\0' || !(v >= o->min && v <= o->max)) {
-        cli_complain("--%s: %s (allowed %.15g..%.15g): give a %snumber in that range", o->name,
-            text, o->min, o->max, whole ? "whole " : "");
+    double v;
+    if (!cli_number(text, whole, &v) || !(v >= o->min && v <= o->max)) {
+        cli_complain("--%s: %.*s (allowed %.15g..%.15g): give a %snumber in that range", o->name,
+            SHOWN, text[0] ? text : "nothing", o->min, o->max, whole ? "whole " : "");
         return 2;
     }
     if (whole) {
@@ -130,10 +195,12 @@ static int take_word(
         cli_complain("%.*s: a study: `exhand-lab %s` has it (make lab)", (int)len, word, c->name);
         return 2;
     }
-    if (o == NULL) { return bad(c, word, "no such option"); }
-    if (o->kind == CLI_FLAG) { return equals ? bad(c, word, "takes no value") : take(o, NULL); }
+    if (o == NULL) { return unknown(c, more, word, len); }
+    if (o->kind == CLI_FLAG) {
+        return equals ? bad(c, word, strlen(word), "takes no value") : take(o, NULL);
+    }
     if (equals) { return take(o, equals + 1); }
-    if (*i + 1 >= argc) { return bad(c, word, "its value is missing"); }
+    if (*i + 1 >= argc) { return bad(c, word, len, "its value is missing"); }
     *i += 1;
     return take(o, argv[*i]);
 }
@@ -148,16 +215,22 @@ int cli_parse_more(const struct cli_command *c, const struct cli_more *more, int
             help(c, more);
             return 1;
         }
+        if (strcmp(argv[i], "--version") == 0) {
+            cli_version();
+            return 1;
+        }
         if (strncmp(argv[i], "--", 2) == 0) {
             const int err = take_word(c, more, argc, argv, &i);
             if (err) { return err; }
+        } else if (argv[i][0] == '-' && isalpha((unsigned char)argv[i][1])) {
+            return unknown(c, more, argv[i], strlen(argv[i]));
         } else if (n < c->operands) {
             operand[n++] = argv[i];
         } else {
-            return bad(c, argv[i], "one word too many");
+            return bad(c, argv[i][0] ? argv[i] : "\"\"", SHOWN, "one word too many");
         }
     }
-    return n < c->operands ? bad(c, c->args, "a word is missing") : 0;
+    return n < c->operands ? missing(c, n) : 0;
 }
 
 int cli_parse(const struct cli_command *c, int argc, char **argv, const char **operand)

@@ -37,11 +37,24 @@ struct cli_more {
     const char *moved; /* names of options that the lab's program has, blanks between; or NULL */
 };
 
-/* Parses; operands go to operand[]. 0 go on, 1 help was asked for and printed,
+/* Parses; operands go to operand[]. 0 go on, 1 help or the version was asked for and printed,
  * 2 bad usage, said on stderr. */
 int cli_parse(const struct cli_command *c, int argc, char **argv, const char **operand);
 int cli_parse_more(const struct cli_command *c, const struct cli_more *more, int argc, char **argv,
     const char **operand);
+
+/* Decimal digits alone, with a sign, a point and an exponent: nan, inf, 0x10 and blanks are no
+ * numbers. 1, and the number; 0: it is none. */
+int cli_number(const char *text, int whole, double *v);
+
+/* "--OPTION: VALUE", how a message names what it came by; until the next call. */
+const char *cli_by(const char *option, const char *value);
+
+/* The versions of the library and its formats, on standard output. */
+void cli_version(void);
+
+/* The name of a value of the simulated device, if this is one; NULL: nobody knows. */
+extern const char *(*cli_hint)(const char *name, size_t len);
 
 /* Whether a name is in a list with blanks between. */
 int cli_listed(const char *names, const char *name, size_t len);

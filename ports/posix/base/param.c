@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/param.h"
 
+#include "base/names.h"
+#include "base/near.h"
 #include "base/option.h"
 
 #include "exhand/error.h"
@@ -52,14 +54,30 @@ static int stage_all(struct exh_params *p, uint16_t id, int32_t raw)
     return err;
 }
 
+static void no_such(const struct exh_params *p, const char *by, const char *name)
+{
+    struct near near = near_to(name, strlen(name));
+    char mean[NEAR_B];
+    for (uint32_t i = 0; i < exh_signal_count(p->table); i++) {
+        near_try(&near, exh_signal_at(p->table, i, NULL)->name);
+    }
+    cli_complain("%s%s: no such parameter%s: the command's --params lists them", by, name,
+        near_text(mean, &near, ""));
+}
+
 int cli_param_set(struct exh_params *p, const char *name, double value)
+{
+    return cli_param_set_by(p, "", name, value);
+}
+
+int cli_param_set_by(struct exh_params *p, const char *by, const char *name, double value)
 {
     const struct exh_signal *row = cli_signal_find(p->table, name, NULL);
     double scaled;
     int err = -EXH_E_RANGE;
 
     if (row == NULL) {
-        cli_complain("%s: no such parameter: the command's --params lists them", name);
+        no_such(p, by, name);
         return -EXH_E_UNKNOWN;
     }
     scaled = value * (double)(INT64_C(1) << row->frac);
@@ -68,11 +86,11 @@ int cli_param_set(struct exh_params *p, const char *name, double value)
         err = stage_all(p, row->id, (int32_t)scaled);
     }
     if (err == -EXH_E_RANGE) { /* 12 digits: the ends as they are printed are allowed */
-        cli_complain("%s: %.12g (allowed %.12g..%.12g%s%s): choose a value in that range", name,
-            value, cli_signal_value(row, row->min), cli_signal_value(row, row->max),
-            row->unit[0] ? " " : "", row->unit);
+        cli_complain("%s%s: %.12g (allowed %.12g..%.12g%s%s): choose a value in that range", by,
+            name, value, cli_signal_value(row, row->min), cli_signal_value(row, row->max),
+            row->unit[0] ? " " : "", names_unit(row->unit));
     } else if (err < 0) {
-        cli_complain("%s: %.12g: %s", name, value, exh_error_text(err));
+        cli_complain("%s%s: %.12g: %s", by, name, value, exh_error_text(err));
     }
     return err;
 }
@@ -85,8 +103,8 @@ void cli_signal_print(FILE *f, const struct exh_signal_table *t, const int32_t *
         uint16_t instance;
         const struct exh_signal *r = exh_signal_at(t, i, &instance);
         if (instance > 0) { continue; }
-        fprintf(f, "  %-13s %-8s %14.12g  %14.12g .. %-14.12g %-8s %s\n", r->name, r->unit,
-            cli_signal_value(r, raw ? raw[i] : r->dflt), cli_signal_value(r, r->min),
-            cli_signal_value(r, r->max), when[r->when], r->help);
+        fprintf(f, "  %-13s %-8s %14.12g  %14.12g .. %-14.12g %-8s %s\n", r->name,
+            names_unit(r->unit), cli_signal_value(r, raw ? raw[i] : r->dflt),
+            cli_signal_value(r, r->min), cli_signal_value(r, r->max), when[r->when], r->help);
     }
 }

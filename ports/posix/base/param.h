@@ -19,6 +19,9 @@ const struct exh_signal *cli_signal_find(
  * stderr that names the parameter, its range and what to do. */
 int cli_param_set(struct exh_params *p, const char *name, double value);
 
+/* The same; the line begins with the option that it came by: "--set: ". */
+int cli_param_set_by(struct exh_params *p, const char *by, const char *name, double value);
+
 /* Why set-up refused these parameters at this rate, on stderr: of a cut-off, which one, and one
  * that would do. */
 void cli_setup_complain(const struct exh_params *p, double rate_Hz, int err);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/params_file.h"
 
+#include "base/names.h"
 #include "base/option.h"
 #include "base/outfile.h"
 #include "base/outpart.h"
@@ -95,7 +96,7 @@ static void tell_value(
         cli_complain(
             "%s: %s (instance %u): %.12g (allowed %.12g..%.12g%s%s): nothing of it is taken", name,
             r->name, instance, cli_signal_value(r, raw), cli_signal_value(r, r->min),
-            cli_signal_value(r, r->max), r->unit[0] ? " " : "", r->unit);
+            cli_signal_value(r, r->max), r->unit[0] ? " " : "", names_unit(r->unit));
     }
 }
 

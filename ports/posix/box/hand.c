@@ -228,8 +228,8 @@ int bilateral_stage(const struct bilateral_run_cfg *c)
     for (int i = 0; err == 0 && i < c->owns; i++) {
         err = cli_param_set(p, c->own[i].name, c->own[i].value);
     }
-    if (err == 0 && c->k_Npm >= 0) { err = cli_param_set(p, "mat_k", c->k_Npm); }
-    if (err == 0 && c->b_Nspm >= 0) { err = cli_param_set(p, "mat_b", c->b_Nspm); }
+    if (err == 0 && c->k_Npm >= 0) { err = cli_param_set_by(p, "--k: ", "mat_k", c->k_Npm); }
+    if (err == 0 && c->b_Nspm >= 0) { err = cli_param_set_by(p, "--b: ", "mat_b", c->b_Nspm); }
     if (err == 0) { err = run_image(&c->live, p); }
     /* Today is not the day on which that was saved, and what was waived then is not now. */
     if (err == 0 && c->images && c->images->n) {
@@ -241,7 +241,7 @@ int bilateral_stage(const struct bilateral_run_cfg *c)
         err = cli_param_set(p, known[i].name, known[i].value);
     }
     for (int i = 0; err == 0 && i < c->settings; i++) {
-        err = cli_param_set(p, c->setting[i].name, c->setting[i].value);
+        err = cli_param_set_by(p, "--set: ", c->setting[i].name, c->setting[i].value);
     }
     return err ? err : refuse_scale(c);
 }

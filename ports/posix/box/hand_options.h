@@ -51,4 +51,7 @@ void bilateral_print_session(FILE *f, const struct bilateral_run *r, unsigned fi
 /* The run of one speed. */
 struct bilateral_run_cfg bilateral_at_speed(const struct bilateral_options *o, double mps);
 
+/* 2, after a line on stderr that names all poses. */
+int hand_bad_pose(const char *text);
+
 #endif

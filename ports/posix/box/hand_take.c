@@ -3,7 +3,9 @@
  * lists. */
 #include "box/hand_options.h"
 
+#include "base/names.h"
 #include "base/assign.h"
+#include "base/near.h"
 #include "base/option.h"
 #include "base/jobs.h"
 #include "base/param.h"
@@ -108,11 +110,29 @@ int bilateral_take_fingers(void *ctx, const char *text)
                 text);
             return 2;
         }
+        if (mask & hit) {
+            cli_complain("--fingers: %.60s: one comes twice: name each once", text);
+            return 2;
+        }
         mask |= hit;
         at = comma ? comma + 1 : NULL;
     }
     o->run.board.exo.fingers = mask;
     return 0;
+}
+
+int hand_bad_pose(const char *text)
+{
+    struct near n = near_to(text, strlen(text));
+    char mean[NEAR_B], all[512] = "";
+    for (int i = 0; i < sim_poses; i++) {
+        const size_t at = strlen(all);
+        near_try(&n, sim_pose[i].name);
+        (void)snprintf(all + at, sizeof all - at, "%s%s", i ? ", " : "", sim_pose[i].name);
+    }
+    cli_complain(
+        "--pose: %.60s: no such pose%s: give one of %s", text, near_text(mean, &n, ""), all);
+    return 2;
 }
 
 /* The hand where no finger in use bends it. */
@@ -124,11 +144,7 @@ int bilateral_take_pose(void *ctx, const char *text)
         o->run.board.hand.pose = pose;
         return 0;
     }
-    cli_complain("--pose: %s: no such pose:", text);
-    for (int i = 0; i < sim_poses; i++) {
-        fprintf(stderr, "  %-11s %s\n", sim_pose[i].name, sim_pose[i].say);
-    }
-    return 2;
+    return hand_bad_pose(text);
 }
 
 int bilateral_take_setting(void *ctx, const char *text)
@@ -146,7 +162,7 @@ int bilateral_take_setting(void *ctx, const char *text)
         return 2;
     }
     exh_scene_bilateral.defaults();
-    if (cli_param_set(exh_scene_bilateral.params, name, value) < 0) { return 2; }
+    if (cli_param_set_by(exh_scene_bilateral.params, "--set: ", name, value) < 0) { return 2; }
     o->setting[o->settings++] = (struct run_setting){
         cli_signal_find(exh_scene_bilateral.params->table, name, NULL)->name, value};
     return 0;
@@ -186,8 +202,9 @@ static void print_rows(const char *title, const struct sim_device_row *row, int 
 {
     printf("\n%s\n", title);
     for (int i = 0; i < n; i++) {
-        printf("  %-15s %-8s %12.9g  %12.9g .. %-12.9g %-7s %s\n", row[i].name, row[i].unit,
-            row[i].value, row[i].min, row[i].max, row[i].sure, row[i].help);
+        printf("  %-15s %-8s %12.9g  %12.9g .. %-12.9g %-7s %s\n", row[i].name,
+            names_unit(row[i].unit), row[i].value, row[i].min, row[i].max, row[i].sure,
+            row[i].help);
     }
 }
 

@@ -275,6 +275,7 @@ static int read_rows(struct reader *in, struct recording *r, const char *columns
     int err = 0, begun = 0;
     for (in->line = 1; err == 0 && recording_text_next(&in->text, &in->now); in->line++) {
         int header = 0;
+        if (in->text.endless) { return bad(in, 0, "it does not end: give a text of rows"); }
         if (in->now.n == 1 && in->now.field[0][0] == '\0') {
             in->blank++;
             continue;

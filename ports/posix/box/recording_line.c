@@ -5,7 +5,10 @@
 
 static int next_char(struct recording_text *t)
 {
-    return t->at < t->n ? (unsigned char)t->head[t->at++] : getc(t->f);
+    const int c = t->at < t->n ? (unsigned char)t->head[t->at++] : getc(t->f);
+    t->line_B = c == '\n' || c == '\r' ? 0 : t->line_B + 1;
+    t->endless |= t->line_B > RECORDING_LINE_B;
+    return t->endless ? EOF : c;
 }
 
 static void put_back(struct recording_text *t, int c)

@@ -152,7 +152,7 @@ static const struct exh_scene *scene_of(const struct run_cfg *c)
 
 int run_image(const struct run_live *l, struct exh_params *p)
 {
-    return l->image ? params_take(l->name, p, l->image, l->image_B) : 0;
+    return l->image ? params_take(cli_by("load-params", l->name), p, l->image, l->image_B) : 0;
 }
 
 /* 1: the rate is not the controller's own, and that was told. */
@@ -241,11 +241,11 @@ static int set_parameters(const struct run_cfg *c)
     /* Today is not the day on which that was saved, and what was waived then is not now. */
     if (err == 0 && c->images && c->images->n) { err = images_give(c->images, scene_of(c)); }
     if (err == 0 && c->live.gains) {
-        err = cli_param_set(p, "k", c->k_Npm);
-        if (err == 0) { err = cli_param_set(p, "b", c->b_Nspm); }
+        err = cli_param_set_by(p, "--k: ", "k", c->k_Npm);
+        if (err == 0) { err = cli_param_set_by(p, "--b: ", "b", c->b_Nspm); }
     }
     for (int i = 0; err == 0 && i < c->settings; i++) {
-        err = cli_param_set(p, c->setting[i].name, c->setting[i].value);
+        err = cli_param_set_by(p, "--set: ", c->setting[i].name, c->setting[i].value);
     }
     return err;
 }

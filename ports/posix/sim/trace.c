@@ -154,6 +154,10 @@ int sim_trace_read(
     if (f == NULL) { return refuse(t, why, why_B, path, 0, strerror(errno)); }
     while (what == NULL && fgets(line, sizeof line, f) != NULL) {
         number++;
+        if (strchr(line, '\n') == NULL && !feof(f)) {
+            what = "it does not end: give a text of rows";
+            break;
+        }
         what = kind == SIM_TRACE_MS ? take_ms(t, &in, line) : take_csv(t, &in, line);
     }
     bad = ferror(f);

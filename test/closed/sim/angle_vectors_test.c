@@ -19,8 +19,8 @@ static unsigned words(const char *name, uint32_t *word)
     char line[512];
     unsigned n = 0;
     FILE *f;
-    snprintf(line, sizeof line, "%s/numerics-cmsis-q31/%s", root != NULL ? root : "../shared/data",
-        name);
+    snprintf(
+        line, sizeof line, "%s/numerics-cmsis-q31/%s", root != NULL ? root : "$EXH_DATA", name);
     f = fopen(line, "r");
     while (f != NULL && n < VECTORS_MAX && fgets(line, sizeof line, f) != NULL) {
         if (line[0] == '0' && line[1] == 'x') { word[n++] = (uint32_t)strtoul(line, NULL, 16); }

@@ -47,7 +47,7 @@ static void over(struct bilateral_run_cfg c, const char *what)
 
 static void over_recorded(struct bilateral_run_cfg c, const char *file, enum sim_trace_kind kind)
 {
-    const char *data = getenv("EXH_DATA") ? getenv("EXH_DATA") : "../shared/data";
+    const char *data = getenv("EXH_DATA") ? getenv("EXH_DATA") : "$EXH_DATA";
     struct sim_trace trace = {NULL, 0};
     char path[512], why[256];
     snprintf(path, sizeof path, "%s/%s", data, file);

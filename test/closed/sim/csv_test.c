@@ -297,6 +297,9 @@ TEST(ticks_go_on_past_the_wrap)
         CHECK(s.status == 0 && strstr(s.out, row[i].says), "from %s: %d: %s%s", row[i].from,
             s.status, s.out, s.err);
     }
+    said(&s, dir, cli_replay, WORDS("replay", said_path(dir, "b.exh"), "--from", "999999999999"));
+    CHECK(s.status == 2 && strstr(s.err, "--from: 999999999999: ") && strstr(s.err, "ends at tick"),
+        "%d: %s", s.status, s.err);
     said(&s, dir, cli_replay, WORDS("replay", said_path(dir, "b.exh"), "--from", "100"));
     CHECK(s.status == 2 && strstr(s.err, "no keyframe"), "%d: %s", s.status, s.err);
     said_clean(dir);

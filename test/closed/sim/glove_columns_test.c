@@ -329,7 +329,7 @@ static void open_by(const char *command, const char *file)
 /* All recordings of a folder: those that are there. */
 static int open_folder(const char *folder, const char *command)
 {
-    const char *data = getenv("EXH_DATA") ? getenv("EXH_DATA") : "../shared/data";
+    const char *data = getenv("EXH_DATA") ? getenv("EXH_DATA") : "$EXH_DATA";
     char path[512];
     struct dirent *e;
     int files = 0;

@@ -93,6 +93,9 @@ TEST(bad_recordings_are_refused_by_line)
         CHECK(strstr(s.err, row[i].says) != NULL, "%zu: %s", i, s.err);
         CHECK(s.out[0] == '\0', "%zu: %s", i, s.out);
     }
+    said(&s, dir, lab_glove, WORDS("glove", "--csv", "/dev/zero", "--rate", "200"));
+    CHECK(s.status == 2 && strstr(s.err, "/dev/zero: line 1: it does not end"), "%d: %s", s.status,
+        s.err);
     said(&s, dir, lab_glove, WORDS("glove", "--csv", "/nowhere", "--rate", "200"));
     CHECK(s.status == 3 && strstr(s.err, "/nowhere: No such file"), "%s", s.err);
     said_clean(dir);
@@ -202,7 +205,7 @@ TEST(its_own_output_is_an_input)
  * the quantizer's (Q + H)/2, 26 codes of 2^-16 turn, and half a code, of what was recorded. */
 TEST(a_real_recording_comes_through)
 {
-    const char *data = getenv("EXH_DATA") ? getenv("EXH_DATA") : "../shared/data";
+    const char *data = getenv("EXH_DATA") ? getenv("EXH_DATA") : "$EXH_DATA";
     static char in_path[512], in_line[4096], out_line[4096];
     char *dir = said_dir();
     FILE *in, *out;
@@ -278,7 +281,7 @@ TEST(bad_usage_is_refused_by_name)
         {{"--selftest", "--set", "cal_zero=1"}, "give --calibration"},
         {{"--selftest", "--set", "glove_bits=99"}, "glove_bits: 99 (allowed 1..24)"},
         {{"--selftest", "--set", "none=1"}, "none: no such parameter"},
-        {{"--selftest", "--device", "noise=9"}, "noise: 9 (allowed 0..1 v)"},
+        {{"--selftest", "--device", "noise=9"}, "noise: 9 (allowed 0..1 V)"},
         {{"--selftest", "--device", "mass=9"}, "mass: 9 (allowed"},
         {{"--selftest", "--device", "none=9"}, "none: no such value"},
         {{"--selftest", "--device", "rotor=0.0001", "--device", "substep=1e-4"},

@@ -24,7 +24,7 @@ static double cell[ROWS_MAX][COLS_MAX];
  * letter is none, a word that is no number ends its line. The rows, 0 if it is not there. */
 static int read_rows(const char *name, int *cols)
 {
-    const char *data = getenv("EXH_DATA") ? getenv("EXH_DATA") : "../shared/data";
+    const char *data = getenv("EXH_DATA") ? getenv("EXH_DATA") : "$EXH_DATA";
     static char text[1 << 21];
     char path[512];
     size_t n;

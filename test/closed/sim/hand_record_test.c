@@ -210,7 +210,7 @@ static void follow(const char *file, double row_hz, double run_s)
     char path[512];
     double late_m = 0, most_m = 0, least_m = 1, fastest_mps = 0, was_m[SIM_FINGERS] = {0};
     FILE *f;
-    snprintf(path, sizeof path, "%s/%s", dir ? dir : "../shared/data", file);
+    snprintf(path, sizeof path, "%s/%s", dir ? dir : "$EXH_DATA", file);
     f = fopen(path, "rb");
     if (f == NULL) {
         check_note("%s: not here, nothing recorded was tried", path);

@@ -33,7 +33,7 @@ static FILE *open_data(const char *path)
 {
     const char *root = getenv("EXH_DATA");
     char name[512];
-    snprintf(name, sizeof name, "%s/%s", root != NULL ? root : "../shared/data", path);
+    snprintf(name, sizeof name, "%s/%s", root != NULL ? root : "$EXH_DATA", path);
     return fopen(name, "rb");
 }
 

@@ -62,8 +62,42 @@ TEST(a_command_says_where_it_went)
     }
     said(&s, dir, as_exhand, WORDS("exhand", "fault"));
     CHECK(s.status == 2 && strstr(s.err, "fault: no such command"), "%d: %s", s.status, s.err);
+    CHECK(strchr(s.err, '\n') == s.err + strlen(s.err) - 1, "%s", s.err);
     said(&s, dir, as_exhand, WORDS("exhand", "--help"));
     CHECK(s.status == 0 && strstr(s.out, "  drop ") && !strstr(s.out, "  faults "), "%s", s.out);
+    said_clean(dir);
+}
+
+/* What people type first. */
+TEST(help_and_version_wherever_they_are_asked_for)
+{
+    static const struct {
+        const char *word[3], *out, *err;
+        int status;
+    } row[] = {
+        {{"help"}, "  drop ", "", 0},
+        {{"help", "drop"}, "exhand drop [options]", "", 0},
+        {{"help", "advise", "gains"}, "exhand advise gains [options]", "", 0},
+        {{"help", "dorp"}, "", "dorp: no such command: did you mean drop?", 2},
+        {{"--version"}, "exhand ", "", 0},
+        {{"drop", "--version"}, "exhand ", "", 0},
+        {{"--verison"}, "", "--verison: no such command: did you mean --version?", 2},
+        {{"dorp"}, "", "dorp: no such command: did you mean drop?", 2},
+        {{"replya"}, "", "did you mean replay?", 2},
+        {{"zzzzzz"}, "", "zzzzzz: no such command: `exhand help`", 2},
+        {{"replay"}, "", "LOG: this word is missing", 2},
+        {{"drop", "--mass", "1"}, "", "--mass: no such option: give --device mass=VALUE", 2},
+    };
+    static struct said s;
+    const char *dir = said_dir();
+    for (size_t i = 0; i < LEN(row); i++) {
+        const char *const *w = row[i].word;
+        said(&s, dir, as_exhand, WORDS("exhand", w[0], w[1], w[2]));
+        CHECK(s.status == row[i].status && strstr(s.out, row[i].out) && strstr(s.err, row[i].err),
+            "row %zu: %d: %s%s", i, s.status, s.out, s.err);
+        CHECK((s.status == 0) == (s.err[0] == '\0') && (s.status == 0) == (s.out[0] != '\0'),
+            "row %zu: %s%s", i, s.out, s.err);
+    }
     said_clean(dir);
 }
 
@@ -79,5 +113,5 @@ TEST(the_glove_wants_a_mode)
     said_clean(dir);
 }
 
-TEST_MAIN(
-    "lab", an_option_says_where_it_went, a_command_says_where_it_went, the_glove_wants_a_mode);
+TEST_MAIN("lab", an_option_says_where_it_went, a_command_says_where_it_went,
+    help_and_version_wherever_they_are_asked_for, the_glove_wants_a_mode);

@@ -434,7 +434,7 @@ static void recorded(const char *file, enum sim_trace_kind kind, long n, const d
     char path[512], why[600];
     double *sorted;
     FILE *f;
-    snprintf(path, sizeof path, "%s/%s", dir ? dir : "../shared/data", file);
+    snprintf(path, sizeof path, "%s/%s", dir ? dir : "$EXH_DATA", file);
     f = fopen(path, "rb");
     if (f == NULL) {
         check_note("%s: not here, nothing recorded was tried", path);

@@ -73,6 +73,19 @@ TEST(after_a_fault_it_runs_again_by_the_grip_alone)
     }
 }
 
+/* A mass that falls faster than an encoder may turn: its position is lost for good. */
+TEST(what_a_restart_alone_clears_is_said_once)
+{
+    char *dir = said_dir();
+    struct said s;
+    said(&s, dir, cli_run, WORDS("run", "--seconds", "20", "--grip", "--set", "speed_max=0.5"));
+    CHECK(s.status == 0 && strstr(s.out, "encoder"), "%d: %s%s", s.status, s.out, s.err);
+    CHECK(times(s.err, "only a new start of the box clears encoder") == 1, "%s", s.err);
+    said(&s, dir, cli_run, WORDS("run", "--seconds", "20", "--grip", "--let-go", "5"));
+    CHECK(s.status == 0 && times(s.err, "new start") == 0, "%d: %s", s.status, s.err);
+    said_clean(dir);
+}
+
 TEST(an_interrupt_leaves_a_complete_log)
 {
     char *dir = said_dir();
@@ -360,6 +373,10 @@ TEST(what_it_cannot_do_is_named)
             2},
         {{"run", "--log", "/nowhere/at.all"}, "give --seconds, or --pace", 2},
         {{"run", "--slack", "0.1"}, "only with --pace", 2},
+        {{"run", "--fingers", "thumb"}, "--fingers: thumb: goes with --scene bilateral", 2},
+        {{"run", "--speed", "slow"}, "--speed: slow: goes with --scene bilateral", 2},
+        {{"run", "--fingers", "index,thumb,index"}, "one comes twice", 2},
+        {{"run", "--log", "a.exh", "--blackbox", "a.exh"}, "--blackbox: a.exh: the file of", 2},
         {{"run", "--pace", "--slack", "1.1"}, "--slack", 2},
         {{"run", "--pace", "--slack", "0.1", "--gpio", "gpiochip9:estop=4,deadman=5"},
             "not with --gpio", 2},
@@ -401,9 +418,10 @@ TEST(a_full_disk_ends_a_log)
 }
 
 TEST_MAIN("live", each_scene_goes_on_until_its_time_is_over, the_shortest_time_ends,
-    after_a_fault_it_runs_again_by_the_grip_alone, an_interrupt_leaves_a_complete_log,
-    what_goes_by_while_it_is_stopped_is_missed, a_log_that_nobody_takes_stalls_nobody,
-    dumps_of_a_paced_box, a_dump_that_nobody_takes_stalls_nobody, the_line_of_status,
+    after_a_fault_it_runs_again_by_the_grip_alone, what_a_restart_alone_clears_is_said_once,
+    an_interrupt_leaves_a_complete_log, what_goes_by_while_it_is_stopped_is_missed,
+    a_log_that_nobody_takes_stalls_nobody, dumps_of_a_paced_box,
+    a_dump_that_nobody_takes_stalls_nobody, the_line_of_status,
     a_terminal_that_was_halted_stalls_nobody, a_slow_log_is_complete_in_virtual_time,
     it_runs_again_wherever_the_fault_found_the_mass, what_it_cannot_do_is_named,
     a_full_disk_ends_a_log);

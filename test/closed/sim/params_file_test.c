@@ -155,7 +155,7 @@ TEST(what_is_said_of_bad_ones)
     memcpy(image, good, B);
     image[12 + 4 * k_at + 3] = 0x7F;
     seal();
-    refused(2, "k (instance 0): 2082268", "allowed 0..1000000 n_per_m");
+    refused(2, "k (instance 0): 2082268", "allowed 0..1000000 N/m");
     p = fresh(&exh_scene_guarded);
     image_B = (size_t)exh_params_save(p, image, sizeof image);
     {

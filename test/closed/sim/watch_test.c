@@ -40,7 +40,7 @@ static void start(const char *option, const char *value)
     udp_close(&probe);
     CHECK_EQ_I64(udp_open(&from, "127.0.0.1:0", at), 0);
     watcher = said_start(dir, watch,
-        WORDS("watch", "--listen", at, "--seconds", "8", "--csv", said_path(dir, "w.csv"), option,
+        WORDS("watch", "--listen", at, "--seconds", "30", "--csv", said_path(dir, "w.csv"), option,
             value));
     for (int i = 0; i < 400 && said_size(said_path(dir, "w.csv.part")) < 0; i++) { pause_ms(10); }
     pause_ms(50);
@@ -275,18 +275,16 @@ static int count(const char *text, const char *part)
 TEST(a_terminal_is_drawn_over)
 {
     static char text[262144];
-    const char *log;
     FILE *f;
     uint8_t byte[STREAM_DATA_B];
     size_t n;
     if (terminal_open(&tty) < 0) { return; }
     dir = said_dir();
-    log = a_log("4");
+    f = fopen(a_log("4"), "rb");
     watch = watch_on_terminal;
     start("--signals", "q,state");
     watch = cli_watch;
     text[0] = '\0';
-    f = fopen(log, "rb");
     CHECK(f != NULL, "no log");
     while ((n = fread(byte, 1, sizeof byte, f)) ==
            sizeof byte) { /* but its last bytes: it falls silent */
@@ -324,13 +322,13 @@ TEST(what_there_is_none_of_leaves_its_place_empty)
     size_t empty;
     if (terminal_open(&tty) < 0) { return; }
     dir = said_dir();
-    log = a_log_of_a_hand("100"); /* before it watches for some seconds */
+    log = a_log_of_a_hand("100"); /* first: a terminal that nobody reads holds the watcher up */
     watch = watch_on_terminal;
     start("--signals", "d,c");
     watch = cli_watch;
     text[0] = '\0';
     send_file(log, 0);
-    for (int i = 0; i < 500 && strstr(text, "c[1] ") == NULL; i++) {
+    for (int i = 0; i < 3000 && strstr(text, "c[1] ") == NULL; i++) { /* a busy machine */
         pause_ms(10);
         terminal_read(&tty, text, sizeof text);
     }
@@ -341,6 +339,45 @@ TEST(what_there_is_none_of_leaves_its_place_empty)
     empty = strspn(row + 6, " ");
     CHECK(empty >= 34 && row[6 + empty] == '\033', "%.80s", row);
     terminal_close(&tty);
+    said_clean(dir);
+}
+
+/* Of a box that was let go: what a person does next. On a terminal that can't be drawn on, as
+ * lines; without colour where NO_COLOR asks for none. */
+TEST(how_to_clear_is_told)
+{
+    static char text[262144];
+    char log[64];
+    dir = said_dir();
+    snprintf(log, sizeof log, "%s/a.exh", dir);
+    said(&s, dir, cli_run, WORDS("run", "--seconds", "3", "--let-go", "1", "--log", log));
+    start("--seconds", "60");
+    send_file(log, 0);
+    end();
+    CHECK(strstr(s.out, "to clear: let go of the dead-man switch, hold it again, then command") &&
+              count(s.out, "to clear: ") == 1,
+        "%s", s.out);
+    for (int plain = 0; plain < 3; plain++) {
+        if (terminal_open(&tty) < 0) { break; }
+        setenv("TERM", plain == 2 ? "dumb" : "xterm", 1);
+        if (plain == 1) { setenv("NO_COLOR", "1", 1); }
+        watch = watch_on_terminal;
+        start("--seconds", "60");
+        watch = cli_watch;
+        unsetenv("NO_COLOR");
+        text[0] = '\0';
+        send_file(log, 0);
+        for (int i = 0; i < 3000 && strstr(text, "hold it again, then") == NULL; i++) {
+            pause_ms(10);
+            terminal_read(&tty, text, sizeof text);
+        }
+        kill(watcher, SIGINT);
+        end();
+        CHECK(strstr(text, "hold it again, then command CLEAR"), "%d: %s", plain, text);
+        CHECK((count(text, "\033[7m") > 0) == (plain == 0), "%d: colour", plain);
+        CHECK((strchr(text, '\033') != NULL) == (plain < 2), "%d: drawn", plain);
+        terminal_close(&tty);
+    }
     said_clean(dir);
 }
 
@@ -396,7 +433,7 @@ TEST(bad_usage)
     said_clean(dir);
 }
 
-TEST_MAIN("watch", samples_are_the_logs_values, lost_pieces_are_told,
+TEST_MAIN("watch", samples_are_the_logs_values, how_to_clear_is_told, lost_pieces_are_told,
     strangers_change_nothing_and_late_is_early_enough, a_picture_is_drawn,
     what_there_is_none_of_is_left_out, what_there_is_none_of_leaves_its_place_empty,
     a_terminal_is_drawn_over, silence_is_told_with_its_age, another_table_is_refused_by_name,

@@ -106,6 +106,11 @@ static int refuse(struct drop_options *o)
         o->rate_Hz[1] = ORIGINAL_BOX_HZ;
         o->rates = 2;
     }
+    if (o->plane && is.readings) {
+        cli_complain("--readings: of the table's runs: leave out --sweep, --border-check, "
+                     "--friction");
+        return 2;
+    }
     if ((is.grid && !is.sweep && !is.check) || (is.shard && !is.sweep)) {
         cli_complain("--grid and --shard: only with --sweep, --grid with --border-check too");
         return 2;

@@ -5,6 +5,8 @@
 #include "base/jobs.h"
 #include "base/option.h"
 
+#include <inttypes.h>
+
 int cli_faults(int argc, char **argv)
 {
     int64_t times = 0, seed = 1, rate_Hz = 0, run = -1, parallel = jobs_cores();
@@ -30,6 +32,19 @@ int cli_faults(int argc, char **argv)
         option, (int)(sizeof option / sizeof option[0]), 0};
     err = cli_parse(&c, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }
+    if (states + (times > 0) + (out != NULL) > 1) {
+        cli_complain("--times, --states, --out: each instead of the table: give one of them");
+        return 2;
+    }
+    if (run >= 0 && times == 0) {
+        cli_complain("--run: %" PRId64 ": goes with --times, of which it is one", run);
+        return 2;
+    }
+    if (rate_Hz && (states || times || out)) {
+        cli_complain(
+            "--rate: %" PRId64 ": of the table: leave out --times, --states, --out", rate_Hz);
+        return 2;
+    }
     if (states) { return faults_states(stdout); }
     if (times) {
         return faults_random(stdout, (int)times, (uint64_t)seed, (int)run, (int)parallel);

@@ -57,7 +57,7 @@ fi
 
 if command -v sbatch >/dev/null && command -v slurmctld >/dev/null && [ "$(id -u)" = 0 ]; then
     test/walk/sweep/slurm.sh "$dir/slurm.d" sbatch --wait --array=1-3 \
-        -o "$PWD/$dir/slurm-%a.txt" examples/sweep/sweep.sbatch "$dir/slurm" $map \
+        -o "$PWD/$dir/slurm-%a.txt" examples/sweep/sweep.sbatch "$dir/slurm" 3 $map \
         >"$dir/slurm.txt" 2>&1
     build/posix/exhand-lab drop --sweep $map --out "$dir/slurm" >>"$dir/slurm.txt" 2>&1
     same "Slurm, an array of three tasks" slurm

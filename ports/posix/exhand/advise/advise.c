@@ -132,7 +132,7 @@ int advise_command(int argc, char **argv, const struct gains_study *study)
         {"d-lim", CLI_REAL, &a.d_lim_mm, -200, -0.1, "MM", "judge this one: exit 1 if too small"},
         {"ray", CLI_REAL, &a.ray_mm, 0.1, 1900, "MM", "judge this one: exit 1 if too short"},
     };
-    const struct cli_command c = {"advise", "freeze [options]",
+    const struct cli_command c = {"advise", "freeze|gains [options]",
         "How far before contact q_lim must be frozen (d_lim), and how far the world must look "
         "(ray),\n"
         "so that no wall is late: |d_lim| >= v*(T + lag) + noise, ray >= |d_lim| + v*(T + age) + "

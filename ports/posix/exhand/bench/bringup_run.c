@@ -251,7 +251,7 @@ static int set_parameters(const char *boot)
         double value;
         int err;
         if (assign_split("boot", word, name, &value)) { return -EXH_E_RANGE; }
-        err = cli_param_set(exh_scene_bringup.params, name, value);
+        err = cli_param_set_by(exh_scene_bringup.params, "--boot: ", name, value);
         if (err < 0) { return err; }
     }
     return 0;

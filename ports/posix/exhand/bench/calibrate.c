@@ -94,7 +94,7 @@ static int take_setting(void *ctx, const char *text)
         return 2;
     }
     exh_scene_calibrate.defaults();
-    if (cli_param_set(exh_scene_calibrate.params, name, value) < 0) { return 2; }
+    if (cli_param_set_by(exh_scene_calibrate.params, "--set: ", name, value) < 0) { return 2; }
     o->setting[o->settings++] = (struct calibration_setting){
         cli_signal_find(exh_scene_calibrate.params->table, name, NULL)->name, value};
     return 0;

@@ -72,7 +72,8 @@ static void print_us(double us)
     printf("%.*s", (int)n, text);
 }
 
-static void print_sums(const struct sums *sum, const struct samples *s)
+/* The exit status. */
+static int print_sums(const struct sums *sum, const struct samples *s)
 {
     printf("net=%" PRId64 " edges=%" PRIu64 " illegal=%" PRIu64 " min_gap_us=", sum->net,
         sum->edges, sum->illegal);
@@ -96,6 +97,7 @@ static void print_sums(const struct sums *sum, const struct samples *s)
                      "slowly, or broken; net is not to be trusted",
             sum->illegal, sum->changes);
     }
+    return sum->illegal > 0;
 }
 
 static int decode(const struct samples_opt *opt, const struct exh_quad_mode *mode)
@@ -113,7 +115,7 @@ static int decode(const struct samples_opt *opt, const struct exh_quad_mode *mod
             take_counts(&sum, &lines, opt->index < 0 ? NULL : &index, mode, &c);
         }
     } while (err == 0 && c.n > 0);
-    if (err == 0) { print_sums(&sum, &s); }
+    if (err == 0) { err = print_sums(&sum, &s); }
     samples_close(&s);
     return err;
 }
@@ -172,8 +174,8 @@ int cli_quad(int argc, char **argv)
     const struct cli_command c = {"quad", "--raw|--csv FILE [options]",
         "Decodes the two lines of an encoder and prints one line: net count, edges (legal changes\n"
         "of either line, whatever counts), illegal steps (both lines at once), and the shortest\n"
-        "time between two changes, - if there were no two. Illegal steps are a finding: exit\n"
-        "status 0, and a word on standard error. A sigrok session holds samples in bytes:\n"
+        "time between two changes, - if there were no two. Illegal steps: exit status 1, and\n"
+        "a line on standard error. A sigrok session holds samples in bytes:\n"
         "  unzip -p FILE.sr 'logic-1*' | exhand quad --raw --rate 1e6 --a 1 --b 2\n"
         "CSV may begin with a line of names; lines that begin with # or ; are left out.\n"
         "With --position: rows, net count, lowest, highest, most counts from row to row, share of\n"

@@ -2,6 +2,7 @@
 /* --link: what the network between controller and world is like. */
 #include "contact/bilateral.h"
 
+#include "base/names.h"
 #include "base/option.h"
 
 #include <stdlib.h>
@@ -35,10 +36,14 @@ static int take_trace(struct bilateral_options *o, const char *path)
 static int take_value(struct bilateral_options *o, const char *name, const char *text)
 {
     const struct sim_device_row *row = NULL;
-    char *end;
-    const double v = strtod(text, &end);
+    double v;
     int err = 0;
-    if (end == text || *end != '\0') { return bad(name, "give NAME=VALUE"); }
+    if (!cli_number(text, 0, &v)) {
+        cli_complain("--link: %s=%.60s: the value is no number: give it in plain digits, without "
+                     "a unit",
+            name, text);
+        return 2;
+    }
     for (int w = 0; w < SIM_LINK_WAYS; w++) {
         struct sim_link_par *p = &o->run.board.line.way[w];
         err |= sim_link_set(p, name, v, &row);
@@ -48,7 +53,7 @@ static int take_value(struct bilateral_options *o, const char *name, const char 
     }
     if (err && row) {
         cli_complain("--link: %s: %.12g (allowed %.12g..%.12g%s%s): choose a value in that range",
-            name, v, row->min, row->max, row->unit[0] ? " " : "", row->unit);
+            name, v, row->min, row->max, row->unit[0] ? " " : "", names_unit(row->unit));
     }
     return err == 0 ? 0 : row ? 2 : bad(name, "no such property of a link: --params lists them");
 }

@@ -2,6 +2,7 @@
 /* exhand drop: options with a syntax of their own, and what --params lists. */
 #include "drop/options.h"
 
+#include "base/names.h"
 #include "base/assign.h"
 #include "base/param.h"
 #include "base/scenes.h"
@@ -34,7 +35,8 @@ int drop_take_rates(void *ctx, const char *text)
     for (;;) {
         char *end;
         const double v = strtod(at, &end);
-        if (end == at || !(v >= 1 && v <= 20000) || v != (double)(long)v) {
+        if (end == at || *at == ' ' || !(v >= 1 && v <= 20000) || v != (double)(long)v ||
+            strpbrk(at, "xX")) {
             return bad_rates(text, "not a list of rates");
         }
         for (int i = 0; i < o->rates; i++) {
@@ -78,11 +80,12 @@ int drop_take_setting(void *ctx, const char *text)
         return 2;
     }
     if (strcmp(name, "k") == 0 || strcmp(name, "b") == 0) {
-        cli_complain("--set: %s: give --%s VALUE: the gains belong to the table", text, name);
+        cli_complain(
+            "--set: %.60s: give --%s %.12g: k and b are options of their own", text, name, value);
         return 2;
     }
     exh_scene_guarded.defaults(); /* knows all that drop knows */
-    if (cli_param_set(exh_scene_guarded.params, name, value) < 0) { return 2; }
+    if (cli_param_set_by(exh_scene_guarded.params, "--set: ", name, value) < 0) { return 2; }
     o->setting[o->settings++] = (struct run_setting){
         cli_signal_find(exh_scene_guarded.params->table, name, NULL)->name, value};
     return 0;
@@ -104,7 +107,7 @@ void drop_print_params(const struct exh_scene *scene)
         "scene\n");
     for (int i = 0; i < sim_device_rows; i++) {
         const struct sim_device_row *r = &sim_device_row[i];
-        printf("  %-13s %-8s %14.12g  %14.12g .. %-14.12g %-8s %s\n", r->name, r->unit, r->value,
-            r->min, r->max, r->sure, r->help);
+        printf("  %-13s %-8s %14.12g  %14.12g .. %-14.12g %-8s %s\n", r->name, names_unit(r->unit),
+            r->value, r->min, r->max, r->sure, r->help);
     }
 }

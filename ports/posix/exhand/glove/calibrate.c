@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* exhand calibrate --glove: a user's calibration of the glove, from poses. */
+#include "base/names.h"
 #include "base/cli.h"
 
 #include "base/assign.h"
@@ -70,8 +71,8 @@ static void print_params(void)
     printf("The simulated glove and its card (--device NAME=VALUE)\n");
     for (int i = 0; i < sim_glove_rows; i++) {
         const struct sim_device_row *r = &sim_glove_row[i];
-        printf("  %-13s %-8s %12.7g  %12.7g .. %-12.7g %-8s %s\n", r->name, r->unit, r->value,
-            r->min, r->max, r->sure, r->help);
+        printf("  %-13s %-8s %12.7g  %12.7g .. %-12.7g %-8s %s\n", r->name, names_unit(r->unit),
+            r->value, r->min, r->max, r->sure, r->help);
     }
     printf("\nIts sensors, in the order of the codes (--wrong SENSOR=open, short or stuck)\n");
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {

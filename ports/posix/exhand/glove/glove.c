@@ -2,6 +2,7 @@
 /* exhand glove: recordings as stable angles, logs, a stock glove. */
 #include "glove/modes.h"
 
+#include "base/names.h"
 #include "base/assign.h"
 #include "base/cli.h"
 #include "glove_tty.h"
@@ -64,8 +65,8 @@ static void print_params(void)
         "motor's)\n");
     for (int i = 0; i < sim_glove_rows; i++) {
         const struct sim_device_row *r = &sim_glove_row[i];
-        printf("  %-13s %-8s %14.12g  %14.12g .. %-14.12g %-8s %s\n", r->name, r->unit, r->value,
-            r->min, r->max, r->sure, r->help);
+        printf("  %-13s %-8s %14.12g  %14.12g .. %-14.12g %-8s %s\n", r->name, names_unit(r->unit),
+            r->value, r->min, r->max, r->sure, r->help);
     }
 }
 

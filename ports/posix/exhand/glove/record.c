@@ -8,6 +8,7 @@
 #include "base/outfile.h"
 #include "base/outlog.h"
 #include "base/param.h"
+#include "box/hand_options.h"
 
 #include "exhand/run/log.h"
 #include "exhand/run/loop.h"
@@ -37,14 +38,8 @@ static int find_motion(const struct glove_options *o, struct sim_operator_par *h
             if (hand->pose >= 0) { return 0; }
         }
     }
-    if (hand->pose < 0) {
-        cli_complain("--pose: %s: no such pose:", o->pose);
-        for (int i = 0; i < sim_poses; i++) {
-            fprintf(stderr, "  %-11s %s\n", sim_pose[i].name, sim_pose[i].say);
-        }
-    } else {
-        cli_complain("--does: %s: a hand can rest, poses, grasp or wave", o->does);
-    }
+    if (hand->pose < 0) { return hand_bad_pose(o->pose); }
+    cli_complain("--does: %.60s: a hand can rest, poses, grasp or wave", o->does);
     return 2;
 }
 

@@ -53,12 +53,14 @@ static int take_set(void *ctx, const char *text)
 static int take_fingers(void *ctx, const char *text)
 {
     struct live_options *o = ctx;
+    o->fingers = text;
     return bilateral_take_fingers(&o->hand, text);
 }
 
 static int take_speed(void *ctx, const char *text)
 {
     struct live_options *o = ctx;
+    o->speed = text;
     return bilateral_take_speeds(&o->hand, text);
 }
 
@@ -68,7 +70,7 @@ static int settle(struct live_options *o, const struct exh_scene *sc, int i)
     char name[ASSIGN_NAME_B];
     double value;
     if (assign_split("set", o->set[i], name, &value)) { return 2; }
-    if (cli_param_set(sc->params, name, value) < 0) { return 2; }
+    if (cli_param_set_by(sc->params, "--set: ", name, value) < 0) { return 2; }
     o->setting[i] =
         (struct run_setting){cli_signal_find(sc->params->table, name, NULL)->name, value};
     return 0;
@@ -78,15 +80,19 @@ static int settle(struct live_options *o, const struct exh_scene *sc, int i)
 static int hand_of(struct live_options *o, const struct exh_scene *sc)
 {
     struct sim_exo_par *const exo = &o->hand.run.board.exo;
-    const char *const given = o->udp ? "udp" : o->record ? "record" : NULL;
+    const struct {
+        const char *name, *value;
+    } own[] = {
+        {"udp", o->udp}, {"record", o->record}, {"fingers", o->fingers}, {"speed", o->speed}};
     int err = 0;
     if (o->hand.columns && o->record == NULL) {
         cli_complain("--record-columns: goes with --record");
         return 2;
     }
-    if (given && sc != &exh_scene_bilateral) {
-        cli_complain("--%s: %s: goes with --scene bilateral, not %s", given,
-            o->udp ? o->udp : o->record, o->scene);
+    for (size_t i = 0; sc != &exh_scene_bilateral && i < sizeof own / sizeof own[0]; i++) {
+        if (own[i].value == NULL) { continue; }
+        cli_complain("--%s: %.60s: goes with --scene bilateral, not %s", own[i].name, own[i].value,
+            o->scene);
         return 2;
     }
     if (o->slack_s < 0) { o->slack_s = o->udp && !o->gpio.given ? WORLD_LINE_SLACK_S : 0; }
@@ -143,6 +149,10 @@ static int prepare(struct live_options *o, const struct exh_scene *sc)
     if (err == 0 && o->seconds * o->rate_Hz >= 4294967295.0) {
         cli_complain("--seconds: %.6g: at %.6g Hz %.0f at most, or leave it out", o->seconds,
             o->rate_Hz, 4294967294.0 / o->rate_Hz);
+        err = 2;
+    }
+    if (err == 0 && o->log && o->blackbox && strcmp(o->log, o->blackbox) == 0) {
+        cli_complain("--blackbox: %s: the file of --log: choose another", o->blackbox);
         err = 2;
     }
     if (err == 0 && o->modbus == NULL && (o->save || o->remote)) {

@@ -26,6 +26,7 @@ struct live_options {
     const char *scene, *params, *log, *blackbox, *modbus, *save, *glove, *glove_image, *udp,
         *record;
     struct live_log_size log_size;
+    const char *fingers, *speed; /* as they were given; NULL: they were not */
     double rate_Hz, seconds, let_go_s;
     double slack_s; /* < 0: not given */
     double record_Hz;

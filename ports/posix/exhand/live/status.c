@@ -3,7 +3,9 @@
 #include "live/live.h"
 
 #include "gpio.h"
+#include "base/lines.h"
 #include "base/names.h"
+#include "base/option.h"
 #include "base/param.h"
 #include "base/messages.h"
 #include "box/world_line.h"
@@ -40,7 +42,7 @@ void live_status_start(const struct exh_scene *sc, struct exh_scene_board board)
     status.sc = sc;
     status.T = board.T;
     status.every = board.T.den / board.T.num / 50 + 1;
-    status.on = isatty(STDERR_FILENO);
+    status.on = lines_terminal(STDERR_FILENO);
 }
 
 /* In SI, of the finger; 0 where the scene has no such signal. */
@@ -95,10 +97,22 @@ static void show(void)
     words_show(line);
 }
 
+/* Once of each: a grip that is tried again and again changes nothing. */
+static void say_restart(uint32_t faults)
+{
+    const uint32_t fresh = names_restart(faults) & ~status.faults;
+    char clear[NAMES_CLEAR_B];
+    if (fresh == 0) { return; }
+    names_clear(clear, fresh, fresh);
+    cli_complain(
+        "%.3f s: %s: end it by Ctrl-C, look for the cause, and start it again", seconds(), clear);
+}
+
 void live_status_after(uint32_t tick, const struct exh_scene_in *in)
 {
     status.ticks++;
     status.missed += in->missed;
+    say_restart(status.sc->safety->faults);
     status.faults |= status.sc->safety->faults;
     if (status.on && tick % status.every == 0) { show(); }
 }

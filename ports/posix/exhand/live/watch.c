@@ -2,6 +2,7 @@
 /* exhand watch: what a running box does, as it does it. */
 #include "live/watch.h"
 
+#include "base/lines.h"
 #include "base/cli.h"
 #include "base/names.h"
 #include "base/none.h"
@@ -256,7 +257,7 @@ int cli_watch(int argc, char **argv)
     w.last_s = 10;
     err = cli_parse(&c, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }
-    w.tty = isatty(STDOUT_FILENO);
+    w.tty = lines_terminal(STDOUT_FILENO);
     if (w.trace && w.hz == 0) { w.hz = 50; }
     if (w.hz == 0) { w.hz = 10; }
     err = prepare();

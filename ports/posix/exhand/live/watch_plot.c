@@ -2,6 +2,7 @@
 /* The last seconds of a running box as a picture: a panel a signal, the state below. */
 #include "live/watch.h"
 
+#include "base/names.h"
 #include "base/option.h"
 #include "base/outfile.h"
 #include "base/none.h"
@@ -108,7 +109,7 @@ static void put_panels(FILE *g, const struct watch_box *b, const struct watch_pi
         fprintf(g,
             "set ylabel \"%s%s%s\" noenhanced\nplot $d using 1:%u with steps lc rgb '%s' lw "
             "1.4 notitle\n",
-            name, row->unit[0] ? "\\n" : "", row->unit, i + 3, color[i % PANELS]);
+            name, row->unit[0] ? "\\n" : "", names_unit(row->unit), i + 3, color[i % PANELS]);
         if (i == 0) { fprintf(g, "unset label 1\n"); }
     }
     put_place(g, n, n);

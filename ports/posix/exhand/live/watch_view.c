@@ -70,6 +70,13 @@ static int utf8(void)
     return 0;
 }
 
+/* Reverse video, but where NO_COLOR asks for plain text (no-color.org). */
+static const char *loud(int on)
+{
+    const char *plain = getenv("NO_COLOR");
+    return plain && plain[0] ? "" : on ? "\033[7m" : "\033[0m";
+}
+
 #define LINE_END "\033[K\n" /* the rest of what stood there goes */
 
 static void draw_head(const struct watch_box *b, const char *source)
@@ -85,7 +92,7 @@ static void draw_head(const struct watch_box *b, const char *source)
         (double)b->T.den / b->T.num, (double)b->tick * b->T.num / b->T.den, (unsigned long)b->tick,
         view.ticks_ps, LINE_END);
     if (age_s > 1) {
-        printf("\033[7mSILENT for %.1f s\033[0m%s%s%s", age_s, b->trouble ? ": " : "",
+        printf("%sSILENT for %.1f s%s%s%s%s", loud(1), age_s, loud(0), b->trouble ? ": " : "",
             b->trouble ? b->trouble : "", LINE_END);
     } else {
         printf("age %.2f s   heard %.1f times/s   lost %llu%s", age_s, view.heard_ps,
@@ -95,15 +102,17 @@ static void draw_head(const struct watch_box *b, const char *source)
 
 static void draw_state(const struct watch_box *b)
 {
-    char faults[NAMES_B], present[NAMES_B], limits[NAMES_B];
+    char faults[NAMES_B], present[NAMES_B], limits[NAMES_B], clear[NAMES_CLEAR_B];
+    names_clear(clear, b->faults, b->present);
     names_faults(faults, sizeof faults, b->faults);
     names_faults(present, sizeof present, b->present);
     names_bits(limits, sizeof limits, &names_limit, b->limits);
     printf("state   %s: %s%s", names_word(&names_state, b->state),
         names_says(&names_state, b->state), LINE_END);
-    printf("faults  %s%s   now %s%s", b->faults ? "\033[7m" : "", faults,
-        b->faults ? "\033[0m" : "", present);
-    printf("%slimits  %s%s", LINE_END, limits, LINE_END);
+    printf("faults  %s%s%s   now %s%s", b->faults ? loud(1) : "", faults, b->faults ? loud(0) : "",
+        present, LINE_END);
+    if (clear[0]) { printf("clear   %s%s", clear, LINE_END); }
+    printf("limits  %s%s", limits, LINE_END);
 }
 
 void watch_view_draw(const struct watch_box *b, const struct watch_pick *p, const char *source)
@@ -120,7 +129,8 @@ void watch_view_draw(const struct watch_box *b, const struct watch_pick *p, cons
         if (none_is(row, b->value[p->index[i]])) {
             printf("  %-14s %14s %-10s ", name, "", "");
         } else {
-            printf("  %-14s %14.6g %-10s ", name, none_or(row, b->value[p->index[i]]), row->unit);
+            printf("  %-14s %14.6g %-10s ", name, none_or(row, b->value[p->index[i]]),
+                names_unit(row->unit));
         }
         if (sparks) { spark(i); }
         printf(LINE_END);
@@ -129,10 +139,21 @@ void watch_view_draw(const struct watch_box *b, const struct watch_pick *p, cons
     fflush(stdout);
 }
 
+/* A line of its own, when what there is to do changes. */
+static void say_clear(const struct watch_box *b)
+{
+    static char said[NAMES_CLEAR_B];
+    char clear[NAMES_CLEAR_B];
+    names_clear(clear, b->faults, b->present);
+    if (clear[0] && strcmp(clear, said) != 0) { printf("to clear: %s\n", clear); }
+    memcpy(said, clear, sizeof said);
+}
+
 void watch_view_line(const struct watch_box *b, const struct watch_pick *p)
 {
     char text[NAMES_B];
     names_faults(text, sizeof text, b->faults);
+    say_clear(b);
     printf("%.4f s  %s  faults %s", (double)b->tick * b->T.num / b->T.den,
         names_word(&names_state, b->state), text);
     names_bits(text, sizeof text, &names_limit, b->limits);
@@ -144,7 +165,7 @@ void watch_view_line(const struct watch_box *b, const struct watch_pick *p)
             printf("  %s -", name);
         } else {
             printf("  %s %.6g%s%s", name, none_or(row, b->value[p->index[i]]),
-                row->unit[0] ? " " : "", row->unit);
+                row->unit[0] ? " " : "", names_unit(row->unit));
         }
     }
     printf("\n");

@@ -22,8 +22,9 @@ struct replay {
     struct logfile log;
     struct exh_scene_in in; /* what crosses inward at the coming tick */
     struct exh_drive_out out;
-    int running;         /* a start (tick 0 or a keyframe) was reached */
-    uint64_t from;       /* asked for; 0: from the beginning */
+    int running; /* a start (tick 0 or a keyframe) was reached */
+    uint64_t from;
+    uint64_t last_tick; /* of the last frame in the file */ /* asked for; 0: from the beginning */
     int32_t faults_at;   /* index of the signal; < 0: the scene has none */
     uint32_t faults;     /* of the last frame */
     uint32_t fault;      /* the first to come, */
@@ -229,11 +230,13 @@ static int find_from(struct replay *p)
     logfile_place(&p->log, &here);
     while (logfile_next(&p->log, &r)) {
         if (r.type == EXH_RECORD_KEYFRAME) {
+            p->last_tick = p->log.tick;
             if (p->log.tick > p->from) { break; }
             p->start = p->log.tick;
             found = here;
             is_found = 1;
         }
+        if (r.type == EXH_RECORD_FRAME) { p->last_tick = p->log.tick; }
         logfile_place(&p->log, &here);
     }
     if (is_found) { logfile_go(&p->log, &found); }
@@ -265,6 +268,11 @@ static int replay(struct replay *p)
     if (err == 0 && p->from != 0 && !find_from(p)) {
         cli_complain("%s: no keyframe at or before tick %" PRIu64 ": choose a later --from",
             p->log.path, p->from);
+        return 2;
+    }
+    if (err == 0 && p->from > p->last_tick) {
+        cli_complain("--from: %" PRIu64 ": %s ends at tick %" PRIu64 ": choose an earlier one",
+            p->from, p->log.path, p->last_tick);
         return 2;
     }
     while (err == 0 && logfile_next(&p->log, &r)) {

@@ -255,7 +255,7 @@ static void said_param(struct walk *w, const struct exh_event *e)
     if (i >= 0) {
         const struct exh_signal *row = exh_signal_at(p->table, (uint32_t)i, NULL);
         timeline_say(&w->notes, w->log->tick, "parameter %s, instance %u: %.9g %s", row->name,
-            e->instance, cli_signal_value(row, e->value), row->unit);
+            e->instance, cli_signal_value(row, e->value), names_unit(row->unit));
     }
 }
 
