@@ -146,6 +146,8 @@ class Writer:
                                   check=False).returncode == 0
         if name == "stability.csv":  # grows, and its reader drops a last row that was cut off
             data = data[:data.rfind(b"\n") + 1]
+        if self.kind == "rows" and name.endswith(".gp"):  # of fewer runs; a picture ends it
+            return data.endswith(b".gp'\n")
         return self.kind == "rows" and name.endswith(".csv") and whole_rows(data)
 
     def is_final(self, name):
