@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""kill.py [--kills N] [--seconds S] [--only NAME] [--seed N] EXHAND LAB WORLD: no file is lost.
+"""kill.py [options] EXHAND LAB WORLD: no file is lost.
 
 Runs every writer of the host programs and ends it at random moments by KILL, INT and TERM in
 turn, then with too little room: by a limit of a file's size, and on a full disk where a small one
@@ -146,6 +146,8 @@ class Writer:
                                   check=False).returncode == 0
         if name == "stability.csv":  # grows, and its reader drops a last row that was cut off
             data = data[:data.rfind(b"\n") + 1]
+        if self.kind == "rows" and name.endswith(".gp"):  # of fewer runs; a picture ends it
+            return data.endswith(b".gp'\n")
         return self.kind == "rows" and name.endswith(".csv") and whole_rows(data)
 
     def is_final(self, name):
@@ -360,6 +362,7 @@ def main():
     p.add_argument("--kills", type=int, default=200)
     p.add_argument("--seconds", type=float, default=1e9, help="of all, about")
     p.add_argument("--only", default="")
+    p.add_argument("--without", default="")
     p.add_argument("--seed", type=int, default=1)
     p.add_argument("exhand")
     p.add_argument("lab")
@@ -368,7 +371,7 @@ def main():
     given = {n: os.path.abspath(getattr(opt, n)) for n in ("exhand", "lab", "world")}
     given["scene"] = os.path.normpath(SCENE)
     rng = random.Random(opt.seed)
-    rows = [r for r in WRITERS if opt.only in ("", r[0])]
+    rows = [r for r in WRITERS if opt.only in ("", r[0]) and r[0] != opt.without]
     watched = None
     with tempfile.TemporaryDirectory(prefix="exhand-kill-") as tmp:
         given["tmp"] = tmp
