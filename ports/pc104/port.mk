@@ -23,7 +23,8 @@ PORT_SRC       = $(pc104_parts:%=ports/pc104/%) $(cards_$(CARDS)) \
                  $(if $(SCENE_ROM),ports/pc104/scene_rom.c ports/pc104/link_none.c, \
                    ports/pc104/scene_full.c ports/pc104/fifo.c ports/pc104/module.c \
                    ports/pc104/$(if $(filter no,$(MODBUS)),modbus_none.c,modbus.c) \
-                   $(addprefix lib/src/run/,log.c stream.c crc_table.c) $(pc104_link:%=ports/pc104/%) \
+                   $(addprefix lib/src/run/,log.c stream.c crc_table.c) \
+                   $(pc104_link:%=ports/pc104/%) \
                    $(if $(SCENE_BOX_B),ports/pc104/dump.c \
                    lib/src/run/blackbox.c,ports/pc104/dump_none.c))
 PORT_HOSTFLAGS := -Iports

@@ -33,17 +33,16 @@ int exh_table_invert(struct exh_knot *dst, const struct exh_knot *src, unsigned 
 
 int32_t exh_table_at(struct exh_table t, int32_t x)
 {
-    const unsigned last = t.n > 2u ? t.n - 1u : 1u; /* an n of damaged memory ends somewhere */
+    const unsigned n = (uint8_t)(t.n - 1u) + 1u; /* an n of damaged memory ends somewhere */
+    const struct exh_knot *const last = t.knot + n - 1u;
     const struct exh_knot *k = t.knot;
-    const int32_t in = exh_clamp32(x, k->x, k[last].x);
-    int32_t y;
+    const int32_t in = exh_clamp32(x, k->x, last->x);
     /* By halves, as often for every x: the cost must not depend on the force. */
-    for (unsigned left = last; left > 1;) {
+    for (unsigned left = n; left > 1;) {
         const unsigned half = left / 2;
         k += half & (0u - (unsigned)(in >= k[half].x));
         left -= half;
     }
-    k += in >= k[1].x;
-    y = (k < t.knot + last ? k + 1 : k)->y;
-    return exh_clamp(k->y + exh_gain_mul(k->slope, exh_wrap_diff(in, k->x)), k->y, y);
+    return exh_clamp(
+        k->y + exh_gain_mul(k->slope, exh_wrap_diff(in, k->x)), k->y, k < last ? k[1].y : k->y);
 }

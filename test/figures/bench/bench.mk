@@ -6,9 +6,8 @@
 bench_parts := kernels measure number estimate force path law filter glove hand precontact \
                passivity scene minimal modbus params tick box
 bench_obj := $(bench_parts:%=$(B)/posix/test/figures/bench/%.o)
-bench_scenes := examples/drop/drop.c $(addprefix lib/src/run/,calib_set.c crc_table.c) \
-                examples/glove/cal.c \
-                $(wildcard examples/bilateral/*.c)
+bench_scenes := examples/drop/drop.c lib/src/run/calib_set.c lib/src/run/crc_table.c \
+                examples/glove/cal.c $(wildcard examples/bilateral/*.c)
 bench_bin := $(B)/bench/kernels $(B)/bench/velocity $(B)/bench/speed
 $(B)/posix/test/figures/bench/kernels.o: \
     PORT_HOSTFLAGS += -DBENCH_FLAGS='"-std=c99 -O$(O)$(if $(CFLAGS), $(CFLAGS))"'

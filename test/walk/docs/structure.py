@@ -37,6 +37,8 @@ CIRCLES = {}
 # Symbols of the board's contract, exhand/board.h: a file that calls one calls through the library's
 # interface. Every file may end the program that way, and the board that does so uses every file.
 CONTRACT = re.compile(r"exh_board_\w+|exh_assert_failed")
+# The linker takes it in place of a source of the library: who calls it needs that one, not this.
+STAND_INS = ("lib/src/run/crc_table.c",)
 # What the processor enters at reset and at an interrupt: no need of the source, so no arrow of it.
 ENTRIES = ("ports/pc104/crt0.S", "ports/pc104/vectors.S")
 # Headers of examples that ports may include: (who, which). These files set a scene's own parameters
@@ -138,7 +140,7 @@ def calls(names, paths):
     """Source: the sources in the list that define what it wants, but for the board's contract."""
     homes = {}
     for path in paths:
-        for name in names.get(path, ((), ()))[0]:
+        for name in () if path in STAND_INS else names.get(path, ((), ()))[0]:
             homes.setdefault(name, set()).add(path)
     uses = {}
     for path in paths:
