@@ -327,7 +327,6 @@ TEST(how_to_clear_is_told)
         start("--seconds", "60");
         watch = cli_watch;
         unsetenv("NO_COLOR");
-        setenv("TERM", "xterm", 1); /* for the tests behind this one */
         text[0] = '\0';
         send_file(log, 0);
         for (int i = 0; i < 3000 && strstr(text, "hold it again, then") == NULL; i++) {
