@@ -18,11 +18,12 @@ for t in parallel rsync; do
         { echo "parallel.sh: missing: $t: install by: sudo apt-get install -y parallel rsync" >&2
         exit 3; }
 done
-[ -f "$exhand" ] && [ -x "$exhand" ] || refuse "EXHAND: $exhand: no program: make lab, or set EXHAND"
+[ -f "$exhand" ] && [ -x "$exhand" ] ||
+    refuse "EXHAND: $exhand: no program: make lab, or set EXHAND"
 exhand=$(cd "$(dirname "$exhand")" && pwd)/${exhand##*/}
 mkdir -p "$dir"
 dir=$(cd "$dir" && pwd)
-if [ "$hosts" = : ]; then # SC2016: the shells of parallel expand {}
+if [ "$hosts" = : ]; then
     seq "$n" | parallel --will-cite --quote --retries 3 --resume-failed --joblog "$dir/jobs.tsv" \
         "$exhand" drop --sweep --jobs 1 --shard "{}/$n" --out "$dir" "$@"
 else # There the program and the cells lie in a folder of parallel's own.

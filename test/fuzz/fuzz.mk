@@ -59,6 +59,11 @@ else
 	    -print_final_stats=1 modbus-found
 endif
 
+## Try every option of every command of build/posix/exhand-lab with some twenty bad values each.
+.PHONY: options
+options: $(lab)
+	@JOBS=$(jobs) test/fuzz/options.py $(lab) $(ARGS)
+
 .PHONY: fuzz-corpus
 fuzz-corpus: $(B)/fuzz/plain
 	@$(B)/fuzz/plain --write test/fuzz/corpus

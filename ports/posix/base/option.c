@@ -22,30 +22,58 @@ static const char *command = ""; /* for cli_complain() */
 const char *(*cli_hint)(const char *name, size_t len);
 void (*cli_complain_by)(const char *line);
 
+/* Texts that were given, files as a rule, and the options that they came by. */
+#define GIVEN 40
+static struct {
+    const char *option, *text;
+} given[GIVEN];
+static int givens;
+
+static void give(const char *option, const char *text)
+{
+    for (int i = 0; i < givens; i++) { /* the last counts */
+        if (strcmp(given[i].option, option) == 0) {
+            given[i].text = text;
+            return;
+        }
+    }
+    if (givens == GIVEN) { return; }
+    given[givens].option = option;
+    given[givens++].text = text;
+}
+
+/* The option whose text, or a file below it, this line begins with; NULL: none. */
+static const char *came_by(const char *line)
+{
+    for (int i = 0; i < givens; i++) {
+        const size_t n = strlen(given[i].text);
+        if (strncmp(line, given[i].text, n) == 0 && (line[n] == ':' || (n > 0 && line[n] == '/'))) {
+            return given[i].option;
+        }
+    }
+    return NULL;
+}
+
 /* Between the program and its command. */
 static const char *blank(const char *name) { return cli_program[0] && name[0] ? " " : ""; }
 
 void cli_complain(const char *format, ...)
 {
-    char line[LINE_B], plain[LINE_B];
-    const int n = snprintf(line, 64, "%s%s%s: ", cli_program, blank(command), command);
+    char body[LINE_B - 128], line[LINE_B], plain[LINE_B];
+    const char *by;
     va_list args;
     va_start(args, format);
-    vsnprintf(line + (n < 64 ? n : 63), sizeof line - 64, format, args);
+    vsnprintf(body, sizeof body, format, args);
     va_end(args);
+    by = came_by(body);
+    (void)snprintf(line, sizeof line, "%s%s%s: %s%s%s%s", cli_program, blank(command), command,
+        by ? "--" : "", by ? by : "", by ? ": " : "", body);
     lines_plain(plain, sizeof plain, line); /* it may quote a file, of any bytes */
     if (cli_complain_by) {
         cli_complain_by(plain);
     } else {
         fprintf(stderr, "%s\n", plain);
     }
-}
-
-const char *cli_by(const char *option, const char *value)
-{
-    static char text[1100];
-    (void)snprintf(text, sizeof text, "--%s: %.1000s", option, value);
-    return text;
 }
 
 void cli_version(void)
@@ -152,8 +180,11 @@ static int take(const struct cli_option *o, const char *text)
 {
     const struct cli_call *call = o->to;
     switch (o->kind) {
-    case CLI_TEXT: *(const char **)o->to = text; return 0;
-    case CLI_CALL: return call->take(call->ctx, text);
+    case CLI_TEXT:
+        give(o->name, text);
+        *(const char **)o->to = text;
+        return 0;
+    case CLI_CALL: give(o->name, text); return call->take(call->ctx, text);
     case CLI_INT:
     case CLI_REAL: return take_number(o, text);
     case CLI_FLAG: break;
@@ -210,6 +241,7 @@ int cli_parse_more(const struct cli_command *c, const struct cli_more *more, int
 {
     int n = 0;
     command = c->name;
+    givens = 0;
     for (int i = 1; i < argc; i++) {
         if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
             help(c, more);

@@ -47,9 +47,6 @@ int cli_parse_more(const struct cli_command *c, const struct cli_more *more, int
  * numbers. 1, and the number; 0: it is none. */
 int cli_number(const char *text, int whole, double *v);
 
-/* "--OPTION: VALUE", how a message names what it came by; until the next call. */
-const char *cli_by(const char *option, const char *value);
-
 /* The versions of the library and its formats, on standard output. */
 void cli_version(void);
 
@@ -63,7 +60,8 @@ int cli_listed(const char *names, const char *name, size_t len);
  */
 extern const char *cli_program;
 
-/* A whole line on stderr, after that and the command that is parsed or runs. */
+/* A whole line on stderr, after that and the command that is parsed or runs. One that begins with
+ * the text of an option, "FILE: ", names the option before it. */
 #ifdef __GNUC__
 __attribute__((format(printf, 1, 2)))
 #endif

@@ -23,7 +23,7 @@ int recording_scale_of(struct recording_scale *to, const char *text)
     to->gain = strtod(text, &end);
     if (end != text && *end == ',') { to->offset = strtod(end + 1, &end); }
     if (end == text || *end != '\0' || !(to->gain >= -1e6 && to->gain <= 1e6) || to->gain == 0 ||
-        !(to->offset >= -1e6 && to->offset <= 1e6)) {
+        !(to->offset >= -1e6 && to->offset <= 1e6) || strpbrk(text, " xX")) {
         cli_complain("--scale: %.60s: give A or A,B: a code is A times the number and B", text);
         return 2;
     }

@@ -152,7 +152,7 @@ static const struct exh_scene *scene_of(const struct run_cfg *c)
 
 int run_image(const struct run_live *l, struct exh_params *p)
 {
-    return l->image ? params_take(cli_by("load-params", l->name), p, l->image, l->image_B) : 0;
+    return l->image ? params_take(l->name, p, l->image, l->image_B) : 0;
 }
 
 /* 1: the rate is not the controller's own, and that was told. */

@@ -129,7 +129,8 @@ TEST(units_are_guessed_or_told)
     write_text(
         csv, "10,20,30,40,50,60,70,80,90,100,110,120,130,140,150,-10,-20,-30,-40,-50,-60,-70\n");
     said(&s, dir, lab_glove, WORDS("glove", "--csv", csv, "--rate", "200", "--unit", "radians"));
-    CHECK(s.status == 2 && strstr(s.err, "--unit: codes, rad, deg or turn"), "%s", s.err);
+    CHECK(s.status == 2 && strstr(s.err, "--unit: radians: give codes, rad, deg or turn"), "%s",
+        s.err);
     said(&s, dir, lab_glove, WORDS("glove", "--csv", csv, "--rate", "200", "--deg"));
     CHECK(s.status == 0, "as codes: %d: %s", s.status, s.err); /* through nobody's calibration */
     CHECK(number_after(s.out, "\n0", 4) > 28 && number_after(s.out, "\n0", 4) < 29.5, "%s", s.out);

@@ -144,7 +144,7 @@ TEST(text_has_names_units_and_ranges)
               strstr(s.out, "420481"),
         "%s", s.out);
     said(&s, dir, cli_regs, WORDS("regs", "--scene", "nothing"));
-    CHECK(s.status == 2 && strstr(s.err, "one of drop "), "%d: %s", s.status, s.err);
+    CHECK(s.status == 2 && strstr(s.err, "one of drop, "), "%d: %s", s.status, s.err);
     said(&s, dir, cli_regs, WORDS("regs", "--csv", "--markdown"));
     CHECK(s.status == 2 && strstr(s.err, "give one of them"), "%d: %s", s.status, s.err);
     said_clean(dir);

@@ -24,7 +24,10 @@ static int take_rates(void *ctx, const char *text)
     for (const char *at = text; a->rates < GAINS_RATES; at++) {
         char *end;
         const double v = strtod(at, &end);
-        if (end == at || !(v >= 1 && v <= 20000) || (*end != ',' && *end != '\0')) { break; }
+        if (end == at || *at == ' ' || strpbrk(at, "xX") || !(v >= 1 && v <= 20000) ||
+            (*end != ',' && *end != '\0')) {
+            break;
+        }
         a->rate_Hz[a->rates++] = v;
         if (*end == '\0') { return 0; }
         at = end;

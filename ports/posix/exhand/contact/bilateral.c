@@ -59,10 +59,7 @@ static int take_gains(struct bilateral_options *o)
     struct exh_params *p = exh_scene_bilateral.params;
     uint32_t k, b;
     exh_scene_bilateral.defaults();
-    if (params_take(cli_by("load-params", o->params.load), p, o->params.image, o->params.len_B) <
-        0) {
-        return 2;
-    }
+    if (params_take(o->params.load, p, o->params.image, o->params.len_B) < 0) { return 2; }
     if (o->scene || !cli_signal_find(p->table, "mat_k", &k) ||
         !cli_signal_find(p->table, "mat_b", &b)) {
         return 0;

@@ -23,10 +23,7 @@ static int load_params(struct drop_options *o)
     uint32_t k, b;
     if (err || o->params.load == NULL) { return err; }
     sc->defaults();
-    if (params_take(cli_by("load-params", o->params.load), sc->params, o->params.image,
-            o->params.len_B) < 0) {
-        return 2;
-    }
+    if (params_take(o->params.load, sc->params, o->params.image, o->params.len_B) < 0) { return 2; }
     if (o->k_Npm < 0 && cli_signal_find(sc->params->table, "k", &k)) {
         o->k_Npm = cli_signal_value(&exh_contact_rows[0], sc->params->staged[k]);
     }

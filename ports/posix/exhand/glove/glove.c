@@ -116,7 +116,8 @@ static int check(const struct glove_options *o)
         return glove_bad("--csv: --rate HZ says how fast its rows came");
     }
     if (o->unit && recording_unit_of(o->unit) == RECORDING_GUESS) {
-        return glove_bad("--unit: codes, rad, deg or turn");
+        cli_complain("--unit: %.60s: give codes, rad, deg or turn", o->unit);
+        return 2;
     }
     if ((o->columns || o->scale) && !o->csv && !o->play) {
         return glove_bad("--columns, --scale: of the rows of --csv or --play");

@@ -291,10 +291,13 @@ static void put_csv(const struct exh_scene *sc)
 static const struct exh_scene *scene_named(const char *name)
 {
     const struct exh_scene *sc = cli_scene_find(name);
+    char all[256] = "";
     if (sc != NULL) { return sc; }
-    fprintf(stderr, "exhand regs: --scene %s: no such scene: one of", name);
-    for (size_t i = 0; i < CLI_SCENES; i++) { fprintf(stderr, " %s", cli_scenes[i]->name); }
-    fputc('\n', stderr);
+    for (size_t i = 0; i < CLI_SCENES; i++) {
+        const size_t at = strlen(all);
+        (void)snprintf(all + at, sizeof all - at, "%s%s", i ? ", " : "", cli_scenes[i]->name);
+    }
+    cli_complain("--scene: %.60s: no such scene: give one of %s", name, all);
     return NULL;
 }
 
