@@ -69,7 +69,7 @@ $(eval $(call tests,device/serial,$(in_san),$(serial_obj)))
 
 # The parts of the pc104 port that need no machine.
 pc104_net := $(patsubst %.c,$(in_san)/%.o,test/image/pc104/frames.c ports/pc104/net.c \
-             lib/src/run/stream.c lib/src/num/bytes.c)
+             lib/src/run/stream.c lib/src/num/bytes.c lib/src/num/crc.c)
 $(in_san)/test/image/pc104/%.o $(in_san)/ports/pc104/%.o $(in_san)/test/fuzz/%.o: \
     tflags += -Iports -Itest/image/pc104
 $(eval $(call tests,image/pc104,$(in_san),$(san_support) $(pc104_net)))
@@ -131,7 +131,7 @@ $(eval $(call tests,device/gpio,$(B)/posix,$(gpio_parts) $(closed_obj) $(posix_l
 world_test_obj := $(world_core_obj) $(world_mesh) \
                   $(patsubst %,$(B)/posix/ports/posix/world/%.o,solo link link_put link_param \
                   link_trace) \
-                  $(patsubst %,$(B)/posix/ports/posix/base/%.o,none option lines outpart outfile)
+                  $(patsubst %,$(B)/posix/ports/posix/base/%.o,none option near lines outpart outfile)
 $(eval $(call tests,closed/world,$(B)/posix,$(world_test_obj) $(posix_lib),$(if \
     $(world_tree),-ldl) -lm))
 $(B)/test/world/window_test $(B)/test/sim/live_world_test: | $(world) $(exhand)

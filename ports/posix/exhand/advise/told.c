@@ -23,13 +23,20 @@ static void keep_sum(struct model *m, const struct result_file *f)
     }
 }
 
-/* Of its intervals, what is worse for rest: less inertia and friction, later, coarser. The delay
- * holds the lag: of the two a run tells the sum, and the lag alone may be anything within it. */
+/* The delay holds the lag. A run tells their sum alone, so the lag is anything within it: in turn
+ * none, all and the half. */
+static double lag(const struct result_file *f, int turn)
+{
+    static const double share[] = {0, 1, 0.5};
+    const double low = f->low.value[MODEL_LAG], high = f->high.value[MODEL_LAG];
+    return low + share[turn % 3] * (high - low);
+}
+
+/* Of its intervals, what is worse for rest: less inertia and friction, later, coarser. */
 static struct model corner(const struct result_file *f, int stiff)
 {
     struct model m = f->low;
     m.value[MODEL_DELAY] = f->high.value[MODEL_DELAY];
-    m.value[MODEL_LAG] = f->value.value[MODEL_LAG];
     m.value[MODEL_STEP] = f->high.value[MODEL_STEP];
     m.value[MODEL_KF] = f->value.value[MODEL_KF];
     if (stiff) { m.value[MODEL_CABLE_K] = f->high.value[MODEL_CABLE_K]; }
@@ -42,7 +49,7 @@ static struct model within(const struct result_file *f, int n)
 {
     struct model m = f->value;
     double step = 1;
-    for (int i = 0; i < MODEL_LAG; i++) {
+    for (int i = 0; i < MODEL_PARS; i++) {
         double share;
         step *= ROOT;
         share = 0.5 + n * step;
@@ -59,7 +66,9 @@ static int is_corner(int n) { return n % 4 == 1; }
  * what is worst: chatter by one count comes and goes with no order that a corner would show. */
 static struct model told(const struct result_file *f, int n)
 {
-    return n % 4 == 0 ? f->value : is_corner(n) ? corner(f, n / 4 % 2) : within(f, n);
+    struct model m = is_corner(n) ? corner(f, n / 4 % 2) : n % 4 == 0 ? f->value : within(f, n);
+    if (n % 4 < 2) { m.value[MODEL_LAG] = lag(f, n / 4); }
+    return m;
 }
 
 /* What of the delay goes with the tick is not known at another rate than the file's: none or all,
