@@ -121,6 +121,13 @@ void exh_bytes_i32(struct exh_bytes *c, int32_t *v)
     *v = any32();
 }
 
+void exh_bytes_i32s(struct exh_bytes *c, int32_t *v, uint32_t n)
+{
+    (void)c;
+    /*@ assert bytes_i32s: \valid(v + (0 .. n - 1)); */
+    Frama_C_make_unknown((char *)v, 4 * n);
+}
+
 void exh_bytes_i64(struct exh_bytes *c, int64_t *v)
 {
     (void)c;
