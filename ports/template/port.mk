@@ -3,7 +3,8 @@
 PORT_DESC := does nothing; the start of every new port
 PORT_SRC  := ports/template/board.c
 # CROSS         prefix of the compiler, e.g. arm-none-eabi-
-# PORT_PKGS     packages of Debian that have it; PORT_QEMU: what PORT_RUN needs, program and packages
+# PORT_PKGS     packages of Debian that have it; PORT_QEMU: what PORT_RUN needs, the program and its
+#               packages
 # PORT_CFLAGS   target and freestanding flags, for the library too
 # PORT_LDFLAGS  e.g. -nostdlib -static
 # PORT_LDSCRIPT one per memory map, in ldscripts/

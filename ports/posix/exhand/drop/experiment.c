@@ -160,8 +160,8 @@ static int report(const struct drop_options *o, const struct table2_result *r)
         shown[rows] = *first;
         row[rows++] = table2_runs(first, o->gates ? first + o->runs : NULL, (int)o->runs);
     }
-    if (o->out) { outdir_clear(o->out, rows == 0); }
-    if (rows == 0) { return 0; }
+    if (rows == 0) { return 0; } /* what an earlier run left stays, whole */
+    if (o->out) { outdir_clear(o->out); }
     err = write_out(o, r, row, shown, rows);
     if (o->gates) { failed = table2_print_gates(stdout, row, rows); }
     table2_print_runs(stdout, row, rows);

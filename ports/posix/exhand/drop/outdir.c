@@ -9,21 +9,19 @@
 
 #define NAME_B 64 /* room for the longest name of a file in the directory */
 
-/* The pictures, which gnuplot makes, and what they are made of. */
-static const char *const made[] = {
-    "force_position.png", "fall.png", "table2.csv", "runs.csv", "pictures.gp"};
-#define PICTURES 2
-#define MADE     (sizeof made / sizeof made[0])
+/* The pictures, which gnuplot makes. */
+static const char *const made[] = {"force_position.png", "fall.png"};
+#define PICTURES (sizeof made / sizeof made[0])
 
 static void path(char to[TABLE2_PATH_B], const char *dir, const char *name)
 {
     snprintf(to, TABLE2_PATH_B, "%s/%s", dir, name);
 }
 
-void outdir_clear(const char *dir, int tables)
+void outdir_clear(const char *dir)
 {
     char p[TABLE2_PATH_B];
-    for (size_t i = 0; i < (tables ? MADE : PICTURES); i++) {
+    for (size_t i = 0; i < PICTURES; i++) {
         path(p, dir, made[i]);
         (void)remove(p);
     }
@@ -39,7 +37,7 @@ int outdir_open(const char *dir)
             TABLE2_PATH_B - NAME_B);
         return 2;
     }
-    path(p, dir, made[PICTURES]);
+    path(p, dir, "table2.csv");
     err = outfile_dir(dir, made[0]);
     return err ? err : outfile_try(&first, 1);
 }

@@ -9,9 +9,8 @@
  * stderr. */
 int outdir_open(const char *dir);
 
-/* What this experiment did not make must not look as if it had: pictures, and tables if it makes
- * none. */
-void outdir_clear(const char *dir, int tables);
+/* Pictures of an earlier run must not look as if they were of this one. */
+void outdir_clear(const char *dir);
 
 /* DIR/drop_RATEHz + suffix: what belongs to one rate. */
 void outdir_path(char to[TABLE2_PATH_B], const char *dir, double rate_Hz, const char *suffix);
