@@ -151,10 +151,6 @@ static int prepare(struct live_options *o, const struct exh_scene *sc)
             o->rate_Hz, 4294967294.0 / o->rate_Hz);
         err = 2;
     }
-    if (err == 0 && o->log && o->blackbox && strcmp(o->log, o->blackbox) == 0) {
-        cli_complain("--blackbox: %s: the file of --log: choose another", o->blackbox);
-        err = 2;
-    }
     if (err == 0 && o->modbus == NULL && (o->save || o->remote)) {
         cli_complain("--save and --remote: what clients may do: only with --modbus");
         err = 2;
