@@ -60,6 +60,21 @@ TEST(what_cannot_be_is_refused)
     CHECK(t.run == 1 && t.what.every == 3 && t.what.index[3] == 0, "it was taken");
 }
 
+/* Whoever makes signals for a reader alone asks before each tick. */
+TEST(it_says_before_a_tick_whether_it_reads)
+{
+    begin(FRAMES);
+    CHECK_EQ_I64(exh_trace_reads(&t), 0);
+    trace(&t, 3, 2);
+    for (uint32_t k = 0; k < 9; k++) {
+        const uint32_t head = t.head;
+        const int reads = exh_trace_reads(&t);
+        ticks(k, 1);
+        CHECK_EQ_I64(reads, t.head != head);
+    }
+    CHECK_EQ_I64(t.head, 3);
+}
+
 TEST(every_nth_tick_from_the_next_on)
 {
     begin(FRAMES);
@@ -315,8 +330,9 @@ TEST(the_signal_behind_the_last)
     CHECK(exh_bytes_ok(&c) && t.what.index[0] == 0, "%" PRIu32, t.what.index[0]);
 }
 
-TEST_MAIN("trace", what_cannot_be_is_refused, every_nth_tick_from_the_next_on, the_newest_are_held,
-    numbers_go_on_and_wrap, a_frame_that_never_was_has_another_number, passed_on_whole,
+TEST_MAIN("trace", what_cannot_be_is_refused, it_says_before_a_tick_whether_it_reads,
+    every_nth_tick_from_the_next_on, the_newest_are_held, numbers_go_on_and_wrap,
+    a_frame_that_never_was_has_another_number, passed_on_whole,
     state_there_and_back_and_brought_into_range, set_and_read_by_registers,
     halves_and_edges_of_its_registers, the_least_ring, a_frame_is_passed_on_once,
     the_signal_behind_the_last);
