@@ -22,9 +22,9 @@ struct replay {
     struct logfile log;
     struct exh_scene_in in; /* what crosses inward at the coming tick */
     struct exh_drive_out out;
-    int running; /* a start (tick 0 or a keyframe) was reached */
-    uint64_t from;
-    uint64_t last_tick; /* of the last frame in the file */ /* asked for; 0: from the beginning */
+    int running;         /* a start (tick 0 or a keyframe) was reached */
+    uint64_t from;       /* asked for; 0: from the beginning */
+    uint64_t last_tick;  /* of the last frame in the file, or of a keyframe behind `from` */
     int32_t faults_at;   /* index of the signal; < 0: the scene has none */
     uint32_t faults;     /* of the last frame */
     uint32_t fault;      /* the first to come, */
