@@ -55,6 +55,8 @@ struct hil {
     int wants_stop;    /* the harness asked for it, at the start of a block */
     int returns;       /* the harness did what a function should */
     uint32_t returned;
+    uint32_t call;      /* a function of the image that the harness wants run; 0: none */
+    uint32_t aside;     /* where it returns to, while it runs: nothing of it is counted */
     uint64_t max_insns; /* from here on it is taken to hang; 0: never */
     enum hil_end end;
     uint32_t status; /* of HIL_EXIT: what was written to the debug port */
@@ -89,6 +91,9 @@ enum hil_end hil_run(struct hil *h);
 void hil_watch_at(struct hil *h, uint32_t address, hil_watch_fn *fn);
 /* From a watch at a function: it is not run, the harness has done it, and gives this back. */
 void hil_return(struct hil *h, uint32_t value);
+/* From a watch: the function () at fn is run first, at no cost and in no time; then the watch is
+ * called again. */
+void hil_call(struct hil *h, uint32_t fn);
 uint32_t hil_word(const struct hil *h, uint32_t address);
 uint32_t hil_reg(const struct hil *h, int id);
 void hil_broke(struct hil *h, const char *format, ...);

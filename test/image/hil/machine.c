@@ -114,6 +114,10 @@ static void on_block(uc_engine *uc, uint64_t address, uint32_t size, void *user)
     const int shadow = h->last_end == at && at > 0 && at < HIL_RAM_B && h->ram[at - 1] == STI;
     unsigned n;
 
+    if (h->aside) {
+        if (at == h->aside) { uc_emu_stop(uc); }
+        return;
+    }
     if (at >= HIL_RAM_B) {
         hil_broke(h, "control went to 0x%lx", (unsigned long)at);
         return;
@@ -130,7 +134,7 @@ static void on_block(uc_engine *uc, uint64_t address, uint32_t size, void *user)
     if (n & WATCHED) {
         call_watch(h, at);
         n &= WATCHED - 1;
-        if (h->end != HIL_RUNS || h->returns) { return; }
+        if (h->end != HIL_RUNS || h->returns || h->call) { return; }
     }
     if (n == 0) { n = learn_block(h, at); }
     if (h->block_fn) { h->block_fn(at, n); }
@@ -150,7 +154,7 @@ static void on_instruction(uc_engine *uc, uint64_t address, uint32_t size, void 
     (void)uc;
     (void)address;
     (void)size;
-    h->singly++;
+    h->singly += !h->aside;
 }
 
 static int on_rdtsc(uc_engine *uc, void *user)
@@ -202,6 +206,36 @@ void hil_return(struct hil *h, uint32_t value)
     uc_emu_stop(h->uc);
 }
 
+void hil_call(struct hil *h, uint32_t fn)
+{
+    h->call = fn;
+    uc_emu_stop(h->uc);
+}
+
+/* Below whatever the stack may hold, and back with all registers as they were. */
+static void call_aside(struct hil *h)
+{
+    const uint32_t back = hil_reg(h, UC_X86_REG_EIP), fn = h->call;
+    const uint32_t sp = (hil_reg(h, UC_X86_REG_ESP) & ~15u) - 132;
+    uc_context *was;
+    h->call = 0;
+    if (sp > HIL_RAM_B - sizeof back || uc_context_alloc(h->uc, &was) != UC_ERR_OK) {
+        hil_broke(h, "a call of 0x%lx: no stack or no memory", (unsigned long)fn);
+        return;
+    }
+    uc_context_save(h->uc, was);
+    memcpy(&h->ram[sp], &back, sizeof back);
+    set_reg(h, UC_X86_REG_ESP, sp);
+    h->aside = back;
+    if (uc_emu_start(h->uc, fn, UINT64_MAX, 0, 0) != UC_ERR_OK ||
+        hil_reg(h, UC_X86_REG_ESP) != sp + sizeof back) {
+        hil_broke(h, "a call of 0x%lx did not return", (unsigned long)fn);
+    }
+    h->aside = 0;
+    uc_context_restore(h->uc, was);
+    uc_context_free(was);
+}
+
 /* A function was done for the image: back to who called it. */
 static void go_back(struct hil *h)
 {
@@ -240,6 +274,8 @@ enum hil_end hil_run(struct hil *h)
             hil_broke(h, "%s at 0x%lx", uc_strerror(err), (unsigned long)at);
         } else if (h->returns) {
             go_back(h);
+        } else if (h->call) {
+            call_aside(h);
         } else if (h->wants_stop) {
             h->wants_stop = 0;
             enter_interrupt(h);

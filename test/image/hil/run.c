@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* Offsets in struct exh_scene (lib/include/exhand/run/scene.h) of a 32-bit image. */
-enum { SCENE_FINGERS = 8, SCENE_TICK = 44 };
+enum { SCENE_FINGERS = 8, SCENE_TICK = 44, SCENE_SHOW = 48 };
 
 struct run run;
 
@@ -19,6 +19,13 @@ static void on_back(struct hil *h, uint32_t address)
     struct exh_drive_out out;
     (void)address;
     if (!run.count.ticking) { return; }
+    /* A tick fills in no signals by itself. */
+    run.shown = !run.shown;
+    if (run.shown && run.show) {
+        hil_call(h, run.show);
+        return;
+    }
+    run.shown = 0;
     if (run.out > HIL_RAM_B - sizeof out) {
         hil_broke(h, "the scene's output is at 0x%lx", (unsigned long)run.out);
         return;
@@ -227,6 +234,7 @@ int run_open(const struct run_options *opt)
     if (hil_open(h, run.opt->image) < 0) { return -1; }
     run.scene = hil_symbol_name(run.opt->image, symbol, sizeof symbol);
     run.tick = run.scene ? hil_word(h, run.scene + SCENE_TICK) : 0;
+    run.show = run.scene ? hil_word(h, run.scene + SCENE_SHOW) : 0;
     if (run.scene == 0 && (run.opt->loop || run.opt->wild)) {
         fprintf(stderr, "hil: %s: no exh_scene_... in its symbol table\n", run.opt->image);
         return -1;

@@ -24,9 +24,10 @@ struct run {
     struct world world;
     struct count count;
     struct inputs inputs;
-    uint32_t scene, tick,
-        back;     /* addresses: descriptor, its tick function, where that returns to */
-    uint32_t out; /* where its outputs go */
+    uint32_t scene, tick, show; /* addresses: descriptor, its functions, */
+    uint32_t back;              /* where tick returns to */
+    int shown;                  /* show ran for the tick that returned */
+    uint32_t out;               /* where its outputs go */
     struct class_of class_of;
     unsigned key;                   /* of the tick under way: enum count_key */
     int runs;                       /* the drives were enabled when the last tick ended */
