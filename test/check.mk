@@ -27,7 +27,7 @@ check:
 	@$(timed) mcdc
 	@$(timed) proof-ci
 	@$(timed) fuzz
-	@$(timed) options
+	@$(timed) options sanitized valgrind
 	@$(timed) demo > $(B)/demo.txt && tail -n 40 $(B)/demo.txt
 	@$(timed) $(variants:%=variant-%)
 	@$(timed) linux-program

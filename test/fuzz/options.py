@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""options.py PROGRAM [COMMAND...]: every option of every command, as --help lists them, with each
-of some twenty bad values. A run must not crash, hang, or end well in silence: one line on standard
-error names the option and the value. What is no mistake is in ALLOWED, with its reason. Prints
-each finding and a count. Exit status: 0 none, 1 findings.
-Environment: JOBS, runs at a time."""
+"""options.py [--some N] PROGRAM [COMMAND...]: every option of every command, as --help lists them,
+with each of some twenty bad values, or with N of them that are dealt in turn. A run must not crash,
+hang, or end well in silence: one line on standard error names the option and the value. What is no
+mistake is in ALLOWED, with its reason. Prints each finding and a count. Exit status: 0 none, 1
+findings.
+Environment: JOBS, runs at a time; MEMORY_B, of a run, 0: no limit, as sanitizers need."""
 import collections
 import os
 import re
@@ -18,7 +19,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 CPU_S = int(os.environ.get("CPU_S", "10"))  # of a core; what runs longer hangs
 WALL_S = float(os.environ.get("WALL_S", "120"))  # a busy machine is no finding
-MEMORY_B = 2 << 30
+MEMORY_B = int(os.environ.get("MEMORY_B", 2 << 30))
 
 VALUES = ["", "nan", "-inf", "-1", "1e400", "5N", "5,0", "0x10", " 5", "5 ", "1e", "=", "k=nan",
           "99999999999999999999", "%s%n", "a\x1b[2Jb\nc", "\u0663", "x" * 4000,
@@ -90,8 +91,10 @@ ALLOWED = [
 WRITTEN = {"out", "results", "log", "blackbox", "save", "save-params", "plot"}
 WRITTEN_IN = {("watch", "csv"), ("glove", "record")}
 # What a file holds is looked at when the work is done.
-NOT_TRIED = {("bilateral", "networks"), ("advise gains", "judge"), ("certificate", "results")}
+NOT_TRIED = {("bilateral", "networks"), ("certificate", "results")}
 UNWRITABLE = ["", "x" * 4000, "/nosuch/dir/file", "/dev/full/x"]
+
+CRASH = re.compile("died|exit status|a sanitizer")  # never allowed
 
 Finding = collections.namedtuple("Finding", "what command option value said")
 
@@ -110,9 +113,16 @@ def options(program, command):
     return [(name, bool(arg.strip())) for name, arg in found if name != "help"]
 
 
+# A sanitizer's report is no status of the program's own. Leaks end with the program.
+REPORT = "exitcode=199"
+SANITIZED = dict(os.environ, ASAN_OPTIONS=f"{REPORT}:detect_leaks=0", UBSAN_OPTIONS=REPORT)
+REPORTED = re.compile(r"AddressSanitizer|runtime error:")
+
+
 def limits():
     resource.setrlimit(resource.RLIMIT_CPU, (CPU_S, CPU_S))
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY_B, MEMORY_B))
+    if MEMORY_B:
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY_B, MEMORY_B))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
@@ -125,7 +135,7 @@ def run(program, shared, command, arguments):
         words = [program, *command.split(), *(a.format(**own) for a in needs),
                  *arguments]
         try:
-            done = subprocess.run(words, cwd=folder, stdin=subprocess.DEVNULL,
+            done = subprocess.run(words, cwd=folder, stdin=subprocess.DEVNULL, env=SANITIZED,
                                   capture_output=True, timeout=WALL_S, preexec_fn=limits,
                                   check=False)
         except subprocess.TimeoutExpired:
@@ -136,7 +146,7 @@ def run(program, shared, command, arguments):
 
 
 def allowed(command, option, value, why):
-    return any(re.fullmatch(c, command) and re.fullmatch(o, option) and
+    return not CRASH.match(why) and any(re.fullmatch(c, command) and re.fullmatch(o, option) and
                re.fullmatch(v, value, re.S) and re.fullmatch(w, why) for c, o, v, w, _ in ALLOWED)
 
 
@@ -144,6 +154,8 @@ def judge(command, option, value, status, said):
     """None, or what is wrong with it."""
     if status is None:
         return "hangs"
+    if REPORTED.search(said):
+        return "a sanitizer reports"
     if status < 0 or status >= 126:
         return f"died by signal {-status}" if status < 0 else f"exit status {status}"
     if status == 0:
@@ -159,7 +171,9 @@ def judge(command, option, value, status, said):
     return None
 
 
-def trials(program, command):
+def trials(program, command, some):
+    """Of the values so many, which go on from option to option."""
+    deal = 0
     for option, takes in options(program, command):
         if (command, option) in NOT_TRIED:
             continue
@@ -168,15 +182,21 @@ def trials(program, command):
         else:
             values = VALUES
         if takes:
-            for value in values:
+            for i in range(min(some, len(values))):
+                value = values[(deal + i) % len(values)]
                 yield command, option, value, [f"--{option}", value]
+            deal += some
         else:
             yield command, option, "yes", [f"--{option}=yes"]
 
 
 def main():
-    program = os.path.abspath(sys.argv[1])
-    commands = sys.argv[2:] or list(COMMANDS)
+    words = sys.argv[1:]
+    some = len(VALUES)
+    if words[0] == "--some":
+        some, words = int(words[1]), words[2:]
+    program = os.path.abspath(words[0])
+    commands = words[1:] or list(COMMANDS)
     listed = re.findall(r"^  ([a-z]+) ", subprocess.run([program, "help"], capture_output=True,
                                                        text=True, check=True).stdout, re.M)
     missing = set(listed) - {c.split()[0] for c in COMMANDS} - {"help"}
@@ -194,7 +214,7 @@ def main():
         f.write("0,0,0\n1,0,1\n2,1,1\n")
     subprocess.run([program, "run", "--seconds", "0.2", "--log", shared["log"]], check=True,
                    stdout=subprocess.DEVNULL)
-    todo = [t for c in commands for t in trials(program, c)]
+    todo = [t for c in commands for t in trials(program, c, some)]
     findings = []
     with ThreadPoolExecutor(int(os.environ.get("JOBS", os.cpu_count() or 1))) as pool:
         done = pool.map(lambda t: run(program, shared, t[0], t[3]), todo)
