@@ -131,7 +131,7 @@ $(eval $(call tests,device/gpio,$(B)/posix,$(gpio_parts) $(closed_obj) $(posix_l
 world_test_obj := $(world_core_obj) $(world_mesh) \
                   $(patsubst %,$(B)/posix/ports/posix/world/%.o,solo link link_put link_param \
                   link_trace) \
-                  $(patsubst %,$(B)/posix/ports/posix/base/%.o,none option near lines outpart \
+                  $(patsubst %,$(B)/posix/ports/posix/base/%.o,none fifo option near lines outpart \
                   outfile)
 $(eval $(call tests,closed/world,$(B)/posix,$(world_test_obj) $(posix_lib),$(if \
     $(world_tree),-ldl) -lm))

@@ -38,6 +38,8 @@ int jobs_cores(void)
 /* The handler's. Children come and go only while the signals are blocked, so that
  * it never misses one and never signals a stranger with a reused number. */
 static volatile sig_atomic_t interrupted;
+static int first_death;                /* a child's status; 0: none died */
+static int no_child;                   /* why the last one was not to be had; an errno */
 static pid_t child[JOBS_PARALLEL_MAX]; /* 0: free */
 static void (*interrupt_work)(void);
 
@@ -112,6 +114,7 @@ static int launch(const struct jobs *j, const struct handlers *h, int i, int to)
         sigprocmask(SIG_UNBLOCK, &h->both, NULL);
         run_child(j, i, to);
     }
+    no_child = pid < 0 ? errno : 0;
     child[slot] = pid > 0 ? pid : 0;
     sigprocmask(SIG_UNBLOCK, &h->both, NULL);
     return pid > 0;
@@ -129,6 +132,7 @@ static int reap(const struct handlers *h)
         if (child[i] == info.si_pid) { child[i] = 0; }
     }
     sigprocmask(SIG_UNBLOCK, &h->both, NULL);
+    if (first_death == 0) { first_death = status; }
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
@@ -168,6 +172,19 @@ static int run_here(const struct jobs *j)
     return done;
 }
 
+static int complain(const struct jobs *j, int done)
+{
+    char why[120] = "";
+    if (no_child) {
+        snprintf(why, sizeof why, ": no process: %s: try a smaller --jobs", strerror(no_child));
+    } else if (WIFSIGNALED(first_death)) {
+        snprintf(why, sizeof why, ": the first by signal %d, %s: is it a limit of `ulimit -a`?",
+            WTERMSIG(first_death), strsignal(WTERMSIG(first_death)));
+    }
+    cli_complain("%d of %d %s died%s", j->n - done, j->n, j->label ? j->label : "jobs", why);
+    return 1;
+}
+
 int jobs_run(const struct jobs *j)
 {
     struct handlers h;
@@ -178,6 +195,7 @@ int jobs_run(const struct jobs *j)
         return 1;
     }
     fflush(NULL);
+    first_death = no_child = 0;
     install(&h, j->interrupt);
     if (j->parallel > 1) {
         done = run_parallel(j, &h, fd);
@@ -188,8 +206,5 @@ int jobs_run(const struct jobs *j)
     }
     restore(&h);
     if (interrupted) { return JOBS_INTERRUPTED; }
-    if (done < j->n) {
-        cli_complain("%d of %d %s died", j->n - done, j->n, j->label ? j->label : "jobs");
-    }
-    return done < j->n;
+    return done < j->n ? complain(j, done) : 0;
 }

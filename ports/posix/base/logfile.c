@@ -30,7 +30,7 @@ static int complain(const struct logfile *l, const char *what)
 static int open_file(struct logfile *l)
 {
     struct stat st;
-    l->fd = open(l->path, O_RDONLY | O_CLOEXEC);
+    l->fd = open(l->path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); /* no FIFO is waited for */
     if (l->fd < 0) {
         (void)complain(l, strerror(errno));
         return 3;

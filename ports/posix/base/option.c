@@ -8,11 +8,13 @@
 #include "exhand/exhand.h"
 
 #include <ctype.h>
+#include <poll.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 const char *cli_program = "exhand";
 static const char *command = ""; /* for cli_complain() */
@@ -85,10 +87,19 @@ void cli_version(void)
         EXH_WIRE_VERSION);
 }
 
+/* What became of standard output. */
+static const char *why_not(void)
+{
+    struct pollfd f = {STDOUT_FILENO, POLLOUT, 0};
+    (void)poll(&f, 1, 0);
+    if (f.revents & POLLNVAL) { return "it is closed: open it, or give it to /dev/null"; }
+    return f.revents & POLLERR ? "whoever read it has gone" : "is its disk full?";
+}
+
 int cli_finish(int status)
 {
     if (fflush(stdout) == 0 && !ferror(stdout)) { return status; }
-    cli_complain("standard output can't be written: is its disk full?");
+    cli_complain("standard output can't be written: %s", why_not());
     return status ? status : 1;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/outfile.h"
 
+#include "base/fifo.h"
 #include "base/option.h"
 #include "base/outpart.h"
 
@@ -255,7 +256,7 @@ int outfile_write(
 long outfile_read(
     const char *option, const char *path, const char *expected, void *to, size_t cap_B)
 {
-    FILE *f = fopen(path, "rb");
+    FILE *f = fifo_read(path);
     long len;
     if (f == NULL) {
         cli_complain("--%s: %s: %s: give the %s", option, path, strerror(errno), expected);

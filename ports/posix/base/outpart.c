@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/outpart.h"
 
+#include "base/fifo.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -163,7 +165,7 @@ static int clear_away(const char *part)
 /* Not one of the standard streams', should they be closed. */
 static int open_high(const char *path, int how)
 {
-    const int fd = open(path, how | O_CLOEXEC, 0666);
+    const int fd = fifo_open(path, how | O_CLOEXEC);
     const int high = fd >= 0 && fd <= STDERR_FILENO ? fcntl(fd, F_DUPFD_CLOEXEC, 3) : fd;
     const int why = errno;
     if (fd != high) { (void)close(fd); }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "box/hand_record.h"
 
+#include "base/fifo.h"
 #include "base/option.h"
 #include "box/recording.h"
 
@@ -84,7 +85,7 @@ static int is_dated(const char *path)
     char line[LINE_B];
     const char *at = line;
     int n = 0;
-    FILE *f = fopen(path, "rb");
+    FILE *f = fifo_read(path);
     if (f == NULL) { return 0; }
     if (fgets(line, sizeof line, f) == NULL) { line[0] = '\0'; }
     fclose(f);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "box/recording.h"
 
+#include "base/fifo.h"
 #include "base/option.h"
 #include "box/recording_columns.h"
 
@@ -316,7 +317,7 @@ int recording_read(struct recording *r, const char *path, const struct recording
     memset(r, 0, sizeof *r);
     memset(&in, 0, sizeof in);
     if (recording_scale_of(&in.scale, ask->scale)) { return 2; }
-    f = standard ? stdin : fopen(path, "rb");
+    f = standard ? stdin : fifo_read(path);
     if (f == NULL) {
         cli_complain("%s: %s: give a recording, 22 codes or angles a line", path, strerror(errno));
         return 3;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "identify/result.h"
 
+#include "base/fifo.h"
 #include "base/option.h"
 #include "identify/fit.h"
 
@@ -176,7 +177,7 @@ int result_parse(struct result_file *r, FILE *f, const char *name)
 
 int result_read(struct result_file *r, const char *path)
 {
-    FILE *f = fopen(path, "r");
+    FILE *f = fifo_read(path);
     int err;
     if (f == NULL) {
         cli_complain(

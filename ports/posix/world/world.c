@@ -40,7 +40,7 @@ static char *whole(const char *path, char *error, size_t error_B)
 {
     FILE *f = fopen(path, "rb");
     char *text = NULL;
-    size_t n = 0, room = 0;
+    size_t n = 0, room = 0, got;
     if (f == NULL) {
         snprintf(error, error_B, "%s: %s: give a scene file", path, strerror(errno));
         return NULL;
@@ -50,8 +50,9 @@ static char *whole(const char *path, char *error, size_t error_B)
         if (more == NULL) { break; }
         text = more;
         room += 65536;
-        n += fread(text + n, 1, room - n, f);
-    } while (n == room && room < 64u << 20);
+        got = fread(text + n, 1, room - n, f);
+        n += got;
+    } while (n == room && room < 64u << 20 && !memchr(text + n - got, '\0', got));
     if (text == NULL || ferror(f) || memchr(text, '\0', n)) {
         snprintf(error, error_B, "%s: can't be read as text: give a scene file", path);
         free(text);

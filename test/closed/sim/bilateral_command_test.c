@@ -352,6 +352,7 @@ TEST(bad_usage_is_refused_by_name)
         {"--fingers", "toe", "toe"},
         {"--link", "delay", "delay"},
         {"--link", "colour=3", "colour"},
+        {"--link", "delay=.1,loss=0,delay=.2", "delay: it comes twice"},
         {"--link", "loss=2", "0..1"},
         {"--link", "trace=/none", "/none"},
         {"--set", "d_lim=1", "d_lim"},

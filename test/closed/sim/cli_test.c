@@ -490,6 +490,27 @@ TEST(a_job_that_dies_is_an_error)
     }
 }
 
+/* The loop's own words, of a job that a signal ended. */
+static int dies(int argc, char **argv)
+{
+    const int how = 1;
+    int result[8];
+    const struct jobs j = {8, 3, sizeof result[0], result, work, &how, "runs", NULL};
+    (void)argc;
+    (void)argv;
+    return jobs_run(&j);
+}
+
+TEST(what_a_job_died_of_is_named)
+{
+    const char *dir = said_dir();
+    static struct said s;
+    said(&s, dir, dies, WORDS("drop"));
+    CHECK(s.status == 1 && strstr(s.err, "1 of 8 runs died: the first by signal 9, Killed: "),
+        "%d: %s", s.status, s.err);
+    said_clean(dir);
+}
+
 TEST_MAIN("cli", bad_usage_of_a_study, bad_usage_is_refused_by_name,
     a_stiff_device_is_integrated_in_shorter_steps, what_ends_the_ramp_is_named,
     printed_ranges_are_the_true_ones, gains_are_the_nearest_rows,
@@ -498,4 +519,4 @@ TEST_MAIN("cli", bad_usage_of_a_study, bad_usage_is_refused_by_name,
     the_interval_of_a_median_is_the_binomial_one, the_wall_is_drawn_or_fixed,
     the_judge_observes_as_long_as_the_device, any_directory_name_will_do,
     what_cannot_be_written_is_named, an_interruption_ends_all_runs, what_was_finished_is_kept,
-    a_job_that_dies_is_an_error);
+    a_job_that_dies_is_an_error, what_a_job_died_of_is_named);

@@ -430,6 +430,11 @@ TEST(bad_usage)
     end();
     CHECK(s.status == 2 && strstr(s.err, "nose: no such signal: one of q qd f_des"), "%d %s",
         s.status, s.err);
+    start("--signals", "f_dse");
+    send_file(log, 0);
+    end();
+    CHECK(s.status == 2 && strstr(s.err, "f_dse: no such signal: did you mean f_des?: one of q "),
+        "%d %s", s.status, s.err);
     said_clean(dir);
 }
 

@@ -2,6 +2,8 @@
 #include "lab/gains/gains.h"
 
 #include "lab/drop/cells.h"
+#include "base/fifo.h"
+#include "base/lines.h"
 #include "base/option.h"
 
 #include "sim/linear.h"
@@ -12,6 +14,8 @@
 
 /* --- the map --- */
 
+#define IT_IS "give the stability.csv of exhand-lab drop --sweep"
+
 static int parse(const char *line, struct cell *c)
 {
     memset(c, 0, sizeof *c);
@@ -21,18 +25,25 @@ static int parse(const char *line, struct cell *c)
            c->resting >= 0 && c->resting <= c->falls;
 }
 
-/* 0, or 1: out of memory. */
-static int read_all(FILE *f, struct gains_map *m)
+/* 0, or an exit status. */
+static int read_all(FILE *f, struct gains_map *m, const char *path)
 {
     static char line[4096]; /* the settings are the longest */
-    int cap = 0;
-    while (fgets(line, sizeof line, f) != NULL) {
+    int cap = 0, more;
+    while ((more = lines_next(f, line, sizeof line)) != 0) {
         struct cell c;
+        if (more < 0) {
+            cli_complain("--judge: %s: a line does not end: " IT_IS, path);
+            return 2;
+        }
         if (!parse(line, &c)) { continue; }
         if (m->n == cap) {
-            struct cell *more = realloc(m->at, (size_t)(cap += 1024) * sizeof *more);
-            if (more == NULL) { return 1; }
-            m->at = more;
+            struct cell *room = realloc(m->at, (size_t)(cap += 1024) * sizeof *room);
+            if (room == NULL) {
+                cli_complain("--judge: %s: out of memory", path);
+                return 1;
+            }
+            m->at = room;
         }
         m->at[m->n++] = c;
     }
@@ -41,22 +52,18 @@ static int read_all(FILE *f, struct gains_map *m)
 
 int gains_map(struct gains_map *m, const char *path)
 {
-    FILE *f = fopen(path, "r");
+    FILE *f = fifo_read(path);
     int err;
     memset(m, 0, sizeof *m);
     if (f == NULL) {
-        cli_complain("--judge: %s: %s: give the stability.csv of exhand-lab drop --sweep", path,
-            strerror(errno));
+        cli_complain("--judge: %s: %s: " IT_IS, path, strerror(errno));
         return 3;
     }
-    err = read_all(f, m);
+    err = read_all(f, m, path);
     fclose(f);
-    if (err == 0 && m->n > 0) { return 0; }
-    cli_complain(
-        err ? "--judge: %s: out of memory"
-            : "--judge: %s: no cell in it: give the stability.csv of exhand-lab drop --sweep",
-        path);
-    return err ? 1 : 2;
+    if (err || m->n > 0) { return err; }
+    cli_complain("--judge: %s: no cell in it: " IT_IS, path);
+    return 2;
 }
 
 static int same(double a, double b) { return a - b <= 1e-6 * a && b - a <= 1e-6 * a; }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "bench/positions.h"
 
+#include "base/fifo.h"
 #include "base/lines.h"
 #include "base/option.h"
 
@@ -123,7 +124,7 @@ int positions_print(const char *csv, const char *column, double step)
     static const struct exh_quad_par par = {EXH_Q(1, 1000000, EXH_Q_STEP), EXH_Q(15, 1, EXH_Q_VEL)};
     struct positions p = {.csv = csv, .name = column, .step = step};
     char *end;
-    FILE *f = strcmp(csv, "-") == 0 ? stdin : fopen(csv, "r");
+    FILE *f = strcmp(csv, "-") == 0 ? stdin : fifo_read(csv);
     int err;
     if (f == NULL) {
         cli_complain("%s: %s", csv, strerror(errno));

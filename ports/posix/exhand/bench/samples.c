@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "bench/samples.h"
 
+#include "base/fifo.h"
 #include "base/lines.h"
 #include "base/option.h"
 
@@ -15,7 +16,7 @@ int samples_open(struct samples *s, const struct samples_opt *opt)
 {
     const int from_stdin = opt->csv == NULL || strcmp(opt->csv, "-") == 0;
     *s = (struct samples){.opt = opt,
-        .from = from_stdin ? stdin : fopen(opt->csv, "r"),
+        .from = from_stdin ? stdin : fifo_read(opt->csv),
         .name = from_stdin ? "standard input" : opt->csv};
     for (unsigned i = 0; i < 256 && opt->csv == NULL; i++) {
         s->of_byte[i] = (uint8_t)((i >> opt->a & 1) << 1 | (i >> opt->b & 1) |

@@ -2,6 +2,7 @@
 /* --link: what the network between controller and world is like. */
 #include "contact/bilateral.h"
 
+#include "base/fifo.h"
 #include "base/names.h"
 #include "base/option.h"
 
@@ -17,11 +18,23 @@ static int bad(const char *text, const char *why)
     return 2;
 }
 
+/* Whether a pair before this one, the first one's name and value cut apart, has its name. */
+static int is_twice(const char *first, const char *name)
+{
+    while (first < name) {
+        if (strcmp(first, name) == 0) { return 1; }
+        first += strlen(first) + 1; /* its value */
+        first += strlen(first) + 1;
+    }
+    return 0;
+}
+
 static int is_log(const char *path) { return strstr(path, ".csv") != NULL; }
 
 static int take_trace(struct bilateral_options *o, const char *path)
 {
     char why[256];
+    if (fifo_is(path)) { return bad(path, "a FIFO: give a file"); }
     if (sim_trace_read(
             &o->trace, path, is_log(path) ? SIM_TRACE_ROUND : SIM_TRACE_MS, why, sizeof why) < 0) {
         return bad(path, why);
@@ -74,6 +87,7 @@ int bilateral_take_link(void *ctx, const char *text)
         equals = strchr(name, '=');
         if (equals == NULL) { return bad(name, "give NAME=VALUE"); }
         *equals = '\0';
+        if (is_twice(all, name)) { return bad(name, "it comes twice: give it once"); }
         err = strcmp(name, "trace") == 0 ? take_trace(o, equals + 1)
                                          : take_value(o, name, equals + 1);
         if (err) { return err; }

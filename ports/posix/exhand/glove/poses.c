@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "glove/poses.h"
 
+#include "base/fifo.h"
 #include "base/lines.h"
 #include "base/option.h"
 #include "box/recording.h"
@@ -189,7 +190,7 @@ void glove_poses_row(FILE *f, const char *pose, const int16_t raw[EXH_GLOVE_SENS
 int glove_poses_read(struct glove_taken *t, const char *path)
 {
     const int standard = strcmp(path, "-") == 0;
-    FILE *f = standard ? stdin : fopen(path, "rb");
+    FILE *f = standard ? stdin : fifo_read(path);
     char line[LINE_B];
     unsigned long at = 0;
     int more, status = 0;

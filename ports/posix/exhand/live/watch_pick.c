@@ -3,6 +3,7 @@
 #include "live/watch.h"
 
 #include "base/names.h"
+#include "base/near.h"
 #include "base/option.h"
 #include "base/param.h"
 #include "base/scenes.h"
@@ -39,7 +40,13 @@ int watch_scene(struct watch_box *b, const char *name, uint32_t crc, uint32_t co
 static int unknown(const struct exh_signal_table *t, const char *name)
 {
     const char *last = "";
-    fprintf(stderr, "exhand watch: --signals: %s: no such signal: one of", name);
+    char mean[NEAR_B];
+    struct near n = near_to(name, strlen(name));
+    for (uint32_t i = 0; i < exh_signal_count(t); i++) {
+        near_try(&n, exh_signal_at(t, i, NULL)->name);
+    }
+    fprintf(stderr, "exhand watch: --signals: %s: no such signal%s: one of", name,
+        near_text(mean, &n, ""));
     for (uint32_t i = 0; i < exh_signal_count(t); i++) {
         const char *is = exh_signal_at(t, i, NULL)->name;
         uint32_t first;
