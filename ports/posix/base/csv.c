@@ -11,6 +11,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 /* --- the rows of a log --- */
 
@@ -133,6 +134,7 @@ int csv_write(const char *log_path, const char *to_path, unsigned what, int fing
         return 2;
     }
     err = logfile_open(&l, log_path);
+    l.shows = to_path || !isatty(STDOUT_FILENO);
     if (err == 0) {
         err = columns_choose(
             &columns, l.scene, l.params, l.params_len, (what & CSV_ALL) != 0, finger, log_path);

@@ -2,9 +2,9 @@
 #include "base/jobs.h"
 
 #include "base/ends.h"
-#include "base/lines.h"
 #include "base/option.h"
 #include "base/outpart.h"
+#include "base/progress.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -86,9 +86,7 @@ static void restore(const struct handlers *h)
 
 static void progress(const struct jobs *j, int done)
 {
-    if (j->label == NULL || !lines_terminal(2)) { return; }
-    fprintf(stderr, "\r%s: %d/%d%s", j->label, done, j->n, done == j->n || interrupted ? "\n" : "");
-    fflush(stderr);
+    progress_show(j->label, done, j->n, done == j->n || interrupted);
 }
 
 static void run_child(const struct jobs *j, int i, int to)

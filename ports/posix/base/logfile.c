@@ -3,7 +3,9 @@
 #include "base/logfile.h"
 
 #include "base/option.h"
+#include "base/progress.h"
 #include "base/scenes.h"
+#include "base/until.h"
 
 #include "exhand/calibrate.h"
 #include "exhand/error.h"
@@ -20,6 +22,8 @@
 
 #define RECORD_MAX_B (EXH_RECORD_OVERHEAD + 65535u)
 #define BUFFER_B     (4u * RECORD_MAX_B)
+#define LONG_S       2.0
+#define SHOWS_S      0.5
 
 static int complain(const struct logfile *l, const char *what)
 {
@@ -44,6 +48,18 @@ static int open_file(struct logfile *l)
     return l->bytes != NULL ? 0 : complain(l, strerror(ENOMEM));
 }
 
+/* A line that was begun is ended. */
+static void show(struct logfile *l)
+{
+    const double now_s = until_now_s();
+    const uint64_t to = l->at + l->filled;
+    const int over = to >= l->len, due = now_s >= l->shown_s || (over && l->shows == 2);
+    if (!l->shows || !due) { return; }
+    progress_show(l->path, (int)(100 * (double)to / (double)l->len), 100, over);
+    l->shows = over ? 1 : 2;
+    l->shown_s = now_s + SHOWS_S;
+}
+
 /* Bytes at the place of the next record: all that are left of the log, or a record's at least. */
 static uint32_t fill(struct logfile *l)
 {
@@ -64,6 +80,7 @@ static uint32_t fill(struct logfile *l)
         }
         l->filled += (uint32_t)n;
     }
+    show(l);
     return l->filled;
 }
 
@@ -126,6 +143,7 @@ int logfile_open(struct logfile *l, const char *path)
     int err;
     memset(l, 0, sizeof *l);
     l->path = path;
+    l->shown_s = until_now_s() + LONG_S;
     err = open_file(l);
     return err ? err : read_header(l);
 }

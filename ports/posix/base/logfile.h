@@ -36,6 +36,8 @@ struct logfile {
     uint8_t *head;         /* payload of the header */
     const uint8_t *params; /* in it, the parameter image and what follows */
     uint32_t params_len;
+    int shows;      /* not 0: how far it is, in percent, on a terminal, once that takes long */
+    double shown_s; /* when next */
 };
 
 /* Opens the file and reads its header, which words may stand before, as between records of a

@@ -4,7 +4,10 @@
 #include "identify/identify.h"
 #include "identify/result.h"
 
+#include "base/progress.h"
+
 #include "sim/random.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -82,6 +85,14 @@ static void lattice(struct starts *s, const struct fit *f, const struct identify
     }
 }
 
+/* One more of the descents, of which nobody knows how many there are. */
+static void show(int over)
+{
+    static int done;
+    done += !over;
+    progress_show("descents", done, 0, over);
+}
+
 /* From the best of the next TRIED starts over two rounds of the mass, then of all. */
 static int from_starts(struct fit *best, const struct fit *rotor_told, const struct starts *s,
     int first, const struct identify_data *d, const struct observations *few)
@@ -97,6 +108,7 @@ static int from_starts(struct fit *best, const struct fit *rotor_told, const str
         err = fit_run(&one, d, few, rough);
         if (err == 0) { err = fit_run(&one, d, few, finer); }
         if (one.cost < best->cost) { *best = one; }
+        show(0);
     }
     return err ? err : fit_run(best, d, few, all);
 }
@@ -146,6 +158,7 @@ static int again(struct fit *best, const struct identify_data *d, const struct o
         if (last) { fit_shake(&f.at, chance); }
         estimate_lag_anew(&f.at);
         err = estimate_finish(&f, d, o);
+        show(0);
         if (i < AGAIN - 2 && !(f.cost < 0.98 * best->cost)) { i = AGAIN - 2; }
         if (err == 0 && f.cost < best->cost) { *best = f; }
     }
@@ -174,6 +187,7 @@ int identify_estimate(struct estimate_of *e, const struct identify_data *d)
         struct fit f;
         err = from_starts(&f, &told, &s, i, d, &few);
         if (err == 0) { err = estimate_finish(&f, d, &all); }
+        show(0);
         if (err == 0 && f.cost < e->fit.cost) { e->fit = f; }
     }
     for (int i = 0; i < SHAKEN && err == 0 && e->fit.cost > RESULT_RESIDUAL_MAX; i++) {
@@ -181,9 +195,11 @@ int identify_estimate(struct estimate_of *e, const struct identify_data *d)
         fit_shake(&f.at, &chance);
         f.at.value[MODEL_LAG] = told.at.value[MODEL_LAG];
         err = estimate_finish(&f, d, &all);
+        show(0);
         if (err == 0 && f.cost < e->fit.cost) { e->fit = f; }
     }
     if (err == 0) { err = again(&e->fit, d, &all, &chance); }
+    show(1);
     observe_free(&few);
     observe_free(&all);
     return err;

@@ -335,6 +335,7 @@ int cli_replay(int argc, char **argv)
     memset(&p, 0, sizeof p);
     p.from = (uint64_t)from;
     err = logfile_open(&p.log, path);
+    p.log.shows = !timeline;
     if (err == 0 && timeline) {
         err = timeline_print(&p.log, stdout);
         logfile_rewind(&p.log);
