@@ -65,18 +65,18 @@ options: $(lab)
 	@JOBS=$(jobs) test/fuzz/options.py $(lab) $(ARGS)
 
 # What the command line is tried by under sanitizers: these tests, and five values of each option.
-san_make := $(MAKE) --no-print-directory B=$(B)/san CFLAGS="$(san)" LDFLAGS="$(san)" WERROR=
-san_cli  := $(patsubst %,$(B)/san/test/sim/%_test,cli csv lab lines listen outfile params_file \
-            quad_command regs_command)
+san_vars := B=$(B)/san CFLAGS="$(san)" LDFLAGS="$(san)"
+san_cli  := $(patsubst %,$(B)/san/test/sim/%_test,cli csv fifo lab lines listen outfile \
+            params_file quad_command regs_command)
 
 ## Run the command line's tests and bad values under sanitizers (build/san; 2 min of a core).
 .PHONY: sanitized
 sanitized:
-	@$(san_make) $(if $(V),,-s) $(san_cli) $(B)/san/posix/exhand-lab
+	@$(MAKE) --no-print-directory $(san_vars) $(if $(V),,-s) $(san_cli) $(B)/san/posix/exhand-lab
 	@ASAN_OPTIONS=detect_leaks=0 JOBS=$(jobs) test/run.sh $(san_cli)
 	@JOBS=$(jobs) MEMORY_B=0 test/fuzz/options.py --some 5 $(B)/san/posix/exhand-lab
 
-## Run short commands of the host program under valgrind (10 s of a core).
+## Run short commands of the host program under valgrind (20 s of a core).
 .PHONY: valgrind
 valgrind: $(exhand)
 	@.ci/deps "make valgrind" valgrind valgrind || exit 3

@@ -82,7 +82,7 @@ static int fill_bits(const struct exh_regs *r, enum exh_regs_kind kind, unsigned
     uint8_t bytes[(MODBUS_MAX_READ_BITS + 7) / 8];
     const int err = exh_regs_read_bits(r, kind, (uint16_t)at, (uint16_t)n, bytes);
     for (unsigned i = 0; err == 0 && i < n; i++) {
-        to[at + i] = (uint8_t)(bytes[i / 8] >> i % 8 & 1u);
+        to[at + i] = (uint8_t)((unsigned)bytes[i / 8] >> i % 8 & 1u);
     }
     return err;
 }
