@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "exo.h"
 
+#include "grid.h"
+
 #include <string.h>
 
 #define POINT_S 250e-6 /* between two points the fingers move on straight lines */
@@ -50,6 +52,7 @@ int sim_exo_start(struct sim_exo *e, const struct sim_exo_par *p, const struct s
     e->gloved = gloved;
     e->first = e->points = 0;
     e->torn = 0;
+    memset(&e->way, 0, sizeof e->way);
     for (unsigned i = 0; i < SIM_FINGERS; i++) {
         struct sim_path_par path = p->path[i];
         if (!used(e, i)) { continue; }
@@ -116,16 +119,18 @@ static void feed(struct sim_exo *e, struct sim_glove *g)
 {
     const struct sim_exo_point *a = &e->point[e->first];
     const struct sim_exo_point *b = &e->point[(e->first + 1) % SIM_EXO_POINTS];
+    const double tau_s = g->angle_rad[0].tau_s;
     for (unsigned i = 0; i < SIM_FINGERS; i++) {
+        double mps;
         if (!used(e, i)) { continue; }
+        mps = (b->x_m[i] - a->x_m[i]) / (b->t_s - a->t_s);
         for (int j = 0; j < 3 && bends[i][j] >= 0; j++) {
             const double bend = e->finger[i].bend_radpm[j > 0];
-            const double slope = bend * ((b->x_m[i] - a->x_m[i]) / (b->t_s - a->t_s));
-            const struct sim_curve x = {a->t_s, {bend * a->x_m[i], slope}, 0, 0, 0};
             struct sim_lag *l = &g->angle_rad[bends[i][j]];
             /* All that is left is many lags long: whatever was before has died out. */
-            if (e->torn) { sim_lag_start(l, l->tau_s, x.c[0]); }
-            sim_lag_follow(l, &x);
+            if (e->torn) { sim_lag_start(l, l->tau_s, bend * a->x_m[i]); }
+            sim_lag_line(l, a->t_s, bend * a->x_m[i], bend * mps,
+                sim_decay_at(&e->way, tau_s, sim_grid_s(l->x.start_s, a->t_s)));
         }
     }
     e->torn = 0;

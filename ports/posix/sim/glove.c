@@ -8,6 +8,7 @@
  */
 #include "glove.h"
 
+#include "grid.h"
 #include "plant.h"
 
 #include <stddef.h>
@@ -16,6 +17,8 @@
 #define TWO_PI 6.283185307179586
 #define DEG    (TWO_PI / 360)
 #define CODES  32768.0 /* either side of 0 V */
+
+#define FORGOTTEN 700 /* so many time constants: e^-700 is 0 */
 
 const struct sim_device_row sim_glove_row[] = {
     {"excite", "v", 5, 0.1, 20, "ours", "across each sensor and its series resistors"},
@@ -81,6 +84,49 @@ int sim_glove_set(
     return sim_rows_set(p, sim_glove_row, sim_glove_rows, name, value, row);
 }
 
+static double limit(double v, double most) { return v > most ? most : v < -most ? -most : v; }
+
+/* Of a share of the excitation. */
+static double amplified(const struct sim_glove_par *p, double share)
+{
+    return limit(p->gain * p->excite_V * share + p->offset_V, p->rail_V);
+}
+
+/* As the sensor sees it, behind the low-pass. before: of this channel; NULL: nothing is kept. */
+static double angle_rad(const struct sim_glove *g, unsigned i, double t_s, struct sim_decay *before)
+{
+    const struct sim_lag *l = &g->angle_rad[i];
+    const double s = before ? sim_grid_s(l->x.start_s, t_s) : 0;
+    if (before == NULL || sim_lag_settled(l) || s > FORGOTTEN * l->tau_s) {
+        return sim_lag_at(l, t_s);
+    }
+    return sim_lag_left(l, t_s, sim_decay_at(before, l->tau_s, s));
+}
+
+/* With what it has of its neighbours. */
+static double bent_rad(const struct sim_glove *g, unsigned i, double t_s, struct sim_decay *before)
+{
+    const struct sim_glove_sensor *n = &sim_glove_sensor[i];
+    double rad = angle_rad(g, i, t_s, before);
+    for (int k = 0; k < 2 && n->bend[k] >= 0 && g->par.couple != 0; k++) {
+        rad += g->par.couple / 2 * angle_rad(g, (unsigned)n->bend[k], t_s, before);
+    }
+    return rad;
+}
+
+static double shown_V(const struct sim_glove *g, unsigned i, double rad)
+{
+    const struct sim_glove_par *p = &g->par;
+    const struct sim_glove_sensor *n = &sim_glove_sensor[i];
+    double share;
+    if (g->fault[i] == SIM_GLOVE_RAIL_HIGH) { return p->rail_V; }
+    if (g->fault[i] == SIM_GLOVE_RAIL_LOW) { return -p->rail_V; }
+    if (g->fault[i] == SIM_GLOVE_OPEN) { return amplified(p, 1); }
+    if (g->fault[i] == SIM_GLOVE_SHORT) { return amplified(p, 0); }
+    share = n->lo + (rad - n->lo_deg * DEG) * ((n->hi - n->lo) / ((n->hi_deg - n->lo_deg) * DEG));
+    return amplified(p, p->dead + (1 - 2 * p->dead) * share);
+}
+
 void sim_glove_start(struct sim_glove *g, const struct sim_glove_par *p, uint64_t seed,
     const double angle_rad[SIM_GLOVE_SENSORS])
 {
@@ -90,7 +136,11 @@ void sim_glove_start(struct sim_glove *g, const struct sim_glove_par *p, uint64_
     for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
         sim_lag_start(&g->angle_rad[i], 1 / (TWO_PI * p->cutoff_Hz), angle_rad[i]);
     }
-    g->held_V = sim_glove_volt(g, 0, 0);
+    for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
+        g->bent_rad[i] = bent_rad(g, i, 0, NULL);
+        g->volt_V[i] = shown_V(g, i, g->bent_rad[i]);
+    }
+    g->held_V = g->volt_V[0];
     g->held_s = -1;
 }
 
@@ -99,29 +149,21 @@ void sim_glove_move(struct sim_glove *g, unsigned i, const struct sim_curve *x)
     sim_lag_follow(&g->angle_rad[i], x);
 }
 
-static double limit(double v, double most) { return v > most ? most : v < -most ? -most : v; }
-
-/* Of a share of the excitation. */
-static double amplified(const struct sim_glove_par *p, double share)
-{
-    return limit(p->gain * p->excite_V * share + p->offset_V, p->rail_V);
-}
-
 double sim_glove_volt(const struct sim_glove *g, unsigned i, double t_s)
 {
-    const struct sim_glove_par *p = &g->par;
-    const struct sim_glove_sensor *n = &sim_glove_sensor[i];
-    double rad = sim_lag_at(&g->angle_rad[i], t_s);
-    double share;
-    if (g->fault[i] == SIM_GLOVE_RAIL_HIGH) { return p->rail_V; }
-    if (g->fault[i] == SIM_GLOVE_RAIL_LOW) { return -p->rail_V; }
-    if (g->fault[i] == SIM_GLOVE_OPEN) { return amplified(p, 1); }
-    if (g->fault[i] == SIM_GLOVE_SHORT) { return amplified(p, 0); }
-    for (int k = 0; k < 2 && n->bend[k] >= 0 && p->couple != 0; k++) {
-        rad += p->couple / 2 * sim_lag_at(&g->angle_rad[n->bend[k]], t_s);
+    return shown_V(g, i, bent_rad(g, i, t_s, NULL));
+}
+
+/* The same, of a channel without a fault again only if it has moved. */
+static double volt_V(struct sim_glove *g, unsigned i, double t_s)
+{
+    const double rad = bent_rad(g, i, t_s, &g->low_pass[i]);
+    if (g->fault[i] != SIM_GLOVE_WELL) { return shown_V(g, i, rad); }
+    if (rad != g->bent_rad[i]) {
+        g->bent_rad[i] = rad;
+        g->volt_V[i] = shown_V(g, i, rad);
     }
-    share = n->lo + (rad - n->lo_deg * DEG) * ((n->hi - n->lo) / ((n->hi_deg - n->lo_deg) * DEG));
-    return amplified(p, p->dead + (1 - 2 * p->dead) * share);
+    return g->volt_V[i];
 }
 
 double sim_glove_held_s(const struct sim_glove_par *p, unsigned i, double tick_s)
@@ -134,12 +176,7 @@ double sim_glove_held_s(const struct sim_glove_par *p, unsigned i, double tick_s
  * either side, so that a second at any usual rate measures all of it. */
 static double noise(struct sim_random *r, double pp)
 {
-    int32_t sum = 0;
-    for (int k = 0; k < 3; k++) {
-        const uint64_t u = sim_random_u64(r);
-        sum += (int32_t)((u & 0xFFFF) + (u >> 16 & 0xFFFF) + (u >> 32 & 0xFFFF) + (u >> 48));
-    }
-    return limit((sum - 6 * 65535) * (1.0 / 65536) * (pp / 6), pp / 2);
+    return limit((sim_random_sum(r, 3) - 6 * 65535) * (1.0 / 65536) * (pp / 6), pp / 2);
 }
 
 /* The multiplexer goes on as soon as a channel is held: what is left of the one before has
@@ -147,9 +184,10 @@ static double noise(struct sim_random *r, double pp)
 int16_t sim_glove_convert(struct sim_glove *g, unsigned i, double t_s)
 {
     const struct sim_glove_par *p = &g->par;
-    double v = sim_glove_volt(g, i, t_s);
-    if (p->settle_s > 0 && t_s > g->held_s) {
-        v += (g->held_V - v) * sim_exp_neg((t_s - g->held_s) / p->settle_s);
+    const double slot_s = sim_grid_s(g->held_s, t_s);
+    double v = volt_V(g, i, t_s);
+    if (p->settle_s > 0 && slot_s > 0 && slot_s < FORGOTTEN * p->settle_s) {
+        v += (g->held_V - v) * sim_decay_at(&g->multiplexer, p->settle_s, slot_s);
     }
     g->held_V = v;
     g->held_s = t_s;

@@ -63,6 +63,10 @@ struct sim_glove {
     unsigned char fault[SIM_GLOVE_SENSORS]; /* enum sim_glove_fault */
     int16_t code[SIM_GLOVE_SENSORS];        /* the last */
     double held_V, held_s;                  /* on the multiplexer, and since when */
+    /* What most channels need not work out again: of an angle that is as it was its voltage, of a
+     * length of time that was before what low-pass and multiplexer leave. */
+    double bent_rad[SIM_GLOVE_SENSORS], volt_V[SIM_GLOVE_SENSORS];
+    struct sim_decay low_pass[SIM_GLOVE_SENSORS], multiplexer;
 };
 
 /* Settled at these angles; the multiplexer at rest on channel 0. */

@@ -22,9 +22,25 @@ struct sim_curve {
 struct sim_lag {
     double tau_s;              /* 0: none */
     struct sim_curve x;        /* the input */
-    double p[SIM_CURVE_TERMS]; /* what y runs after, of the polynomial */
+    double p[SIM_CURVE_TERMS]; /* what y runs after, of the polynomial, */
+    int terms;                 /* up to its last that is not 0 */
     double off;                /* y less that, at the start */
 };
+
+/* A polynomial's terms up to the last that is not 0, at least one; and its value by them. */
+static inline int sim_poly_terms(const double c[SIM_CURVE_TERMS])
+{
+    int n = SIM_CURVE_TERMS;
+    while (n > 1 && c[n - 1] == 0) { n--; }
+    return n;
+}
+
+static inline double sim_poly(const double c[SIM_CURVE_TERMS], int terms, double s)
+{
+    double v = c[terms - 1];
+    for (int k = terms - 2; k >= 0; k--) { v = v * s + c[k]; }
+    return v;
+}
 
 /* The input at t_s. */
 double sim_curve_at(const struct sim_curve *x, double t_s);
@@ -37,6 +53,19 @@ void sim_lag_follow(struct sim_lag *l, const struct sim_curve *x);
 
 /* The output at t_s >= start. */
 double sim_lag_at(const struct sim_lag *l, double t_s);
+
+/* e^-(s / tau_s) for s >= 0 of sim_grid_s(), as it was last worked out for one of two lengths. All
+ * 0: for none yet. Of one tau. */
+struct sim_decay {
+    double s[2], left[2];
+};
+double sim_decay_at(struct sim_decay *d, double tau_s, double s);
+
+/* The same output, and the same as sim_lag_follow() with at + slope s: left is what was left then
+ * of e^-(t / tau). A lag that has settled needs none. */
+static inline int sim_lag_settled(const struct sim_lag *l) { return l->off == 0; }
+double sim_lag_left(const struct sim_lag *l, double t_s, double left);
+void sim_lag_line(struct sim_lag *l, double start_s, double at, double slope, double left);
 
 /* Sine and cosine from + - x; |x| < 1e6; error < 1e-15 + 1e-16 |x|. */
 double sim_sin(double x);

@@ -58,12 +58,7 @@ static double root(double v)
 /* Twelve uniforms: a normal of deviation 1 within +-6. */
 static double normal(struct sim_random *r)
 {
-    int32_t sum = 0;
-    for (int k = 0; k < 3; k++) {
-        const uint64_t u = sim_random_u64(r);
-        sum += (int32_t)((u & 0xFFFF) + (u >> 16 & 0xFFFF) + (u >> 32 & 0xFFFF) + (u >> 48));
-    }
-    return (sum - 6 * 65535) * (1.0 / 65536);
+    return (sim_random_sum(r, 3) - 6 * 65535) * (1.0 / 65536);
 }
 
 static double within_one(double v) { return v > 1 ? 1 : v < -1 ? -1 : v; }
