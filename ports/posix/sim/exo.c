@@ -114,23 +114,34 @@ void sim_exo_glove(struct sim_exo *e, struct sim_glove *g, const struct sim_glov
     sim_glove_start(g, p, seed, at_rad);
 }
 
+/* A joint on its straight way; all that move began the last one at once, so they share what their
+ * low-pass has left of it. */
+static void bend(struct sim_exo *e, struct sim_glove *g, int sensor, const struct sim_line *way)
+{
+    struct sim_lag *l = &g->angle_rad[sensor];
+    /* All that is left is many lags long: whatever was before has died out. */
+    if (e->torn) { sim_lag_start(l, l->tau_s, way->at); }
+    if (l->x.start_s != e->way_from_s) {
+        e->way_from_s = l->x.start_s;
+        e->way_left = sim_decay_at(&e->way, l->tau_s, sim_grid_s(l->x.start_s, way->start_s));
+    }
+    sim_glove_line(g, (unsigned)sensor, way, e->way_left);
+}
+
 /* The way from the oldest point to the next, into the glove; the oldest is then done with. */
 static void feed(struct sim_exo *e, struct sim_glove *g)
 {
     const struct sim_exo_point *a = &e->point[e->first];
     const struct sim_exo_point *b = &e->point[(e->first + 1) % SIM_EXO_POINTS];
-    const double tau_s = g->angle_rad[0].tau_s;
+    e->way_from_s = -1;
     for (unsigned i = 0; i < SIM_FINGERS; i++) {
+        const double *radpm = e->finger[i].bend_radpm;
         double mps;
         if (!used(e, i)) { continue; }
         mps = (b->x_m[i] - a->x_m[i]) / (b->t_s - a->t_s);
         for (int j = 0; j < 3 && bends[i][j] >= 0; j++) {
-            const double bend = e->finger[i].bend_radpm[j > 0];
-            struct sim_lag *l = &g->angle_rad[bends[i][j]];
-            /* All that is left is many lags long: whatever was before has died out. */
-            if (e->torn) { sim_lag_start(l, l->tau_s, bend * a->x_m[i]); }
-            sim_lag_line(l, a->t_s, bend * a->x_m[i], bend * mps,
-                sim_decay_at(&e->way, tau_s, sim_grid_s(l->x.start_s, a->t_s)));
+            const struct sim_line way = {a->t_s, radpm[j > 0] * a->x_m[i], radpm[j > 0] * mps};
+            bend(e, g, bends[i][j], &way);
         }
     }
     e->torn = 0;
@@ -144,6 +155,6 @@ void sim_exo_frame(
     for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
         const double held_s = sim_glove_held_s(&g->par, i, tick_s);
         while (e->points > 1 && e->point[e->first].t_s <= held_s) { feed(e, g); }
-        raw[i] = sim_glove_convert(g, i, held_s);
+        raw[i] = sim_glove_convert_next(g, i, held_s);
     }
 }

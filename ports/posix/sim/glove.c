@@ -127,6 +127,22 @@ static double shown_V(const struct sim_glove *g, unsigned i, double rad)
     return amplified(p, p->dead + (1 - 2 * p->dead) * share);
 }
 
+double sim_glove_volt(const struct sim_glove *g, unsigned i, double t_s)
+{
+    return shown_V(g, i, bent_rad(g, i, t_s, NULL));
+}
+
+/* The same, of a channel without a fault again only if it moves. */
+static double volt_V(struct sim_glove *g, unsigned i, double t_s)
+{
+    if (g->fault[i] != SIM_GLOVE_WELL) { return sim_glove_volt(g, i, t_s); }
+    if (g->moves & g->sees[i]) {
+        g->volt_V[i] = shown_V(g, i, bent_rad(g, i, t_s, &g->low_pass[i]));
+        if (sim_lag_rests(&g->angle_rad[i])) { g->moves &= ~(UINT32_C(1) << i); }
+    }
+    return g->volt_V[i];
+}
+
 void sim_glove_start(struct sim_glove *g, const struct sim_glove_par *p, uint64_t seed,
     const double angle_rad[SIM_GLOVE_SENSORS])
 {
@@ -137,9 +153,15 @@ void sim_glove_start(struct sim_glove *g, const struct sim_glove_par *p, uint64_
         sim_lag_start(&g->angle_rad[i], 1 / (TWO_PI * p->cutoff_Hz), angle_rad[i]);
     }
     for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
-        g->bent_rad[i] = bent_rad(g, i, 0, NULL);
-        g->volt_V[i] = shown_V(g, i, g->bent_rad[i]);
+        const int *bend = sim_glove_sensor[i].bend;
+        g->sees[i] = UINT32_C(1) << i | (bend[0] < 0 ? 0 : UINT32_C(1) << bend[0]) |
+                     (bend[1] < 0 ? 0 : UINT32_C(1) << bend[1]);
+        g->volt_V[i] = sim_glove_volt(g, i, 0);
     }
+    g->slot_left = p->settle_s > 0 ? sim_exp_neg(p->interval_s / p->settle_s) : 0;
+    g->code_perV = CODES / p->span_V;
+    g->noise_V_perLSB = p->noise_V / 6;
+    g->noise_V_most = p->noise_V / 2;
     g->held_V = g->volt_V[0];
     g->held_s = -1;
 }
@@ -147,57 +169,57 @@ void sim_glove_start(struct sim_glove *g, const struct sim_glove_par *p, uint64_
 void sim_glove_move(struct sim_glove *g, unsigned i, const struct sim_curve *x)
 {
     sim_lag_follow(&g->angle_rad[i], x);
+    g->moves |= UINT32_C(1) << i;
 }
 
-double sim_glove_volt(const struct sim_glove *g, unsigned i, double t_s)
+void sim_glove_line(struct sim_glove *g, unsigned i, const struct sim_line *x, double left)
 {
-    return shown_V(g, i, bent_rad(g, i, t_s, NULL));
-}
-
-/* The same, of a channel without a fault again only if it has moved. */
-static double volt_V(struct sim_glove *g, unsigned i, double t_s)
-{
-    const double rad = bent_rad(g, i, t_s, &g->low_pass[i]);
-    if (g->fault[i] != SIM_GLOVE_WELL) { return shown_V(g, i, rad); }
-    if (rad != g->bent_rad[i]) {
-        g->bent_rad[i] = rad;
-        g->volt_V[i] = shown_V(g, i, rad);
-    }
-    return g->volt_V[i];
-}
-
-double sim_glove_held_s(const struct sim_glove_par *p, unsigned i, double tick_s)
-{
-    return tick_s - (SIM_GLOVE_SENSORS - i) * p->interval_s;
+    sim_lag_line(&g->angle_rad[i], x, left);
+    g->moves |= UINT32_C(1) << i;
 }
 
 /* Twelve uniforms make a normal of deviation 1 within +-6; what is known by its peak-to-peak
  * value is clipped there. 3 deviations: a thousand samples have reached it about once on
  * either side, so that a second at any usual rate measures all of it. */
-static double noise(struct sim_random *r, double pp)
+static double noise_V(struct sim_glove *g)
 {
-    return limit((sim_random_sum(r, 3) - 6 * 65535) * (1.0 / 65536) * (pp / 6), pp / 2);
+    const double lsb = (sim_random_sum(&g->rng, 3) - 6 * 65535) * (1.0 / 65536);
+    return limit(lsb * g->noise_V_perLSB, g->noise_V_most);
+}
+
+/* Of a voltage in codes. */
+static int16_t code_of(double v)
+{
+    v += CODES + 0.5; /* the cast cuts it off */
+    return (int16_t)(v < 0 ? -32768 : v >= 65536 ? 32767 : (int32_t)v - 32768);
 }
 
 /* The multiplexer goes on as soon as a channel is held: what is left of the one before has
  * the whole slot to decay. */
-int16_t sim_glove_convert(struct sim_glove *g, unsigned i, double t_s)
+static int16_t convert(struct sim_glove *g, unsigned i, double t_s, double left)
 {
-    const struct sim_glove_par *p = &g->par;
-    const double slot_s = sim_grid_s(g->held_s, t_s);
     double v = volt_V(g, i, t_s);
-    if (p->settle_s > 0 && slot_s > 0 && slot_s < FORGOTTEN * p->settle_s) {
-        v += (g->held_V - v) * sim_decay_at(&g->multiplexer, p->settle_s, slot_s);
-    }
+    v += (g->held_V - v) * left;
     g->held_V = v;
     g->held_s = t_s;
-    if (p->noise_V > 0) { v += noise(&g->rng, p->noise_V); }
-    if (g->fault[i] != SIM_GLOVE_STUCK) { g->code[i] = sim_glove_code(p, v); }
+    if (g->noise_V_most > 0) { v += noise_V(g); }
+    if (g->fault[i] != SIM_GLOVE_STUCK) { g->code[i] = code_of(v * g->code_perV); }
     return g->code[i];
+}
+
+int16_t sim_glove_convert(struct sim_glove *g, unsigned i, double t_s)
+{
+    const double slot_s = t_s - g->held_s, settle_s = g->par.settle_s;
+    const int stood = settle_s > 0 && slot_s > 0;
+    return convert(g, i, t_s, stood ? sim_exp_neg(slot_s / settle_s) : 0);
+}
+
+int16_t sim_glove_convert_next(struct sim_glove *g, unsigned i, double t_s)
+{
+    return i == 0 ? sim_glove_convert(g, 0, t_s) : convert(g, i, t_s, g->slot_left);
 }
 
 int16_t sim_glove_code(const struct sim_glove_par *p, double v_V)
 {
-    const double v = v_V * (CODES / p->span_V) + (CODES + 0.5); /* the cast cuts it off */
-    return (int16_t)(v < 0 ? -32768 : v >= 65536 ? 32767 : (int32_t)v - 32768);
+    return code_of(v_V * (CODES / p->span_V));
 }

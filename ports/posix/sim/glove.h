@@ -63,10 +63,11 @@ struct sim_glove {
     unsigned char fault[SIM_GLOVE_SENSORS]; /* enum sim_glove_fault */
     int16_t code[SIM_GLOVE_SENSORS];        /* the last */
     double held_V, held_s;                  /* on the multiplexer, and since when */
-    /* What most channels need not work out again: of an angle that is as it was its voltage, of a
-     * length of time that was before what low-pass and multiplexer leave. */
-    double bent_rad[SIM_GLOVE_SENSORS], volt_V[SIM_GLOVE_SENSORS];
-    struct sim_decay low_pass[SIM_GLOVE_SENSORS], multiplexer;
+    /* What most channels need not work out again. */
+    uint32_t moves, sees[SIM_GLOVE_SENSORS]; /* bit i: angle i may change; those of a channel */
+    double volt_V[SIM_GLOVE_SENSORS];        /* of a channel whose angles do not */
+    struct sim_decay low_pass[SIM_GLOVE_SENSORS];
+    double slot_left, code_perV, noise_V_perLSB, noise_V_most; /* multiplexer, A/D, noise */
 };
 
 /* Settled at these angles; the multiplexer at rest on channel 0. */
@@ -79,11 +80,19 @@ void sim_glove_move(struct sim_glove *g, unsigned i, const struct sim_curve *x);
 /* Behind the amplifier, without noise, at t_s. */
 double sim_glove_volt(const struct sim_glove *g, unsigned i, double t_s);
 
-/* When channel i of the frame of this tick is held. */
-double sim_glove_held_s(const struct sim_glove_par *p, unsigned i, double tick_s);
+/* The same on a straight line, as sim_lag_line() says. */
+void sim_glove_line(struct sim_glove *g, unsigned i, const struct sim_line *x, double left);
 
-/* Converts channel i, held at t_s; in the order of time. */
+/* When channel i of the frame of this tick is held. */
+static inline double sim_glove_held_s(const struct sim_glove_par *p, unsigned i, double tick_s)
+{
+    return tick_s - (SIM_GLOVE_SENSORS - i) * p->interval_s;
+}
+
+/* Converts channel i, held at t_s; in the order of time. In a frame, of which channel 0 was the
+ * first, each is `interval` behind the one before. */
 int16_t sim_glove_convert(struct sim_glove *g, unsigned i, double t_s);
+int16_t sim_glove_convert_next(struct sim_glove *g, unsigned i, double t_s);
 
 /* The code of a voltage: nearest, limited to 16 bits. */
 int16_t sim_glove_code(const struct sim_glove_par *p, double v_V);

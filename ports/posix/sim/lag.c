@@ -115,12 +115,12 @@ double sim_lag_left(const struct sim_lag *l, double t_s, double left)
     return target(l, t_s - l->x.start_s) + l->off * left;
 }
 
-void sim_lag_line(struct sim_lag *l, double start_s, double at, double slope, double left)
+void sim_lag_line(struct sim_lag *l, const struct sim_line *x, double left)
 {
-    const double y = sim_lag_left(l, start_s, left);
-    l->x = (struct sim_curve){start_s, {at, slope}, 0, 0, 0};
-    l->p[1] = slope;
-    l->p[0] = at - l->tau_s * slope;
-    l->terms = slope != 0 ? 2 : 1;
+    const double y = sim_lag_left(l, x->start_s, left);
+    l->x = (struct sim_curve){x->start_s, {x->at, x->slope}, 0, 0, 0};
+    l->p[1] = x->slope;
+    l->p[0] = x->at - l->tau_s * x->slope;
+    l->terms = x->slope != 0 ? 2 : 1;
     l->off = l->tau_s > 0 ? y - l->p[0] : 0;
 }

@@ -64,8 +64,17 @@ double sim_decay_at(struct sim_decay *d, double tau_s, double s);
 /* The same output, and the same as sim_lag_follow() with at + slope s: left is what was left then
  * of e^-(t / tau). A lag that has settled needs none. */
 static inline int sim_lag_settled(const struct sim_lag *l) { return l->off == 0; }
+
+/* It has, on what does not change. */
+static inline int sim_lag_rests(const struct sim_lag *l)
+{
+    return l->off == 0 && l->terms == 1 && l->x.amp == 0;
+}
+struct sim_line {
+    double start_s, at, slope;
+};
 double sim_lag_left(const struct sim_lag *l, double t_s, double left);
-void sim_lag_line(struct sim_lag *l, double start_s, double at, double slope, double left);
+void sim_lag_line(struct sim_lag *l, const struct sim_line *x, double left);
 
 /* Sine and cosine from + - x; |x| < 1e6; error < 1e-15 + 1e-16 |x|. */
 double sim_sin(double x);

@@ -20,17 +20,16 @@ void pace_pull(struct pace *p, const struct exh_wire_hello *hello)
     }
 }
 
-/* The joint of any finger that turned most between the two. */
-static int64_t most_turned(const struct pace_at *a, const struct pace_at *b)
+/* Whether a joint of any finger turned by more than TURN_Q32 between the two: of all at once, since
+ * mostly none did. */
+static int turned(const struct pace_at *a, const struct pace_at *b)
 {
-    int64_t most = 0;
+    const int32_t *from = a->joint_turn_q32[0], *to = b->joint_turn_q32[0];
+    int far = 0;
     for (unsigned i = 0; i < FINGERS * 3; i++) {
-        const int64_t by =
-            (int64_t)a->joint_turn_q32[i / 3][i % 3] - b->joint_turn_q32[i / 3][i % 3];
-        if (by > most) { most = by; }
-        if (-by > most) { most = -by; }
+        far |= (uint64_t)((int64_t)to[i] - from[i] + TURN_Q32) > 2 * (uint64_t)TURN_Q32;
     }
-    return most;
+    return far;
 }
 
 /* The state to compare with: as old as possible, as codes are coarse, but not before a turn. */
@@ -39,9 +38,7 @@ static const struct pace_at *before(const struct pace *p, const struct pace_at *
     const struct pace_at *from = &p->at[p->last];
     for (unsigned back = 1; back < p->n; back++) {
         const struct pace_at *older = &p->at[(p->last + PACE_STATES - back) % PACE_STATES];
-        if (now->stamp_us - older->stamp_us > WINDOW_US || most_turned(now, older) > TURN_Q32) {
-            break;
-        }
+        if (now->stamp_us - older->stamp_us > WINDOW_US || turned(now, older)) { break; }
         from = older;
     }
     return from;
