@@ -112,37 +112,37 @@ void sim_exo_glove(struct sim_exo *e, struct sim_glove *g, const struct sim_glov
         }
     }
     sim_glove_start(g, p, seed, at_rad);
-}
-
-/* A joint on its straight way; all that move began the last one at once, so they share what their
- * low-pass has left of it. */
-static void bend(struct sim_exo *e, struct sim_glove *g, int sensor, const struct sim_line *way)
-{
-    struct sim_lag *l = &g->angle_rad[sensor];
-    /* All that is left is many lags long: whatever was before has died out. */
-    if (e->torn) { sim_lag_start(l, l->tau_s, way->at); }
-    if (l->x.start_s != e->way_from_s) {
-        e->way_from_s = l->x.start_s;
-        e->way_left = sim_decay_at(&e->way, l->tau_s, sim_grid_s(l->x.start_s, way->start_s));
+    for (unsigned i = 0; i < SIM_FINGERS; i++) {
+        const double *radpm = e->finger[i].bend_radpm;
+        for (int j = 1; j < 3 && used(e, i) && bends[i][j] >= 0; j++) {
+            sim_glove_follow(g, (unsigned)bends[i][j], (unsigned)bends[i][0], radpm[1] / radpm[0]);
+        }
     }
-    sim_glove_line(g, (unsigned)sensor, way, e->way_left);
 }
 
-/* The way from the oldest point to the next, into the glove; the oldest is then done with. */
+/* The way from the oldest point to the next, into the glove; the oldest is then done with. All
+ * knuckles that move began the last one at once, so they share what their low-pass has left. */
 static void feed(struct sim_exo *e, struct sim_glove *g)
 {
     const struct sim_exo_point *a = &e->point[e->first];
     const struct sim_exo_point *b = &e->point[(e->first + 1) % SIM_EXO_POINTS];
-    e->way_from_s = -1;
+    double from_s = -1, left = 0;
     for (unsigned i = 0; i < SIM_FINGERS; i++) {
-        const double *radpm = e->finger[i].bend_radpm;
-        double mps;
+        const double radpm = e->finger[i].bend_radpm[0];
+        const unsigned knuckle = (unsigned)bends[i][0];
+        struct sim_lag *l = &g->angle_rad[knuckle];
+        struct sim_line way;
         if (!used(e, i)) { continue; }
-        mps = (b->x_m[i] - a->x_m[i]) / (b->t_s - a->t_s);
-        for (int j = 0; j < 3 && bends[i][j] >= 0; j++) {
-            const struct sim_line way = {a->t_s, radpm[j > 0] * a->x_m[i], radpm[j > 0] * mps};
-            bend(e, g, bends[i][j], &way);
+        way.start_s = a->t_s;
+        way.at = radpm * a->x_m[i];
+        way.slope = radpm * ((b->x_m[i] - a->x_m[i]) / (b->t_s - a->t_s));
+        /* All that is left is many lags long: whatever was before has died out. */
+        if (e->torn) { sim_lag_start(l, l->tau_s, way.at); }
+        if (l->x.start_s != from_s) {
+            from_s = l->x.start_s;
+            left = sim_decay_at(&e->way, l->tau_s, sim_grid_s(from_s, a->t_s));
         }
+        sim_glove_line(g, knuckle, &way, left);
     }
     e->torn = 0;
     e->first = (e->first + 1) % SIM_EXO_POINTS;
@@ -152,9 +152,15 @@ static void feed(struct sim_exo *e, struct sim_glove *g)
 void sim_exo_frame(
     struct sim_exo *e, struct sim_glove *g, double tick_s, int16_t raw[SIM_GLOVE_SENSORS])
 {
-    for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
-        const double held_s = sim_glove_held_s(&g->par, i, tick_s);
+    unsigned i = 0, end;
+    while (i < SIM_GLOVE_SENSORS) {
+        double held_s = sim_glove_held_s(&g->par, i, tick_s);
         while (e->points > 1 && e->point[e->first].t_s <= held_s) { feed(e, g); }
-        raw[i] = sim_glove_convert_next(g, i, held_s);
+        for (end = i + 1; end < SIM_GLOVE_SENSORS; end++) {
+            held_s = sim_glove_held_s(&g->par, end, tick_s);
+            if (e->points > 1 && e->point[e->first].t_s <= held_s) { break; }
+        }
+        sim_glove_scan(g, i, end, tick_s, raw);
+        i = end;
     }
 }

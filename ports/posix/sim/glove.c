@@ -95,12 +95,12 @@ static double amplified(const struct sim_glove_par *p, double share)
 /* As the sensor sees it, behind the low-pass. before: of this channel; NULL: nothing is kept. */
 static double angle_rad(const struct sim_glove *g, unsigned i, double t_s, struct sim_decay *before)
 {
-    const struct sim_lag *l = &g->angle_rad[i];
+    const struct sim_lag *l = &g->angle_rad[g->of[i]];
     const double s = before ? sim_grid_s(l->x.start_s, t_s) : 0;
     if (before == NULL || sim_lag_settled(l) || s > FORGOTTEN * l->tau_s) {
-        return sim_lag_at(l, t_s);
+        return g->share[i] * sim_lag_at(l, t_s);
     }
-    return sim_lag_left(l, t_s, sim_decay_at(before, l->tau_s, s));
+    return g->share[i] * sim_lag_left(l, t_s, sim_decay_at(before, l->tau_s, s));
 }
 
 /* With what it has of its neighbours. */
@@ -132,13 +132,21 @@ double sim_glove_volt(const struct sim_glove *g, unsigned i, double t_s)
     return shown_V(g, i, bent_rad(g, i, t_s, NULL));
 }
 
+static int rests(const struct sim_glove *g, int i)
+{
+    return i < 0 || sim_lag_rests(&g->angle_rad[g->of[i]]);
+}
+
 /* The same, of a channel without a fault again only if it moves. */
 static double volt_V(struct sim_glove *g, unsigned i, double t_s)
 {
+    const int *bend = sim_glove_sensor[i].bend;
     if (g->fault[i] != SIM_GLOVE_WELL) { return sim_glove_volt(g, i, t_s); }
-    if (g->moves & g->sees[i]) {
+    if (g->moves >> i & 1) {
         g->volt_V[i] = shown_V(g, i, bent_rad(g, i, t_s, &g->low_pass[i]));
-        if (sim_lag_rests(&g->angle_rad[i])) { g->moves &= ~(UINT32_C(1) << i); }
+        if (rests(g, (int)i) && rests(g, bend[0]) && rests(g, bend[1])) {
+            g->moves &= ~(UINT32_C(1) << i);
+        }
     }
     return g->volt_V[i];
 }
@@ -151,31 +159,40 @@ void sim_glove_start(struct sim_glove *g, const struct sim_glove_par *p, uint64_
     g->rng.state = seed;
     for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
         sim_lag_start(&g->angle_rad[i], 1 / (TWO_PI * p->cutoff_Hz), angle_rad[i]);
+        g->of[i] = (unsigned char)i;
+        g->share[i] = 1;
+        g->seen[i] |= UINT32_C(1) << i;
+        for (int k = 0; k < 2 && sim_glove_sensor[i].bend[k] >= 0; k++) {
+            g->seen[sim_glove_sensor[i].bend[k]] |= UINT32_C(1) << i;
+        }
     }
-    for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
-        const int *bend = sim_glove_sensor[i].bend;
-        g->sees[i] = UINT32_C(1) << i | (bend[0] < 0 ? 0 : UINT32_C(1) << bend[0]) |
-                     (bend[1] < 0 ? 0 : UINT32_C(1) << bend[1]);
-        g->volt_V[i] = sim_glove_volt(g, i, 0);
-    }
+    g->moves = (UINT32_C(1) << SIM_GLOVE_SENSORS) - 1;
     g->slot_left = p->settle_s > 0 ? sim_exp_neg(p->interval_s / p->settle_s) : 0;
     g->code_perV = CODES / p->span_V;
     g->noise_V_perLSB = p->noise_V / 6;
     g->noise_V_most = p->noise_V / 2;
-    g->held_V = g->volt_V[0];
+    g->held_V = sim_glove_volt(g, 0, 0);
     g->held_s = -1;
 }
 
 void sim_glove_move(struct sim_glove *g, unsigned i, const struct sim_curve *x)
 {
     sim_lag_follow(&g->angle_rad[i], x);
-    g->moves |= UINT32_C(1) << i;
+    g->moves |= g->seen[i];
 }
 
 void sim_glove_line(struct sim_glove *g, unsigned i, const struct sim_line *x, double left)
 {
     sim_lag_line(&g->angle_rad[i], x, left);
-    g->moves |= UINT32_C(1) << i;
+    g->moves |= g->seen[i];
+}
+
+void sim_glove_follow(struct sim_glove *g, unsigned i, unsigned of, double share)
+{
+    g->of[i] = (unsigned char)of;
+    g->share[i] = share;
+    g->seen[of] |= g->seen[i];
+    g->moves |= g->seen[i];
 }
 
 /* Twelve uniforms make a normal of deviation 1 within +-6; what is known by its peak-to-peak
@@ -196,7 +213,7 @@ static int16_t code_of(double v)
 
 /* The multiplexer goes on as soon as a channel is held: what is left of the one before has
  * the whole slot to decay. */
-static int16_t convert(struct sim_glove *g, unsigned i, double t_s, double left)
+static inline int16_t convert(struct sim_glove *g, unsigned i, double t_s, double left)
 {
     double v = volt_V(g, i, t_s);
     v += (g->held_V - v) * left;
@@ -214,9 +231,14 @@ int16_t sim_glove_convert(struct sim_glove *g, unsigned i, double t_s)
     return convert(g, i, t_s, stood ? sim_exp_neg(slot_s / settle_s) : 0);
 }
 
-int16_t sim_glove_convert_next(struct sim_glove *g, unsigned i, double t_s)
+void sim_glove_scan(struct sim_glove *g, unsigned first, unsigned end, double tick_s, int16_t *raw)
 {
-    return i == 0 ? sim_glove_convert(g, 0, t_s) : convert(g, i, t_s, g->slot_left);
+    if (first == 0 && end > 0) {
+        raw[first++] = sim_glove_convert(g, 0, sim_glove_held_s(&g->par, 0, tick_s));
+    }
+    for (unsigned i = first; i < end; i++) {
+        raw[i] = convert(g, i, sim_glove_held_s(&g->par, i, tick_s), g->slot_left);
+    }
 }
 
 int16_t sim_glove_code(const struct sim_glove_par *p, double v_V)

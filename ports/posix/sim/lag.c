@@ -55,17 +55,11 @@ double sim_curve_at(const struct sim_curve *x, double t_s)
 
 static double size_of(double v) { return v < 0 ? -v : v; }
 
-/* What the output runs after: the particular solution, which for a polynomial is
- * x - tau x' + tau^2 x'' - …, and for the sine the sine, smaller and later. */
-static double target(const struct sim_lag *l, double s)
+double sim_lag_sine(const struct sim_lag *l, double s)
 {
-    double v = sim_poly(l->p, l->terms, s);
-    if (l->x.amp != 0) {
-        const double wt = l->x.omega_radps * l->tau_s;
-        const double a = l->x.omega_radps * s + l->x.phase_rad;
-        v += l->x.amp / (1 + wt * wt) * (sim_sin(a) - wt * sim_cos(a));
-    }
-    return v;
+    const double wt = l->x.omega_radps * l->tau_s;
+    const double a = l->x.omega_radps * s + l->x.phase_rad;
+    return l->x.amp / (1 + wt * wt) * (sim_sin(a) - wt * sim_cos(a));
 }
 
 void sim_lag_start(struct sim_lag *l, double tau_s, double x)
@@ -87,13 +81,13 @@ void sim_lag_follow(struct sim_lag *l, const struct sim_curve *x)
         l->p[k] = above;
     }
     l->terms = sim_poly_terms(l->p);
-    l->off = l->tau_s > 0 ? y - target(l, 0) : 0;
+    l->off = l->tau_s > 0 ? y - sim_lag_target(l, 0) : 0;
 }
 
 double sim_lag_at(const struct sim_lag *l, double t_s)
 {
     const double s = t_s - l->x.start_s;
-    double y = target(l, s);
+    double y = sim_lag_target(l, s);
     if (l->off != 0 && !(s > SETTLED * l->tau_s && size_of(l->off) < 900 * size_of(y))) {
         y += l->off * sim_exp_neg(s / l->tau_s);
     }
@@ -108,11 +102,6 @@ double sim_decay_at(struct sim_decay *d, double tau_s, double s)
         d->left[at] = sim_exp_neg(s / tau_s);
     }
     return d->left[at];
-}
-
-double sim_lag_left(const struct sim_lag *l, double t_s, double left)
-{
-    return target(l, t_s - l->x.start_s) + l->off * left;
 }
 
 void sim_lag_line(struct sim_lag *l, const struct sim_line *x, double left)

@@ -51,6 +51,15 @@ void sim_lag_start(struct sim_lag *l, double tau_s, double x);
 /* From x->start_s on, the input is x; the output goes on from where it is then. */
 void sim_lag_follow(struct sim_lag *l, const struct sim_curve *x);
 
+/* What the output runs after: the particular solution, which for a polynomial is
+ * x - tau x' + tau^2 x'' - …, and for the sine the sine, smaller and later. */
+double sim_lag_sine(const struct sim_lag *l, double s);
+static inline double sim_lag_target(const struct sim_lag *l, double s)
+{
+    const double v = sim_poly(l->p, l->terms, s);
+    return l->x.amp != 0 ? v + sim_lag_sine(l, s) : v;
+}
+
 /* The output at t_s >= start. */
 double sim_lag_at(const struct sim_lag *l, double t_s);
 
@@ -73,7 +82,10 @@ static inline int sim_lag_rests(const struct sim_lag *l)
 struct sim_line {
     double start_s, at, slope;
 };
-double sim_lag_left(const struct sim_lag *l, double t_s, double left);
+static inline double sim_lag_left(const struct sim_lag *l, double t_s, double left)
+{
+    return sim_lag_target(l, t_s - l->x.start_s) + l->off * left;
+}
 void sim_lag_line(struct sim_lag *l, const struct sim_line *x, double left);
 
 /* Sine and cosine from + - x; |x| < 1e6; error < 1e-15 + 1e-16 |x|. */

@@ -39,14 +39,9 @@ void sim_mass_put(struct sim_mass *m, double x_m, double q_m)
 static double earlier(double a, double b) { return a < b ? a : b; }
 
 /* The plant by itself, up to the next event. */
-static void advance_plant(struct sim_mass *m, double to_s)
+static void advance_plant(struct sim_mass *m, double dt_s)
 {
-    const double dt_s = sim_grid_s(m->now_s, to_s);
     const struct plant_piece *piece;
-    if (m->benched) {
-        bench_advance(&m->bench, &m->plant, to_s - m->now_s, m->ref_A);
-        return;
-    }
     if (!(dt_s > 0)) { return; }
     piece = plant_pieces_find(&m->pieces, &m->device, dt_s, 0);
     if (m->fall.phase == FALL_FREE) {
@@ -61,12 +56,19 @@ static void advance_plant(struct sim_mass *m, double to_s)
 void sim_mass_advance(struct sim_mass *m, double until_s)
 {
     const struct sim_device *d = &m->device;
+    double grid_s = sim_grid(m->now_s);
     while (m->now_s < until_s) {
         double next_s = earlier(until_s, m->servo_s);
         if (!m->benched) { next_s = earlier(next_s, fall_next_s(&m->fall)); }
         if (next_s > m->now_s) {
-            advance_plant(m, next_s);
+            const double to_s = sim_grid(next_s);
+            if (m->benched) {
+                bench_advance(&m->bench, &m->plant, next_s - m->now_s, m->ref_A);
+            } else {
+                advance_plant(m, to_s - grid_s);
+            }
             m->now_s = next_s;
+            grid_s = to_s;
         }
         if (m->servo_s <= m->now_s) {
             m->ref_A = m->latched_A;
