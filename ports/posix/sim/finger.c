@@ -82,9 +82,9 @@ void sim_finger_safe(struct sim_finger *f) { f->latched_A = f->ref_A = 0; }
 static double earlier(double a, double b) { return a < b ? a : b; }
 
 /* The finger by itself, up to the next event. */
-static void advance_plant(struct sim_finger *f, double to_s)
+static void advance_plant(struct sim_finger *f, double to_s, double dt_s)
 {
-    const double dt_s = sim_grid_s(f->now_s, to_s), at_m = sim_path_at(&f->path, to_s);
+    const double at_m = sim_path_at(&f->path, to_s);
     const struct plant_hand hand = {
         f->par.k_Npm, f->par.b_Nspm, f->target_m, (at_m - f->target_m) / (to_s - f->now_s), 0};
     if (dt_s > 0) {
@@ -97,12 +97,21 @@ static void advance_plant(struct sim_finger *f, double to_s)
 
 void sim_finger_advance(struct sim_finger *f, double until_s)
 {
+    double grid_s = sim_grid(f->now_s), turn_s = sim_path_next_s(&f->path);
     while (f->now_s < until_s) {
         const double from_s = f->now_s;
         double to_s = earlier(earlier(until_s, from_s + PIECE_S), f->servo_s);
-        if (sim_path_advance(&f->path, from_s)) { f->target_m = sim_path_at(&f->path, from_s); }
-        to_s = earlier(to_s, sim_path_next_s(&f->path));
-        if (to_s > from_s) { advance_plant(f, to_s); }
+        if (turn_s <= from_s) {
+            sim_path_advance(&f->path, from_s);
+            turn_s = sim_path_next_s(&f->path);
+            f->target_m = sim_path_at(&f->path, from_s);
+        }
+        to_s = earlier(to_s, turn_s);
+        if (to_s > from_s) {
+            const double to_grid_s = sim_grid(to_s);
+            advance_plant(f, to_s, to_grid_s - grid_s);
+            grid_s = to_grid_s;
+        }
         if (f->servo_s <= f->now_s) {
             f->ref_A = f->latched_A;
             f->servo_s += 1 / f->device.servo_hz;

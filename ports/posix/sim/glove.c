@@ -137,16 +137,14 @@ static int rests(const struct sim_glove *g, int i)
     return i < 0 || sim_lag_rests(&g->angle_rad[g->of[i]]);
 }
 
-/* The same, of a channel without a fault again only if it moves. */
-static double volt_V(struct sim_glove *g, unsigned i, double t_s)
+/* The same, of a channel without a fault kept. */
+static double moved_V(struct sim_glove *g, unsigned i, double t_s)
 {
     const int *bend = sim_glove_sensor[i].bend;
     if (g->fault[i] != SIM_GLOVE_WELL) { return sim_glove_volt(g, i, t_s); }
-    if (g->moves >> i & 1) {
-        g->volt_V[i] = shown_V(g, i, bent_rad(g, i, t_s, &g->low_pass[i]));
-        if (rests(g, (int)i) && rests(g, bend[0]) && rests(g, bend[1])) {
-            g->moves &= ~(UINT32_C(1) << i);
-        }
+    g->volt_V[i] = shown_V(g, i, bent_rad(g, i, t_s, &g->low_pass[i]));
+    if (rests(g, (int)i) && rests(g, bend[0]) && rests(g, bend[1])) {
+        g->moves &= ~(UINT32_C(1) << i);
     }
     return g->volt_V[i];
 }
@@ -195,17 +193,15 @@ void sim_glove_follow(struct sim_glove *g, unsigned i, unsigned of, double share
     g->moves |= g->seen[i];
 }
 
-/* Twelve uniforms make a normal of deviation 1 within +-6; what is known by its peak-to-peak
- * value is clipped there. 3 deviations: a thousand samples have reached it about once on
- * either side, so that a second at any usual rate measures all of it. */
-static double noise_V(struct sim_glove *g)
+/* What is known by its peak-to-peak value is clipped there. 3 deviations: a thousand samples have
+ * reached it about once on either side, so that a second at any usual rate measures all of it. */
+static inline double noise_V(struct sim_glove *g)
 {
-    const double lsb = (sim_random_sum(&g->rng, 3) - 6 * 65535) * (1.0 / 65536);
-    return limit(lsb * g->noise_V_perLSB, g->noise_V_most);
+    return limit(sim_random_normal(&g->rng) * g->noise_V_perLSB, g->noise_V_most);
 }
 
 /* Of a voltage in codes. */
-static int16_t code_of(double v)
+static inline int16_t code_of(double v)
 {
     v += CODES + 0.5; /* the cast cuts it off */
     return (int16_t)(v < 0 ? -32768 : v >= 65536 ? 32767 : (int32_t)v - 32768);
@@ -215,7 +211,8 @@ static int16_t code_of(double v)
  * the whole slot to decay. */
 static inline int16_t convert(struct sim_glove *g, unsigned i, double t_s, double left)
 {
-    double v = volt_V(g, i, t_s);
+    const int known = g->fault[i] == SIM_GLOVE_WELL && !(g->moves >> i & 1);
+    double v = known ? g->volt_V[i] : moved_V(g, i, t_s);
     v += (g->held_V - v) * left;
     g->held_V = v;
     g->held_s = t_s;

@@ -251,17 +251,15 @@ void sim_path_start(struct sim_path *p, const struct sim_path_par *par,
     stay(p, 0);
 }
 
-int sim_path_advance(struct sim_path *p, double t_s)
+void sim_path_advance(struct sim_path *p, double t_s)
 {
-    int turns = 0;
-    for (; p->phase != SIM_PATH_DONE && t_s >= p->end_s; turns = 1) {
+    while (p->phase != SIM_PATH_DONE && t_s >= p->end_s) {
         if (p->phase == SIM_PATH_PLAY) {
             next_row(p);
         } else {
             next_phase(p);
         }
     }
-    return turns;
 }
 
 double sim_path_next_s(const struct sim_path *p)

@@ -86,8 +86,8 @@ struct sim_path {
 void sim_path_start(struct sim_path *p, const struct sim_path_par *par,
     const struct sim_path_load *load, const struct sim_path_record *record, uint64_t seed);
 
-/* Everything that begins at or before t_s, 1: something did; and when the next thing begins. */
-int sim_path_advance(struct sim_path *p, double t_s);
+/* Everything that begins at or before t_s; and when the next thing begins. */
+void sim_path_advance(struct sim_path *p, double t_s);
 double sim_path_next_s(const struct sim_path *p);
 
 /* The spring's end, and the script itself; t_s from the phase's begin to its end. */
