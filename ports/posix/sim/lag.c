@@ -97,7 +97,7 @@ double sim_lag_at(const struct sim_lag *l, double t_s)
 double sim_decay_at(struct sim_decay *d, double tau_s, double s)
 {
     const unsigned at = sim_grid_slot(s, 2);
-    if (d->s[at] != s) {
+    if (d->s[at] != s || d->left[at] == 0) {
         d->s[at] = s;
         d->left[at] = sim_exp_neg(s / tau_s);
     }

@@ -63,8 +63,8 @@ static inline double sim_lag_target(const struct sim_lag *l, double s)
 /* The output at t_s >= start. */
 double sim_lag_at(const struct sim_lag *l, double t_s);
 
-/* e^-(s / tau_s) for s >= 0 of sim_grid_s(), as it was last worked out for one of two lengths. All
- * 0: for none yet. Of one tau. */
+/* e^-(s / tau_s) for s >= 0 of sim_grid_s(), as it was last worked out for one of two lengths. left
+ * 0: for none yet, since s may be 0. Of one tau. */
 struct sim_decay {
     double s[2], left[2];
 };
