@@ -152,13 +152,16 @@ static void feed(struct sim_exo *e, struct sim_glove *g)
 void sim_exo_frame(
     struct sim_exo *e, struct sim_glove *g, double tick_s, int16_t raw[SIM_GLOVE_SENSORS])
 {
+    const double last_s = sim_glove_held_s(&g->par, SIM_GLOVE_SENSORS - 1, tick_s);
     unsigned i = 0, end;
     while (i < SIM_GLOVE_SENSORS) {
-        double held_s = sim_glove_held_s(&g->par, i, tick_s);
+        const double held_s = sim_glove_held_s(&g->par, i, tick_s);
+        const struct sim_exo_point *next;
         while (e->points > 1 && e->point[e->first].t_s <= held_s) { feed(e, g); }
-        for (end = i + 1; end < SIM_GLOVE_SENSORS; end++) {
-            held_s = sim_glove_held_s(&g->par, end, tick_s);
-            if (e->points > 1 && e->point[e->first].t_s <= held_s) { break; }
+        next = &e->point[e->first];
+        end = SIM_GLOVE_SENSORS;
+        if (e->points > 1 && next->t_s <= last_s) { /* in the midst of the frame */
+            for (end = i + 1; sim_glove_held_s(&g->par, end, tick_s) < next->t_s; end++) {}
         }
         sim_glove_scan(g, i, end, tick_s, raw);
         i = end;

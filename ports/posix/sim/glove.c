@@ -195,9 +195,9 @@ void sim_glove_follow(struct sim_glove *g, unsigned i, unsigned of, double share
 
 /* What is known by its peak-to-peak value is clipped there. 3 deviations: a thousand samples have
  * reached it about once on either side, so that a second at any usual rate measures all of it. */
-static inline double noise_V(struct sim_glove *g)
+static inline double noise_V(const struct sim_glove *g, struct sim_random *r)
 {
-    return limit(sim_random_normal(&g->rng) * g->noise_V_perLSB, g->noise_V_most);
+    return limit(sim_random_normal(r) * g->noise_V_perLSB, g->noise_V_most);
 }
 
 /* Of a voltage in codes. */
@@ -207,35 +207,48 @@ static inline int16_t code_of(double v)
     return (int16_t)(v < 0 ? -32768 : v >= 65536 ? 32767 : (int32_t)v - 32768);
 }
 
-/* The multiplexer goes on as soon as a channel is held: what is left of the one before has
- * the whole slot to decay. */
-static inline int16_t convert(struct sim_glove *g, unsigned i, double t_s, double left)
+/* Channels first to end - 1, the first held at t_s. The multiplexer goes on as soon as a channel is
+ * held: what is left of the one before has the whole slot to decay; left: of that before the first.
+ */
+static void convert(
+    struct sim_glove *g, unsigned first, unsigned end, double t_s, double tick_s, double left)
 {
-    const int known = g->fault[i] == SIM_GLOVE_WELL && !(g->moves >> i & 1);
-    double v = known ? g->volt_V[i] : moved_V(g, i, t_s);
-    v += (g->held_V - v) * left;
-    g->held_V = v;
+    struct sim_random rng = g->rng;
+    double held_V = g->held_V;
+    for (unsigned i = first; i < end; i++) {
+        const int known = g->fault[i] == SIM_GLOVE_WELL && !(g->moves >> i & 1);
+        double v;
+        if (i > first) { t_s = sim_glove_held_s(&g->par, i, tick_s); }
+        v = known ? g->volt_V[i] : moved_V(g, i, t_s);
+        v += (held_V - v) * left;
+        held_V = v;
+        left = g->slot_left;
+        if (g->noise_V_most > 0) { v += noise_V(g, &rng); }
+        if (g->fault[i] != SIM_GLOVE_STUCK) { g->code[i] = code_of(v * g->code_perV); }
+    }
+    g->rng = rng;
+    g->held_V = held_V;
     g->held_s = t_s;
-    if (g->noise_V_most > 0) { v += noise_V(g); }
-    if (g->fault[i] != SIM_GLOVE_STUCK) { g->code[i] = code_of(v * g->code_perV); }
-    return g->code[i];
+}
+
+/* Of the channel before, behind a slot of any length. */
+static double left_at(const struct sim_glove *g, double t_s)
+{
+    const double slot_s = t_s - g->held_s, settle_s = g->par.settle_s;
+    return settle_s > 0 && slot_s > 0 ? sim_exp_neg(slot_s / settle_s) : 0;
 }
 
 int16_t sim_glove_convert(struct sim_glove *g, unsigned i, double t_s)
 {
-    const double slot_s = t_s - g->held_s, settle_s = g->par.settle_s;
-    const int stood = settle_s > 0 && slot_s > 0;
-    return convert(g, i, t_s, stood ? sim_exp_neg(slot_s / settle_s) : 0);
+    convert(g, i, i + 1, t_s, t_s, left_at(g, t_s));
+    return g->code[i];
 }
 
 void sim_glove_scan(struct sim_glove *g, unsigned first, unsigned end, double tick_s, int16_t *raw)
 {
-    if (first == 0 && end > 0) {
-        raw[first++] = sim_glove_convert(g, 0, sim_glove_held_s(&g->par, 0, tick_s));
-    }
-    for (unsigned i = first; i < end; i++) {
-        raw[i] = convert(g, i, sim_glove_held_s(&g->par, i, tick_s), g->slot_left);
-    }
+    const double t_s = sim_glove_held_s(&g->par, first, tick_s);
+    convert(g, first, end, t_s, tick_s, first == 0 ? left_at(g, t_s) : g->slot_left);
+    memcpy(raw + first, g->code + first, (end - first) * sizeof raw[0]);
 }
 
 int16_t sim_glove_code(const struct sim_glove_par *p, double v_V)
