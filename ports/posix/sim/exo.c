@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "exo.h"
 
+#include "grid.h"
+
 #include <string.h>
 
 #define POINT_S 250e-6 /* between two points the fingers move on straight lines */
@@ -50,6 +52,7 @@ int sim_exo_start(struct sim_exo *e, const struct sim_exo_par *p, const struct s
     e->gloved = gloved;
     e->first = e->points = 0;
     e->torn = 0;
+    memset(&e->way, 0, sizeof e->way);
     for (unsigned i = 0; i < SIM_FINGERS; i++) {
         struct sim_path_par path = p->path[i];
         if (!used(e, i)) { continue; }
@@ -109,24 +112,37 @@ void sim_exo_glove(struct sim_exo *e, struct sim_glove *g, const struct sim_glov
         }
     }
     sim_glove_start(g, p, seed, at_rad);
+    for (unsigned i = 0; i < SIM_FINGERS; i++) {
+        const double *radpm = e->finger[i].bend_radpm;
+        for (int j = 1; j < 3 && used(e, i) && bends[i][j] >= 0; j++) {
+            sim_glove_follow(g, (unsigned)bends[i][j], (unsigned)bends[i][0], radpm[1] / radpm[0]);
+        }
+    }
 }
 
-/* The way from the oldest point to the next, into the glove; the oldest is then done with. */
+/* The way from the oldest point to the next, into the glove; the oldest is then done with. All
+ * knuckles that move began the last one at once, so they share what their low-pass has left. */
 static void feed(struct sim_exo *e, struct sim_glove *g)
 {
     const struct sim_exo_point *a = &e->point[e->first];
     const struct sim_exo_point *b = &e->point[(e->first + 1) % SIM_EXO_POINTS];
+    double from_s = -1, left = 0;
     for (unsigned i = 0; i < SIM_FINGERS; i++) {
+        const double radpm = e->finger[i].bend_radpm[0];
+        const unsigned knuckle = (unsigned)bends[i][0];
+        struct sim_lag *l = &g->angle_rad[knuckle];
+        struct sim_line way;
         if (!used(e, i)) { continue; }
-        for (int j = 0; j < 3 && bends[i][j] >= 0; j++) {
-            const double bend = e->finger[i].bend_radpm[j > 0];
-            const double slope = bend * ((b->x_m[i] - a->x_m[i]) / (b->t_s - a->t_s));
-            const struct sim_curve x = {a->t_s, {bend * a->x_m[i], slope}, 0, 0, 0};
-            struct sim_lag *l = &g->angle_rad[bends[i][j]];
-            /* All that is left is many lags long: whatever was before has died out. */
-            if (e->torn) { sim_lag_start(l, l->tau_s, x.c[0]); }
-            sim_lag_follow(l, &x);
+        way.start_s = a->t_s;
+        way.at = radpm * a->x_m[i];
+        way.slope = radpm * ((b->x_m[i] - a->x_m[i]) / (b->t_s - a->t_s));
+        /* All that is left is many lags long: whatever was before has died out. */
+        if (e->torn) { sim_lag_start(l, l->tau_s, way.at); }
+        if (l->x.start_s != from_s) {
+            from_s = l->x.start_s;
+            left = sim_decay_at(&e->way, l->tau_s, sim_grid_s(from_s, a->t_s));
         }
+        sim_glove_line(g, knuckle, &way, left);
     }
     e->torn = 0;
     e->first = (e->first + 1) % SIM_EXO_POINTS;
@@ -136,9 +152,18 @@ static void feed(struct sim_exo *e, struct sim_glove *g)
 void sim_exo_frame(
     struct sim_exo *e, struct sim_glove *g, double tick_s, int16_t raw[SIM_GLOVE_SENSORS])
 {
-    for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
+    const double last_s = sim_glove_held_s(&g->par, SIM_GLOVE_SENSORS - 1, tick_s);
+    unsigned i = 0, end;
+    while (i < SIM_GLOVE_SENSORS) {
         const double held_s = sim_glove_held_s(&g->par, i, tick_s);
+        const struct sim_exo_point *next;
         while (e->points > 1 && e->point[e->first].t_s <= held_s) { feed(e, g); }
-        raw[i] = sim_glove_convert(g, i, held_s);
+        next = &e->point[e->first];
+        end = SIM_GLOVE_SENSORS;
+        if (e->points > 1 && next->t_s <= last_s) { /* in the midst of the frame */
+            for (end = i + 1; sim_glove_held_s(&g->par, end, tick_s) < next->t_s; end++) {}
+        }
+        sim_glove_scan(g, i, end, tick_s, raw);
+        i = end;
     }
 }

@@ -29,7 +29,8 @@ struct sim_exo {
         double t_s, x_m[SIM_FINGERS];
     } point[SIM_EXO_POINTS]; /* where the fingers were, oldest first in the ring */
     unsigned first, points;
-    int torn; /* points were overwritten before a glove had asked for them */
+    struct sim_decay way; /* what the glove's low-pass leaves from point to point */
+    int torn;             /* points were overwritten before a glove had asked for them */
 };
 
 /* 0, or -1: more fingers than there are. gloved: the way is kept for a glove. */

@@ -12,6 +12,7 @@
 #include "finger.h"
 
 #include "codes.h"
+#include "grid.h"
 
 #define PIECE_S 250e-6 /* the target moves on a straight line for no longer */
 
@@ -69,7 +70,7 @@ void sim_finger_start(struct sim_finger *f, const struct sim_finger_par *par,
     f->bend_radpm[0] = par->arm_m[0] / square;
     f->bend_radpm[1] = rest / square;
     sim_path_start(&f->path, path, &load, record, sim_random_u64(&f->rng));
-    f->plant.x_m = f->plant.q_m = sim_path_at(&f->path, 0);
+    f->plant.x_m = f->plant.q_m = f->target_m = sim_path_at(&f->path, 0);
     f->grid = sim_random_unit(&f->rng);
     f->servo_s = sim_random_unit(&f->rng) / d->servo_hz;
 }
@@ -80,22 +81,36 @@ void sim_finger_safe(struct sim_finger *f) { f->latched_A = f->ref_A = 0; }
 
 static double earlier(double a, double b) { return a < b ? a : b; }
 
+/* The finger by itself, up to the next event. */
+static void advance_plant(struct sim_finger *f, double to_s, double dt_s)
+{
+    const double at_m = sim_path_at(&f->path, to_s);
+    const struct plant_hand hand = {
+        f->par.k_Npm, f->par.b_Nspm, f->target_m, (at_m - f->target_m) / (to_s - f->now_s), 0};
+    if (dt_s > 0) {
+        plant_advance_hand_piece(&f->plant, &f->device,
+            plant_pieces_find(&f->pieces, &f->device, dt_s, hand.b_Nspm), f->ref_A, &hand);
+    }
+    f->target_m = at_m;
+    f->now_s = to_s;
+}
+
 void sim_finger_advance(struct sim_finger *f, double until_s)
 {
+    double grid_s = sim_grid(f->now_s), turn_s = sim_path_next_s(&f->path);
     while (f->now_s < until_s) {
         const double from_s = f->now_s;
         double to_s = earlier(earlier(until_s, from_s + PIECE_S), f->servo_s);
-        struct plant_hand hand;
-        sim_path_advance(&f->path, from_s);
-        to_s = earlier(to_s, sim_path_next_s(&f->path));
+        if (turn_s <= from_s) {
+            sim_path_advance(&f->path, from_s);
+            turn_s = sim_path_next_s(&f->path);
+            f->target_m = sim_path_at(&f->path, from_s);
+        }
+        to_s = earlier(to_s, turn_s);
         if (to_s > from_s) {
-            hand.k_Npm = f->par.k_Npm;
-            hand.b_Nspm = f->par.b_Nspm;
-            hand.end_m = 0;
-            hand.x_m = sim_path_at(&f->path, from_s);
-            hand.v_mps = (sim_path_at(&f->path, to_s) - hand.x_m) / (to_s - from_s);
-            plant_advance_hand(&f->plant, &f->device, to_s - from_s, f->ref_A, &hand);
-            f->now_s = to_s;
+            const double to_grid_s = sim_grid(to_s);
+            advance_plant(f, to_s, to_grid_s - grid_s);
+            grid_s = to_grid_s;
         }
         if (f->servo_s <= f->now_s) {
             f->ref_A = f->latched_A;

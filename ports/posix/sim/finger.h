@@ -40,6 +40,8 @@ struct sim_finger {
     struct sim_finger_par par;
     struct sim_path path;
     struct plant plant;
+    struct plant_pieces pieces;
+    double target_m; /* of the path, now */
     struct sim_random rng;
     double now_s;
     double latched_A;     /* D/A output */

@@ -8,6 +8,7 @@
  */
 #include "glove.h"
 
+#include "grid.h"
 #include "plant.h"
 
 #include <stddef.h>
@@ -16,6 +17,8 @@
 #define TWO_PI 6.283185307179586
 #define DEG    (TWO_PI / 360)
 #define CODES  32768.0 /* either side of 0 V */
+
+#define FORGOTTEN 700 /* so many time constants: e^-700 is 0 */
 
 const struct sim_device_row sim_glove_row[] = {
     {"excite", "v", 5, 0.1, 20, "ours", "across each sensor and its series resistors"},
@@ -81,24 +84,6 @@ int sim_glove_set(
     return sim_rows_set(p, sim_glove_row, sim_glove_rows, name, value, row);
 }
 
-void sim_glove_start(struct sim_glove *g, const struct sim_glove_par *p, uint64_t seed,
-    const double angle_rad[SIM_GLOVE_SENSORS])
-{
-    memset(g, 0, sizeof *g);
-    g->par = *p;
-    g->rng.state = seed;
-    for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
-        sim_lag_start(&g->angle_rad[i], 1 / (TWO_PI * p->cutoff_Hz), angle_rad[i]);
-    }
-    g->held_V = sim_glove_volt(g, 0, 0);
-    g->held_s = -1;
-}
-
-void sim_glove_move(struct sim_glove *g, unsigned i, const struct sim_curve *x)
-{
-    sim_lag_follow(&g->angle_rad[i], x);
-}
-
 static double limit(double v, double most) { return v > most ? most : v < -most ? -most : v; }
 
 /* Of a share of the excitation. */
@@ -107,59 +92,166 @@ static double amplified(const struct sim_glove_par *p, double share)
     return limit(p->gain * p->excite_V * share + p->offset_V, p->rail_V);
 }
 
-double sim_glove_volt(const struct sim_glove *g, unsigned i, double t_s)
+/* As the sensor sees it, behind the low-pass. before: of this channel; NULL: nothing is kept. */
+static double angle_rad(const struct sim_glove *g, unsigned i, double t_s, struct sim_decay *before)
+{
+    const struct sim_lag *l = &g->angle_rad[g->of[i]];
+    const double s = before ? sim_grid_s(l->x.start_s, t_s) : 0;
+    if (before == NULL || sim_lag_settled(l) || s > FORGOTTEN * l->tau_s) {
+        return g->share[i] * sim_lag_at(l, t_s);
+    }
+    return g->share[i] * sim_lag_left(l, t_s, sim_decay_at(before, l->tau_s, s));
+}
+
+/* With what it has of its neighbours. */
+static double bent_rad(const struct sim_glove *g, unsigned i, double t_s, struct sim_decay *before)
+{
+    const struct sim_glove_sensor *n = &sim_glove_sensor[i];
+    double rad = angle_rad(g, i, t_s, before);
+    for (int k = 0; k < 2 && n->bend[k] >= 0 && g->par.couple != 0; k++) {
+        rad += g->par.couple / 2 * angle_rad(g, (unsigned)n->bend[k], t_s, before);
+    }
+    return rad;
+}
+
+static double shown_V(const struct sim_glove *g, unsigned i, double rad)
 {
     const struct sim_glove_par *p = &g->par;
     const struct sim_glove_sensor *n = &sim_glove_sensor[i];
-    double rad = sim_lag_at(&g->angle_rad[i], t_s);
     double share;
     if (g->fault[i] == SIM_GLOVE_RAIL_HIGH) { return p->rail_V; }
     if (g->fault[i] == SIM_GLOVE_RAIL_LOW) { return -p->rail_V; }
     if (g->fault[i] == SIM_GLOVE_OPEN) { return amplified(p, 1); }
     if (g->fault[i] == SIM_GLOVE_SHORT) { return amplified(p, 0); }
-    for (int k = 0; k < 2 && n->bend[k] >= 0 && p->couple != 0; k++) {
-        rad += p->couple / 2 * sim_lag_at(&g->angle_rad[n->bend[k]], t_s);
-    }
     share = n->lo + (rad - n->lo_deg * DEG) * ((n->hi - n->lo) / ((n->hi_deg - n->lo_deg) * DEG));
     return amplified(p, p->dead + (1 - 2 * p->dead) * share);
 }
 
-double sim_glove_held_s(const struct sim_glove_par *p, unsigned i, double tick_s)
+double sim_glove_volt(const struct sim_glove *g, unsigned i, double t_s)
 {
-    return tick_s - (SIM_GLOVE_SENSORS - i) * p->interval_s;
+    return shown_V(g, i, bent_rad(g, i, t_s, NULL));
 }
 
-/* Twelve uniforms make a normal of deviation 1 within +-6; what is known by its peak-to-peak
- * value is clipped there. 3 deviations: a thousand samples have reached it about once on
- * either side, so that a second at any usual rate measures all of it. */
-static double noise(struct sim_random *r, double pp)
+static int rests(const struct sim_glove *g, int i)
 {
-    int32_t sum = 0;
-    for (int k = 0; k < 3; k++) {
-        const uint64_t u = sim_random_u64(r);
-        sum += (int32_t)((u & 0xFFFF) + (u >> 16 & 0xFFFF) + (u >> 32 & 0xFFFF) + (u >> 48));
+    return i < 0 || sim_lag_rests(&g->angle_rad[g->of[i]]);
+}
+
+/* The same, of a channel without a fault kept. */
+static double moved_V(struct sim_glove *g, unsigned i, double t_s)
+{
+    const int *bend = sim_glove_sensor[i].bend;
+    if (g->fault[i] != SIM_GLOVE_WELL) { return sim_glove_volt(g, i, t_s); }
+    g->volt_V[i] = shown_V(g, i, bent_rad(g, i, t_s, &g->low_pass[i]));
+    if (rests(g, (int)i) && rests(g, bend[0]) && rests(g, bend[1])) {
+        g->moves &= ~(UINT32_C(1) << i);
     }
-    return limit((sum - 6 * 65535) * (1.0 / 65536) * (pp / 6), pp / 2);
+    return g->volt_V[i];
 }
 
-/* The multiplexer goes on as soon as a channel is held: what is left of the one before has
- * the whole slot to decay. */
+void sim_glove_start(struct sim_glove *g, const struct sim_glove_par *p, uint64_t seed,
+    const double angle_rad[SIM_GLOVE_SENSORS])
+{
+    memset(g, 0, sizeof *g);
+    g->par = *p;
+    g->rng.state = seed;
+    for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
+        sim_lag_start(&g->angle_rad[i], 1 / (TWO_PI * p->cutoff_Hz), angle_rad[i]);
+        g->of[i] = (unsigned char)i;
+        g->share[i] = 1;
+        g->seen[i] |= UINT32_C(1) << i;
+        for (int k = 0; k < 2 && sim_glove_sensor[i].bend[k] >= 0; k++) {
+            g->seen[sim_glove_sensor[i].bend[k]] |= UINT32_C(1) << i;
+        }
+    }
+    g->moves = (UINT32_C(1) << SIM_GLOVE_SENSORS) - 1;
+    g->slot_left = p->settle_s > 0 ? sim_exp_neg(p->interval_s / p->settle_s) : 0;
+    g->code_perV = CODES / p->span_V;
+    g->noise_V_perLSB = p->noise_V / 6;
+    g->noise_V_most = p->noise_V / 2;
+    g->held_V = sim_glove_volt(g, 0, 0);
+    g->held_s = -1;
+}
+
+void sim_glove_move(struct sim_glove *g, unsigned i, const struct sim_curve *x)
+{
+    sim_lag_follow(&g->angle_rad[i], x);
+    g->moves |= g->seen[i];
+}
+
+void sim_glove_line(struct sim_glove *g, unsigned i, const struct sim_line *x, double left)
+{
+    sim_lag_line(&g->angle_rad[i], x, left);
+    g->moves |= g->seen[i];
+}
+
+void sim_glove_follow(struct sim_glove *g, unsigned i, unsigned of, double share)
+{
+    g->of[i] = (unsigned char)of;
+    g->share[i] = share;
+    g->seen[of] |= g->seen[i];
+    g->moves |= g->seen[i];
+}
+
+/* What is known by its peak-to-peak value is clipped there. 3 deviations: a thousand samples have
+ * reached it about once on either side, so that a second at any usual rate measures all of it. */
+static inline double noise_V(const struct sim_glove *g, struct sim_random *r)
+{
+    return limit(sim_random_normal(r) * g->noise_V_perLSB, g->noise_V_most);
+}
+
+/* Of a voltage in codes. */
+static inline int16_t code_of(double v)
+{
+    v += CODES + 0.5; /* the cast cuts it off */
+    return (int16_t)(v < 0 ? -32768 : v >= 65536 ? 32767 : (int32_t)v - 32768);
+}
+
+/* Channels first to end - 1, the first held at t_s. The multiplexer goes on as soon as a channel is
+ * held: what is left of the one before has the whole slot to decay; left: of that before the first.
+ */
+static void convert(
+    struct sim_glove *g, unsigned first, unsigned end, double t_s, double tick_s, double left)
+{
+    struct sim_random rng = g->rng;
+    double held_V = g->held_V;
+    for (unsigned i = first; i < end; i++) {
+        const int known = g->fault[i] == SIM_GLOVE_WELL && !(g->moves >> i & 1);
+        double v;
+        if (i > first) { t_s = sim_glove_held_s(&g->par, i, tick_s); }
+        v = known ? g->volt_V[i] : moved_V(g, i, t_s);
+        v += (held_V - v) * left;
+        held_V = v;
+        left = g->slot_left;
+        if (g->noise_V_most > 0) { v += noise_V(g, &rng); }
+        if (g->fault[i] != SIM_GLOVE_STUCK) { g->code[i] = code_of(v * g->code_perV); }
+    }
+    g->rng = rng;
+    g->held_V = held_V;
+    g->held_s = t_s;
+}
+
+/* Of the channel before, behind a slot of any length. */
+static double left_at(const struct sim_glove *g, double t_s)
+{
+    const double slot_s = t_s - g->held_s, settle_s = g->par.settle_s;
+    return settle_s > 0 && slot_s > 0 ? sim_exp_neg(slot_s / settle_s) : 0;
+}
+
 int16_t sim_glove_convert(struct sim_glove *g, unsigned i, double t_s)
 {
-    const struct sim_glove_par *p = &g->par;
-    double v = sim_glove_volt(g, i, t_s);
-    if (p->settle_s > 0 && t_s > g->held_s) {
-        v += (g->held_V - v) * sim_exp_neg((t_s - g->held_s) / p->settle_s);
-    }
-    g->held_V = v;
-    g->held_s = t_s;
-    if (p->noise_V > 0) { v += noise(&g->rng, p->noise_V); }
-    if (g->fault[i] != SIM_GLOVE_STUCK) { g->code[i] = sim_glove_code(p, v); }
+    convert(g, i, i + 1, t_s, t_s, left_at(g, t_s));
     return g->code[i];
+}
+
+void sim_glove_scan(struct sim_glove *g, unsigned first, unsigned end, double tick_s, int16_t *raw)
+{
+    const double t_s = sim_glove_held_s(&g->par, first, tick_s);
+    convert(g, first, end, t_s, tick_s, first == 0 ? left_at(g, t_s) : g->slot_left);
+    memcpy(raw + first, g->code + first, (end - first) * sizeof raw[0]);
 }
 
 int16_t sim_glove_code(const struct sim_glove_par *p, double v_V)
 {
-    const double v = v_V * (CODES / p->span_V) + (CODES + 0.5); /* the cast cuts it off */
-    return (int16_t)(v < 0 ? -32768 : v >= 65536 ? 32767 : (int32_t)v - 32768);
+    return code_of(v_V * (CODES / p->span_V));
 }

@@ -63,6 +63,14 @@ struct sim_glove {
     unsigned char fault[SIM_GLOVE_SENSORS]; /* enum sim_glove_fault */
     int16_t code[SIM_GLOVE_SENSORS];        /* the last */
     double held_V, held_s;                  /* on the multiplexer, and since when */
+    /* What most channels need not work out again. */
+    uint32_t moves, seen[SIM_GLOVE_SENSORS]; /* channels that may change; those that see angle i */
+    double volt_V[SIM_GLOVE_SENSORS];        /* of those that do not */
+    struct sim_decay low_pass[SIM_GLOVE_SENSORS];
+    double slot_left, code_perV, noise_V_perLSB, noise_V_most; /* multiplexer, A/D, noise */
+    /* An angle that is `share` of another's; of none else it is 1 of its own. */
+    unsigned char of[SIM_GLOVE_SENSORS];
+    double share[SIM_GLOVE_SENSORS];
 };
 
 /* Settled at these angles; the multiplexer at rest on channel 0. */
@@ -75,11 +83,23 @@ void sim_glove_move(struct sim_glove *g, unsigned i, const struct sim_curve *x);
 /* Behind the amplifier, without noise, at t_s. */
 double sim_glove_volt(const struct sim_glove *g, unsigned i, double t_s);
 
+/* The same on a straight line, as sim_lag_line() says. */
+void sim_glove_line(struct sim_glove *g, unsigned i, const struct sim_line *x, double left);
+
+/* From now on the joint of sensor i moves by `share` of what that of sensor `of` does. */
+void sim_glove_follow(struct sim_glove *g, unsigned i, unsigned of, double share);
+
 /* When channel i of the frame of this tick is held. */
-double sim_glove_held_s(const struct sim_glove_par *p, unsigned i, double tick_s);
+static inline double sim_glove_held_s(const struct sim_glove_par *p, unsigned i, double tick_s)
+{
+    return tick_s - (SIM_GLOVE_SENSORS - i) * p->interval_s;
+}
 
 /* Converts channel i, held at t_s; in the order of time. */
 int16_t sim_glove_convert(struct sim_glove *g, unsigned i, double t_s);
+
+/* Channels first to end - 1 of the frame of this tick, whose first is 0. */
+void sim_glove_scan(struct sim_glove *g, unsigned first, unsigned end, double tick_s, int16_t *raw);
 
 /* The code of a voltage: nearest, limited to 16 bits. */
 int16_t sim_glove_code(const struct sim_glove_par *p, double v_V);

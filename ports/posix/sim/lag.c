@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include "lag.h"
 
+#include "grid.h"
 #include "plant.h"
+
+/* Behind so many tau less is left than 2.9e-20: of what is below 900 y, not half a last bit of y.
+ */
+#define SETTLED 45
 
 /* pi/2 in two parts: the first has 33 bits, so that a multiple of it is exact. */
 #define HALF_PI_HI 1.57079632673412561417
@@ -40,32 +45,21 @@ double sim_sin(double x) { return turned_sin(x, 0); }
 
 double sim_cos(double x) { return turned_sin(x, 1); }
 
-static double poly_at(const double c[SIM_CURVE_TERMS], double s)
-{
-    double v = 0;
-    for (int k = SIM_CURVE_TERMS - 1; k >= 0; k--) { v = v * s + c[k]; }
-    return v;
-}
-
 double sim_curve_at(const struct sim_curve *x, double t_s)
 {
     const double s = t_s - x->start_s;
-    double v = poly_at(x->c, s);
+    double v = sim_poly(x->c, SIM_CURVE_TERMS, s);
     if (x->amp != 0) { v += x->amp * sim_sin(x->omega_radps * s + x->phase_rad); }
     return v;
 }
 
-/* What the output runs after: the particular solution, which for a polynomial is
- * x - tau x' + tau^2 x'' - …, and for the sine the sine, smaller and later. */
-static double target(const struct sim_lag *l, double s)
+static double size_of(double v) { return v < 0 ? -v : v; }
+
+double sim_lag_sine(const struct sim_lag *l, double s)
 {
-    double v = poly_at(l->p, s);
-    if (l->x.amp != 0) {
-        const double wt = l->x.omega_radps * l->tau_s;
-        const double a = l->x.omega_radps * s + l->x.phase_rad;
-        v += l->x.amp / (1 + wt * wt) * (sim_sin(a) - wt * sim_cos(a));
-    }
-    return v;
+    const double wt = l->x.omega_radps * l->tau_s;
+    const double a = l->x.omega_radps * s + l->x.phase_rad;
+    return l->x.amp / (1 + wt * wt) * (sim_sin(a) - wt * sim_cos(a));
 }
 
 void sim_lag_start(struct sim_lag *l, double tau_s, double x)
@@ -74,6 +68,7 @@ void sim_lag_start(struct sim_lag *l, double tau_s, double x)
     *l = none;
     l->tau_s = tau_s;
     l->x.c[0] = l->p[0] = x;
+    l->terms = 1;
 }
 
 void sim_lag_follow(struct sim_lag *l, const struct sim_curve *x)
@@ -85,13 +80,36 @@ void sim_lag_follow(struct sim_lag *l, const struct sim_curve *x)
         above = x->c[k] - l->tau_s * (k + 1) * above;
         l->p[k] = above;
     }
-    l->off = l->tau_s > 0 ? y - target(l, 0) : 0;
+    l->terms = sim_poly_terms(l->p);
+    l->off = l->tau_s > 0 ? y - sim_lag_target(l, 0) : 0;
 }
 
 double sim_lag_at(const struct sim_lag *l, double t_s)
 {
     const double s = t_s - l->x.start_s;
-    double y = target(l, s);
-    if (l->off != 0) { y += l->off * sim_exp_neg(s / l->tau_s); }
+    double y = sim_lag_target(l, s);
+    if (l->off != 0 && !(s > SETTLED * l->tau_s && size_of(l->off) < 900 * size_of(y))) {
+        y += l->off * sim_exp_neg(s / l->tau_s);
+    }
     return y;
+}
+
+double sim_decay_at(struct sim_decay *d, double tau_s, double s)
+{
+    const unsigned at = sim_grid_slot(s, 2);
+    if (d->s[at] != s || d->left[at] == 0) {
+        d->s[at] = s;
+        d->left[at] = sim_exp_neg(s / tau_s);
+    }
+    return d->left[at];
+}
+
+void sim_lag_line(struct sim_lag *l, const struct sim_line *x, double left)
+{
+    const double y = sim_lag_left(l, x->start_s, left);
+    l->x = (struct sim_curve){x->start_s, {x->at, x->slope}, 0, 0, 0};
+    l->p[1] = x->slope;
+    l->p[0] = x->at - l->tau_s * x->slope;
+    l->terms = x->slope != 0 ? 2 : 1;
+    l->off = l->tau_s > 0 ? y - l->p[0] : 0;
 }

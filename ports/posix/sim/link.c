@@ -55,24 +55,13 @@ static double root(double v)
     return v > 0 ? r : 0;
 }
 
-/* Twelve uniforms: a normal of deviation 1 within +-6. */
-static double normal(struct sim_random *r)
-{
-    int32_t sum = 0;
-    for (int k = 0; k < 3; k++) {
-        const uint64_t u = sim_random_u64(r);
-        sum += (int32_t)((u & 0xFFFF) + (u >> 16 & 0xFFFF) + (u >> 32 & 0xFFFF) + (u >> 48));
-    }
-    return (sum - 6 * 65535) * (1.0 / 65536);
-}
-
 static double within_one(double v) { return v > 1 ? 1 : v < -1 ? -1 : v; }
 
 /* Of jitter_s. Both draws every time: the kinds share one sequence. */
 static double jitter(struct sim_link_way *w)
 {
     const double even = 2 * sim_random_unit(&w->delay_rng) - 1;
-    const double bell = normal(&w->delay_rng) / 3;
+    const double bell = sim_random_normal(&w->delay_rng) / 3;
     const int kind = (int)w->par.jitter;
     w->wander = w->par.memory * w->wander + w->fresh * bell;
     return kind == SIM_LINK_UNIFORM      ? even
@@ -150,7 +139,7 @@ void sim_link_start(struct sim_link_way *w, const struct sim_link_par *p,
     w->duplicate_rng.state = sim_random_u64(&r);
     w->reorder_rng.state = sim_random_u64(&r);
     w->fresh = root(1 - p->memory * p->memory);
-    w->wander = normal(&w->delay_rng) / 3; /* as if it had always been on */
+    w->wander = sim_random_normal(&w->delay_rng) / 3; /* as if it had always been on */
     w->last_due_s = 0;
     w->next_number = w->next_serial = w->newest = 0;
     w->queued = 0;

@@ -2,6 +2,7 @@
 #include "mass.h"
 
 #include "codes.h"
+#include "grid.h"
 
 static void start(struct sim_mass *m, const struct sim_device *d, uint64_t seed)
 {
@@ -40,22 +41,34 @@ static double earlier(double a, double b) { return a < b ? a : b; }
 /* The plant by itself, up to the next event. */
 static void advance_plant(struct sim_mass *m, double dt_s)
 {
-    if (m->benched) {
-        bench_advance(&m->bench, &m->plant, dt_s, m->ref_A);
+    const struct plant_piece *piece;
+    if (!(dt_s > 0)) { return; }
+    piece = plant_pieces_find(&m->pieces, &m->device, dt_s, 0);
+    if (m->fall.phase == FALL_FREE) {
+        plant_advance_piece(&m->plant, &m->device, piece, m->ref_A);
+    } else if (piece->n == 1) {
+        plant_hold_piece(&m->plant, piece, m->ref_A);
     } else {
-        plant_advance(&m->plant, &m->device, dt_s, m->ref_A, m->fall.phase != FALL_FREE);
+        plant_advance(&m->plant, &m->device, dt_s, m->ref_A, 1);
     }
 }
 
 void sim_mass_advance(struct sim_mass *m, double until_s)
 {
     const struct sim_device *d = &m->device;
+    double grid_s = sim_grid(m->now_s);
     while (m->now_s < until_s) {
         double next_s = earlier(until_s, m->servo_s);
         if (!m->benched) { next_s = earlier(next_s, fall_next_s(&m->fall)); }
         if (next_s > m->now_s) {
-            advance_plant(m, next_s - m->now_s);
+            const double to_s = sim_grid(next_s);
+            if (m->benched) {
+                bench_advance(&m->bench, &m->plant, next_s - m->now_s, m->ref_A);
+            } else {
+                advance_plant(m, to_s - grid_s);
+            }
             m->now_s = next_s;
+            grid_s = to_s;
         }
         if (m->servo_s <= m->now_s) {
             m->ref_A = m->latched_A;

@@ -13,6 +13,7 @@ struct sim_mass {
     struct sim_device device;
     struct sim_random rng;
     struct plant plant;
+    struct plant_pieces pieces;
     struct fall fall;
     struct bench bench; /* instead of the fall, if benched */
     int benched;

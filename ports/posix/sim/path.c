@@ -61,13 +61,6 @@ double sim_path_speed(const char *name)
 
 /* --- what is wanted, and what leads it --- */
 
-static double poly(const double *c, double s)
-{
-    double v = 0;
-    for (int k = SIM_CURVE_TERMS - 1; k >= 0; k--) { v = v * s + c[k]; }
-    return v;
-}
-
 /* From x->start_s on; x is a polynomial, m, c and f the load. */
 static void follow(struct sim_path *p, const struct sim_curve *x, double m, double c, double f)
 {
@@ -78,6 +71,7 @@ static void follow(struct sim_path *p, const struct sim_curve *x, double m, doub
         g.c[k] = (m * second + c * first + (k == 0 ? f : 0)) / p->load.k_Npm;
     }
     p->x = *x;
+    p->terms = sim_poly_terms(x->c);
     sim_lag_follow(&p->e, &g);
 }
 
@@ -104,7 +98,7 @@ static void move(struct sim_path *p, double start_s, double to_m, double move_s)
 
 double sim_path_wanted(const struct sim_path *p, double t_s)
 {
-    return poly(p->x.c, t_s - p->x.start_s);
+    return sim_poly(p->x.c, p->terms, t_s - p->x.start_s);
 }
 
 double sim_path_at(const struct sim_path *p, double t_s)

@@ -78,6 +78,7 @@ struct sim_path {
     double end_s; /* of the phase or row */
     double at_m;  /* where it ends */
     struct sim_curve x;
+    int terms; /* of x */
     struct sim_lag e;
 };
 

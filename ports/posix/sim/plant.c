@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "plant.h"
 
+#include "grid.h"
+
 #include <stddef.h>
 
 #define TWO_PI 6.283185307179586
@@ -65,7 +67,7 @@ static struct plant_piece piece_of(const struct sim_device *d, double dt_s, int 
     return s;
 }
 
-static void step_current(struct plant *p, const struct plant_piece *s, double ref_A)
+static inline void step_current(struct plant *p, const struct plant_piece *s, double ref_A)
 {
     const double off_A = p->cur_A - ref_A;
     p->mon_A = ref_A + (p->mon_A - ref_A) * s->keep_mon + off_A * s->cur_to_mon;
@@ -109,17 +111,35 @@ struct plant_piece plant_piece_of(const struct sim_device *d, double dt_s)
 void plant_advance_piece(
     struct plant *p, const struct sim_device *d, const struct plant_piece *s, double ref_A)
 {
-    for (int i = 0; i < s->n; i++) {
+    step_string(p, d, s, ref_A, NULL, 0);
+    step_current(p, s, ref_A);
+    for (int i = 1; i < s->n; i++) { /* rare: by itself, nothing is fetched in advance for it */
         step_string(p, d, s, ref_A, NULL, 0);
         step_current(p, s, ref_A);
     }
+}
+
+void plant_hold_piece(struct plant *p, const struct plant_piece *s, double ref_A)
+{
+    step_current(p, s, ref_A);
+}
+
+const struct plant_piece *plant_pieces_find(
+    struct plant_pieces *c, const struct sim_device *d, double dt_s, double hand_nspm)
+{
+    const unsigned at = sim_grid_slot(dt_s, PLANT_PIECES);
+    if (c->dt_s[at] != dt_s) {
+        c->dt_s[at] = dt_s;
+        c->piece[at] = piece_of(d, dt_s, steps_in(d, dt_s), hand_nspm);
+    }
+    return &c->piece[at];
 }
 
 void plant_advance(struct plant *p, const struct sim_device *d, double dt_s, double ref_A, int held)
 {
     const struct plant_piece s = piece_of(d, dt_s, held ? 1 : steps_in(d, dt_s), 0);
     if (held) {
-        step_current(p, &s, ref_A);
+        plant_hold_piece(p, &s, ref_A);
     } else {
         plant_advance_piece(p, d, &s, ref_A);
     }
@@ -170,14 +190,25 @@ static inline void stop(double *x_m, double *v_mps, double end_m)
     if (*v_mps < 0) { *v_mps = 0; }
 }
 
+static inline void step_finger(struct plant *p, const struct sim_device *d,
+    const struct plant_piece *s, double ref_A, const struct plant_hand *hand, double t_s)
+{
+    step_string(p, d, s, ref_A, hand, t_s);
+    step_current(p, s, ref_A);
+    stop(&p->x_m, &p->v_mps, hand->end_m);
+    stop(&p->q_m, &p->w_mps, hand->end_m);
+}
+
+void plant_advance_hand_piece(struct plant *p, const struct sim_device *d,
+    const struct plant_piece *s, double ref_A, const struct plant_hand *hand)
+{
+    step_finger(p, d, s, ref_A, hand, 0.5 * s->h_s);
+    for (int i = 1; i < s->n; i++) { step_finger(p, d, s, ref_A, hand, (i + 0.5) * s->h_s); }
+}
+
 void plant_advance_hand(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
     const struct plant_hand *hand)
 {
     const struct plant_piece s = piece_of(d, dt_s, steps_in(d, dt_s), hand->b_Nspm);
-    for (int i = 0; i < s.n; i++) {
-        step_string(p, d, &s, ref_A, hand, (i + 0.5) * s.h_s);
-        step_current(p, &s, ref_A);
-        stop(&p->x_m, &p->v_mps, hand->end_m);
-        stop(&p->q_m, &p->w_mps, hand->end_m);
-    }
+    plant_advance_hand_piece(p, d, &s, ref_A, hand);
 }

@@ -44,6 +44,19 @@ struct plant_piece plant_piece_of(const struct sim_device *d, double dt_s);
 void plant_advance_piece(
     struct plant *p, const struct sim_device *d, const struct plant_piece *s, double ref_A);
 
+/* The currents alone, over a piece of one sub-step: mass and string are held. */
+void plant_hold_piece(struct plant *p, const struct plant_piece *s, double ref_A);
+
+/* Those that were last in use; all 0: none yet. Of one device, and one hand (0: none). */
+#define PLANT_PIECES 32
+struct plant_pieces {
+    double dt_s[PLANT_PIECES];
+    struct plant_piece piece[PLANT_PIECES];
+};
+/* dt_s > 0, of sim_grid_s(). */
+const struct plant_piece *plant_pieces_find(
+    struct plant_pieces *c, const struct sim_device *d, double dt_s, double hand_nspm);
+
 /* A hand moves the mass, which is then a finger: instead of its weight the force
  *   k (target - x) + b (target' - x').
  * The target is at x_m when the piece begins and moves at v_mps. Neither
@@ -55,6 +68,8 @@ struct plant_hand {
 };
 void plant_advance_hand(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
     const struct plant_hand *hand);
+void plant_advance_hand_piece(struct plant *p, const struct sim_device *d,
+    const struct plant_piece *s, double ref_A, const struct plant_hand *hand);
 
 /* Whether sub-steps of substep_s are short enough: half of what keeps them stable, that is, at
  * least six of them a period of string and rotor, which then come 5 % too soon, and at least one in

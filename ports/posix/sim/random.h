@@ -24,14 +24,31 @@ static inline double sim_random_unit(struct sim_random *r)
     return (double)(sim_random_u64(r) >> 11) * (1.0 / 9007199254740992.0);
 }
 
+/* Four uniforms of 16 bits as two sums, one in each half; and the sum of all, of 2^14 draws at
+ * most. */
+static inline uint64_t sim_random_four(struct sim_random *r)
+{
+    const uint64_t half = UINT64_C(0x0000FFFF0000FFFF), u = sim_random_u64(r);
+    return (u & half) + (u >> 16 & half);
+}
+
+static inline int32_t sim_random_sum(uint64_t fours)
+{
+    return (int32_t)((fours >> 32) + (fours & UINT32_MAX));
+}
+
+/* Twelve uniforms: a normal of deviation 1 within +-6. */
+static inline double sim_random_normal(struct sim_random *r)
+{
+    const uint64_t a = sim_random_four(r), b = sim_random_four(r), c = sim_random_four(r);
+    return (sim_random_sum(a + b + c) - 6 * 65535) * (1.0 / 65536);
+}
+
 /* A bell over -1/2..1/2: the mean of four 16-bit uniforms, peak to peak 1, standard
  * deviation 1/6.9. Noise that is known by its peak-to-peak value has bounds. */
 static inline double sim_random_bell(struct sim_random *r)
 {
-    const uint64_t u = sim_random_u64(r);
-    const int32_t sum =
-        (int32_t)((u & 0xFFFF) + (u >> 16 & 0xFFFF) + (u >> 32 & 0xFFFF) + (u >> 48));
-    return (double)(sum - 2 * 65535) * (1.0 / (4 * 65535.0));
+    return (double)(sim_random_sum(sim_random_four(r)) - 2 * 65535) * (1.0 / (4 * 65535.0));
 }
 
 #endif

@@ -20,28 +20,52 @@ void pace_pull(struct pace *p, const struct exh_wire_hello *hello)
     }
 }
 
-/* The joint of any finger that turned most between the two. */
-static int64_t most_turned(const struct pace_at *a, const struct pace_at *b)
+/* Whether a joint of any finger turned by more than TURN_Q32 between the two: of all at once, since
+ * mostly none did. */
+static int turned(const struct pace_at *a, const struct pace_at *b)
 {
-    int64_t most = 0;
+    const int32_t *from = a->joint_turn_q32[0], *to = b->joint_turn_q32[0];
+    int far = 0;
     for (unsigned i = 0; i < FINGERS * 3; i++) {
-        const int64_t by =
-            (int64_t)a->joint_turn_q32[i / 3][i % 3] - b->joint_turn_q32[i / 3][i % 3];
-        if (by > most) { most = by; }
-        if (-by > most) { most = -by; }
+        far |= (uint64_t)((int64_t)to[i] - from[i] + TURN_Q32) > 2 * (uint64_t)TURN_Q32;
     }
-    return most;
+    return far;
+}
+
+/* None of the states is a turn away: by the least and the most of each joint. */
+static int all_near(const struct pace *p, const struct pace_at *now)
+{
+    const int32_t *at = now->joint_turn_q32[0];
+    int far = 0;
+    for (unsigned i = 0; i < FINGERS * 3; i++) {
+        far |= at[i] > p->least_turn_q32[i] + TURN_Q32 || at[i] < p->most_turn_q32[i] - TURN_Q32;
+    }
+    return !far;
+}
+
+static void find_ends(struct pace *p)
+{
+    for (unsigned i = 0; i < FINGERS * 3; i++) {
+        p->least_turn_q32[i] = INT32_MAX;
+        p->most_turn_q32[i] = INT32_MIN;
+    }
+    for (unsigned back = 0; back < p->n; back++) {
+        const int32_t *at = p->at[(p->last + PACE_STATES - back) % PACE_STATES].joint_turn_q32[0];
+        for (unsigned i = 0; i < FINGERS * 3; i++) {
+            if (at[i] < p->least_turn_q32[i]) { p->least_turn_q32[i] = at[i]; }
+            if (at[i] > p->most_turn_q32[i]) { p->most_turn_q32[i] = at[i]; }
+        }
+    }
 }
 
 /* The state to compare with: as old as possible, as codes are coarse, but not before a turn. */
 static const struct pace_at *before(const struct pace *p, const struct pace_at *now)
 {
     const struct pace_at *from = &p->at[p->last];
+    const int near = all_near(p, now);
     for (unsigned back = 1; back < p->n; back++) {
         const struct pace_at *older = &p->at[(p->last + PACE_STATES - back) % PACE_STATES];
-        if (now->stamp_us - older->stamp_us > WINDOW_US || most_turned(now, older) > TURN_Q32) {
-            break;
-        }
+        if (now->stamp_us - older->stamp_us > WINDOW_US || (!near && turned(now, older))) { break; }
         from = older;
     }
     return from;
@@ -68,4 +92,5 @@ void pace_take(struct pace *p, const struct exh_wire_state *state, uint32_t stam
     p->last = (p->last + 1) % PACE_STATES;
     p->n += p->n < PACE_STATES;
     p->at[p->last] = now;
+    find_ends(p);
 }

@@ -17,7 +17,8 @@ struct pace {
         int32_t joint_turn_q32[FINGERS][3];
     } at[PACE_STATES]; /* states, 10 ms apart, in a ring */
     unsigned n, last;
-    double turn_q32ps[FINGERS][3];      /* of each joint, a second */
+    int32_t least_turn_q32[FINGERS * 3], most_turn_q32[FINGERS * 3]; /* of these states */
+    double turn_q32ps[FINGERS][3];                                   /* of each joint, a second */
     double pull_turn_q32ps[FINGERS][3]; /* the same while the string runs out at 0.05 m/s */
 };
 

@@ -539,6 +539,36 @@ TEST(codes_hang_on_the_seed_alone)
     CHECK(other > 90, "%d", other);
 }
 
+/* What is kept of a channel that stands still is what would be worked out anew: behind movements,
+ * for neighbours that see them, for joints that follow others, and behind a fault. */
+TEST(what_is_kept_is_what_is_so)
+{
+    struct sim_glove_par p = clean();
+    struct sim_operator_par par = sim_operator_default();
+    struct sim_operator o;
+    struct sim_glove g;
+    int16_t raw[SENSORS];
+    int still = 0;
+    p.couple = 0.08;
+    par.does = SIM_GRASP;
+    sim_operator_start(&o, &par, &g, &p, 3);
+    sim_glove_follow(&g, 5, 4, 0.7);
+    for (int n = 1; n < 3000; n++) {
+        if (n % 700 == 0) { g.fault[10] = SIM_GLOVE_OPEN; }
+        if (n % 700 == 60) { g.fault[10] = SIM_GLOVE_WELL; }
+        if (n == 2000) { o.par.does = SIM_REST; }
+        sim_operator_frame(&o, &g, n * 1e-3, raw);
+        for (unsigned i = 0; i < SENSORS; i++) {
+            const double held_s = sim_glove_held_s(&p, i, n * 1e-3);
+            const double apart = raw[i] - sim_glove_volt(&g, i, held_s) / LSB_V;
+            const int rails = raw[i] == 32767 || raw[i] == -32768;
+            still += !(g.moves >> i & 1);
+            CHECK(rails || fabs(apart) < 0.5001, "channel %u, frame %d: %.3f codes", i, n, apart);
+        }
+    }
+    CHECK(still > 10000, "kept %d times", still);
+}
+
 TEST_MAIN("glove_chain", sine_and_cosine_are_good_to_their_bound, volt_and_code_of_an_angle,
     end_points_span_what_the_default_calibration_says, codes_round_and_saturate,
     abduction_is_bent_by_its_neighbours, a_step_is_an_exponential, a_sine_comes_smaller_and_later,
@@ -547,4 +577,5 @@ TEST_MAIN("glove_chain", sine_and_cosine_are_good_to_their_bound, volt_and_code_
     noise_is_the_papers_peak_to_peak, faults_read_as_they_would, a_stuck_code_stays,
     parameters_are_refused_by_range, poses_lie_in_range_and_show_both_ends,
     a_movement_is_minimum_jerk, scripts_go_on_by_themselves, advance_does_not_depend_on_its_steps,
-    a_recording_is_played_through_its_rows, codes_hang_on_the_seed_alone);
+    a_recording_is_played_through_its_rows, codes_hang_on_the_seed_alone,
+    what_is_kept_is_what_is_so);

@@ -4,9 +4,12 @@
 #include "check.h"
 #include "exp_neg.h"
 
+#include "sim/grid.h"
 #include "sim/plant.h"
 
 #include <math.h>
+#include <stddef.h>
+#include <string.h>
 
 #define LEN(a)   (sizeof(a) / sizeof((a)[0]))
 #define TWO_PI_L 6.283185307179586476925286766559L
@@ -592,6 +595,37 @@ TEST(the_step_that_is_named_will_do)
     }
 }
 
+/* Pieces that are kept are those that would be worked out anew, whatever was asked for between; and
+ * of ticks, outputs and servo samples on the grid there are few. */
+TEST(pieces_on_the_grid_are_few_and_what_they_would_be)
+{
+    static struct plant_pieces kept;
+    const struct sim_device d = sim_device_default();
+    const size_t values_B = sizeof(struct plant_piece) - offsetof(struct plant_piece, h_s);
+    double sum_s = 0, at_s = 0, servo_s = 113e-6;
+    int pieces = 0, anew = 0;
+    for (int n = 1; n < 40000; n++) {
+        const double tick_s = n / 2000.0;
+        while (at_s < tick_s) {
+            const double to_s = servo_s < tick_s ? servo_s : tick_s;
+            const double dt_s = sim_grid_s(at_s, to_s);
+            const struct plant_piece want = plant_piece_of(&d, dt_s);
+            const int known = kept.dt_s[sim_grid_slot(dt_s, PLANT_PIECES)] == dt_s;
+            const struct plant_piece *is = plant_pieces_find(&kept, &d, dt_s, 0);
+            CHECK(fabs(dt_s - (to_s - at_s)) < 2e-14, "%g s is %g s off", dt_s, dt_s - to_s + at_s);
+            CHECK(is->n == want.n && memcmp(&is->h_s, &want.h_s, values_B) == 0, "%.17g s", dt_s);
+            pieces++;
+            anew += !known;
+            if (to_s == servo_s) { servo_s += 1 / 4000.0; }
+            sum_s += dt_s;
+            at_s = to_s;
+        }
+    }
+    CHECK(sum_s == sim_grid(at_s), "the pieces are %g s off", sum_s - at_s);
+    CHECK(pieces > 100000 && anew < pieces / 7, "%d of %d pieces anew", anew, pieces);
+    CHECK(sim_grid(1e6) == 1e6 && sim_grid_s(70000.1, 70000.2) == 70000.2 - 70000.1, "later");
+}
+
 TEST_MAIN("plant", impact_speed_is_that_of_a_free_fall, a_rotor_slows_the_fall_by_its_share,
     what_is_held_does_not_move, stiction_holds_without_creep, stiction_lets_go_at_its_limit,
     friction_stops_in_closed_form, the_string_only_pulls_and_pulls_both_ends_alike,
@@ -599,4 +633,5 @@ TEST_MAIN("plant", impact_speed_is_that_of_a_free_fall, a_rotor_slows_the_fall_b
     a_monitor_as_fast_as_the_current, exp_neg_is_good_to_1e_12,
     energy_never_grows_with_the_motor_off, a_quarter_of_the_error_with_half_the_substep,
     friction_is_of_second_order, steps_that_will_do_are_stable,
-    friction_beside_strong_damping_takes_what_it_takes, the_step_that_is_named_will_do);
+    friction_beside_strong_damping_takes_what_it_takes, the_step_that_is_named_will_do,
+    pieces_on_the_grid_are_few_and_what_they_would_be);

@@ -2,6 +2,7 @@
 /* Frames: the hand, the planes, what is left out, and that the bits never vary. */
 #include "check.h"
 
+#include "world/pace.h"
 #include "world/rpy.h"
 #include "world/solo.h"
 #include "world/world.h"
@@ -9,6 +10,7 @@
 #include "exhand/hand.h"
 
 #include <stdio.h>
+#include <string.h>
 
 static struct world *load(const char *text)
 {
@@ -368,10 +370,65 @@ TEST(five_fingers_hold_the_ball)
     world_free(w);
 }
 
+/* --- how fast joints turn --- */
+
+/* By the definition: the oldest of the last 250 ms, kept 10 ms apart, behind which none is a turn
+ * of 0.2 rad away. */
+TEST(joints_turn_as_from_the_oldest_state_that_is_near)
+{
+    static struct exh_wire_state was[200];
+    static uint32_t stamp[200];
+    struct pace p;
+    struct exh_wire_state in;
+    uint32_t now_us = 1000;
+    int n = 0, near = 0, turned = 0;
+    memset(&p, 0, sizeof p);
+    random_state(&in);
+    for (int k = 0; k < 4000; k++) {
+        int from = -1;
+        for (int i = 0; i < FINGERS * 3; i++) {
+            in.joint_turn_q32[i / 3][i % 3] +=
+                turn(real_in(-0.004, 0.006)) * (k / 500 % 4) * (k / 250 % 2 ? -1 : 1);
+        }
+        pace_take(&p, &in, now_us);
+        for (int back = n - 1; back >= 0 && back >= n - PACE_STATES; back--) {
+            int far = now_us - stamp[back] > 250000;
+            for (int i = 0; i < FINGERS * 3 && back < n - 1; i++) {
+                const int64_t by = (int64_t)in.joint_turn_q32[i / 3][i % 3] -
+                                   was[back].joint_turn_q32[i / 3][i % 3];
+                if (by > 136000000 || by < -136000000) { far = 2; }
+            }
+            turned += far == 2;
+            if (far) { break; }
+            from = back;
+        }
+        for (int i = 0; from >= 0 && i < FINGERS * 3; i++) {
+            const double want =
+                ((double)in.joint_turn_q32[i / 3][i % 3] - was[from].joint_turn_q32[i / 3][i % 3]) /
+                (1e-6 * (now_us - stamp[from]));
+            CHECK(p.turn_q32ps[i / 3][i % 3] == want, "state %d, joint %d: %g, want %g", k, i,
+                p.turn_q32ps[i / 3][i % 3], want);
+        }
+        near += from >= 0 && from < n - 10;
+        if (n == 0 || now_us - stamp[n - 1] >= 10000) {
+            if (n == 200) {
+                memmove(was, was + 100, 100 * sizeof was[0]);
+                memmove(stamp, stamp + 100, 100 * sizeof stamp[0]);
+                n = 100;
+            }
+            was[n] = in;
+            stamp[n++] = now_us;
+        }
+        now_us += 2500;
+    }
+    CHECK(near > 500 && turned > 500, "%d far back, %d turns", near, turned);
+}
+
 TEST_MAIN("world: frames", the_fingertips_are_where_the_published_chain_has_them,
     the_controllers_hand_is_the_same_one, a_static_plane_has_the_same_bits_whatever_the_fingers_do,
     the_canonical_point_is_the_planes_nearest_to_the_origin,
     fingers_that_are_off_are_untold_and_cost_nothing, what_no_finger_reaches_is_no_plane,
     a_hand_that_comes_down_sees_what_it_will_touch, culling_changes_no_plane_and_spares_work,
     an_object_out_of_reach_costs_nothing, a_hand_that_only_turns_finds_what_it_turns_to,
-    the_same_inputs_give_the_same_bits, five_fingers_hold_the_ball);
+    the_same_inputs_give_the_same_bits, five_fingers_hold_the_ball,
+    joints_turn_as_from_the_oldest_state_that_is_near);

@@ -14,11 +14,11 @@ $(B)/posix/test/figures/bench/kernels.o: \
 $(B)/bench/kernels: $(bench_obj) $(B)/posix/test/no_board.o $(bench_scenes:%.c=$(B)/posix/%.o)
 $(B)/bench/velocity: $(B)/posix/test/figures/bench/velocity.o \
     $(B)/posix/test/figures/bench/measure.o $(B)/posix/test/figures/bench/plain.o
-$(B)/bench/speed: $(B)/posix/test/figures/bench/speed.o $(B)/posix/examples/drop/drop.o \
-    $(B)/posix/lib/src/run/calib_set.o $(sim_obj)
+$(B)/bench/speed: $(B)/posix/test/figures/bench/speed.o $(filter-out %/main.o,$(exh_obj)) $(sim_obj)
 $(bench_bin): $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
-	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) -Wl,--strip-debug -lm
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(cli_libs) \
+	    -Wl,--strip-debug
 
 # Ways to integrate the simulator's plant. The second program is the whole simulator with such a
 # plant.

@@ -118,15 +118,18 @@ awk -F, '
 
 echo
 "$b/speed"
-for fn in exh_loop tick plant_advance; do # the scene is reached as a static function, tick
-    profile "$fn" "$b/speed" 4000 >/dev/null
-    echo "$fn,$(total "$tmp/cg")"
-done | awk -F, '{ n[$1] = $2 }
-    END { all = n["exh_loop"]
-          printf "  of its instructions (first 4000 ticks, %.0f a tick): plant %.1f %%, scene" \
-                 " tick %.1f %%, board and loop %.1f %%\n", all / 4000, \
-                 100 * n["plant_advance"] / all, 100 * n["tick"] / all, \
-                 100 * (all - n["plant_advance"] - n["tick"]) / all }'
+for e in drop bilateral bilateral5; do
+    for fn in exh_loop tick advance_to; do # the scene is reached as a static function, tick
+        profile "$fn" "$b/speed" "$e" 4000 >/dev/null
+        echo "$fn,$(total "$tmp/cg")"
+    done | awk -F, -v e="$e" '{ n[$1] = $2 }
+        END { all = n["exh_loop"]
+              ticks = e == "drop" ? 4000 : 3 * 4000 # at each of three speeds
+              printf "  %s: %.0f instructions a tick (of the first 4000): device %.1f %%, scene" \
+                     " tick %.1f %%, board, glove, link and loop %.1f %%\n", e, all / ticks, \
+                     100 * n["advance_to"] / all, 100 * n["tick"] / all, \
+                     100 * (all - n["advance_to"] - n["tick"]) / all }'
+done
 
 # --- baseline ---
 

@@ -81,7 +81,7 @@ def statistics():
     """simulator_rest: what becomes of Table II and of the time until rest, over what the plant
     costs."""
     program = os.path.join(B, "bench", "sim_statistics")
-    said, total = profile("plant_advance", "one_fall", program, *SHORT, "count")
+    said, total = profile("plant_advance_piece", "one_fall", program, *SHORT, "count")
     cost = {}
     for i, line in enumerate(said):
         method, step, seconds = line.split(",")

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* The simulator's own source, under another name: what is compared is what is shipped. Its name is
  * then ours to give, so that a whole simulator can be linked with another method (statistics.c). */
-#define plant_advance      leapfrog_own_advance
-#define plant_advance_hand leapfrog_own_advance_hand
+#define plant_advance            leapfrog_own_advance
+#define plant_advance_hand       leapfrog_own_advance_hand
+#define plant_advance_piece      leapfrog_own_advance_piece
+#define plant_advance_hand_piece leapfrog_own_advance_hand_piece
 #include "../../../../ports/posix/sim/plant.c"
 
 #include "method.h"

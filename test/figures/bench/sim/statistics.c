@@ -5,10 +5,10 @@
  *   statistics [--short] [RUNS]
  *   statistics [--short] count: a fall at 500 Hz by each method and step, twice, for callgrind (the
  * first has what is worked out once); prints method,step_s,seconds. The plant's own share is that
- * of plant_advance()
+ * of plant_advance_piece()
  *
- * The whole simulator and the real scene, the paper's rows, ten falls a run, with plant_advance()
- * taken from here. Prints for every method, step and row
+ * The whole simulator and the real scene, the paper's rows, ten falls a run, with
+ * plant_advance_piece() taken from here. Prints for every method, step and row
  *   method,step_s,rate_Hz,runs,b_Npm,b_se,rest_s,rest_se,rest,oscillates
  * b_Npm: mean stiffness of the runs (as `exhand drop` reads it), se its standard error; rest_s:
  * from the first contact of a fall until motor and force keep within the bounds of "at rest", of
@@ -48,10 +48,16 @@ void plant_advance(struct plant *p, const struct sim_device *d, double dt_s, dou
     method_advance(now, p, d, dt_s, ref_A, NULL);
 }
 
-void plant_advance_hand(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
-    const struct plant_hand *hand)
+void plant_advance_piece(
+    struct plant *p, const struct sim_device *d, const struct plant_piece *s, double ref_A)
 {
-    method_advance(now, p, d, dt_s, ref_A, hand);
+    method_advance(now, p, d, s->n * s->h_s, ref_A, NULL);
+}
+
+void plant_advance_hand_piece(struct plant *p, const struct sim_device *d,
+    const struct plant_piece *s, double ref_A, const struct plant_hand *hand)
+{
+    method_advance(now, p, d, s->n * s->h_s, ref_A, hand);
 }
 
 /* --- a run --- */
