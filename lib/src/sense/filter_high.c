@@ -21,7 +21,7 @@ static inline int64_t bounded(int64_t v)
 /* exh_mul64_q31() of a coefficient, which is never below 0: its low product needs no sign. */
 static inline int64_t share(int64_t a, int32_t b)
 {
-    const int64_t high = (int64_t)(int32_t)(a >> 32) * b;
+    const int64_t high = (int64_t)high_word(a) * b;
     const uint64_t low = (uint64_t)(uint32_t)((uint64_t)a & UINT32_MAX) * (uint32_t)b;
     return 2 * high + (int64_t)((low + (UINT32_C(1) << 30)) >> 31);
 }
@@ -48,14 +48,15 @@ static void widen(struct exh_filter *s)
 /* Coefficients of damaged memory may wrap here. */
 EXH_FILTER_STEP(exh_filter_high2)
 {
+    EXH_FILTER_WORD int32_t a = cfg->a, b = cfg->b, c = cfg->c, d = cfg->d;
     for (; n > 0; n--, s++, x++, y++) {
         int64_t pos, vel, e, mid, move, low;
         widen(s);
         pos = bounded(s->pos);
         vel = bounded(s->vel);
         e = (int64_t)*x * (INT32_C(1) << Q) + HALF - pos;
-        mid = exh_wrap_add64(share(vel, cfg->a), share(e, cfg->b));
-        move = exh_wrap_add64(share(vel, cfg->c), share(e, cfg->d));
+        mid = exh_wrap_add64(share(vel, a), share(e, b));
+        move = exh_wrap_add64(share(vel, c), share(e, d));
         low = exh_wrap_add64(pos, move);
         s->vel = exh_wrap_diff64(exh_wrap_add64(mid, mid), vel);
         s->pos = exh_wrap_add64(low, move);
@@ -65,11 +66,12 @@ EXH_FILTER_STEP(exh_filter_high2)
 
 EXH_FILTER_STEP(exh_filter_high1)
 {
+    EXH_FILTER_WORD int32_t a = cfg->a;
     for (; n > 0; n--, s++, x++, y++) {
         int64_t pos, move, low;
         widen(s);
         pos = bounded(s->pos);
-        move = share((int64_t)*x * (INT32_C(1) << Q) + HALF - pos, cfg->a);
+        move = share((int64_t)*x * (INT32_C(1) << Q) + HALF - pos, a);
         low = exh_wrap_add64(pos, move);
         s->pos = exh_wrap_add64(low, move);
         *y = output(low);
