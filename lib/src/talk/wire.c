@@ -51,14 +51,18 @@ static void hello_bytes(struct exh_bytes *c, struct exh_wire_hello *h)
 
 static void finger_bytes(struct exh_bytes *c, struct exh_wire_state *s, unsigned f)
 {
-    int32_t v[] = {s->force_N_q20[f], s->d_m_q30[f], s->q_m_q30[f], s->q_lim_m_q30[f]};
-    exh_bytes_i32s(c, s->joint_turn_q32[f], 3);
-    exh_bytes_i32s(c, s->tip_m_q30[f], 3);
-    exh_bytes_i32s(c, v, 4);
-    s->force_N_q20[f] = v[0];
-    s->d_m_q30[f] = v[1];
-    s->q_m_q30[f] = v[2];
-    s->q_lim_m_q30[f] = v[3];
+    int32_t *const joint = s->joint_turn_q32[f], *const tip = s->tip_m_q30[f];
+    int32_t v[] = {joint[0], joint[1], joint[2], tip[0], tip[1], tip[2], s->force_N_q20[f],
+        s->d_m_q30[f], s->q_m_q30[f], s->q_lim_m_q30[f]};
+    exh_bytes_i32s(c, v, 10);
+    for (unsigned i = 0; i < 3; i++) {
+        joint[i] = v[i];
+        tip[i] = v[3 + i];
+    }
+    s->force_N_q20[f] = v[6];
+    s->d_m_q30[f] = v[7];
+    s->q_m_q30[f] = v[8];
+    s->q_lim_m_q30[f] = v[9];
 }
 
 static void state_bytes(struct exh_bytes *c, struct exh_wire_state *s)
@@ -76,12 +80,17 @@ static void state_bytes(struct exh_bytes *c, struct exh_wire_state *s)
 
 static void plane_bytes(struct exh_bytes *c, struct exh_wire_plane *p)
 {
+    const int32_t *const n = p->normal_q30, *const at = p->point_m_q30, *const hit = p->hit_m_q30;
+    int32_t v[] = {n[0], n[1], n[2], at[0], at[1], at[2], hit[0], hit[1], hit[2]};
     exh_bytes_u8(c, &p->kind);
     exh_bytes_u8(c, &p->material);
     exh_bytes_u16(c, &p->object);
-    exh_bytes_i32s(c, p->normal_q30, 3);
-    exh_bytes_i32s(c, p->point_m_q30, 3);
-    exh_bytes_i32s(c, p->hit_m_q30, 3);
+    exh_bytes_i32s(c, v, 9);
+    for (unsigned i = 0; i < 3; i++) {
+        p->normal_q30[i] = v[i];
+        p->point_m_q30[i] = v[3 + i];
+        p->hit_m_q30[i] = v[6 + i];
+    }
     demand(c, p->kind <= EXH_PLANE_HIT);
 }
 
