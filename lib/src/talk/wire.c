@@ -5,6 +5,8 @@
 #include "exhand/error.h"
 #include "exhand/safety.h"
 
+#include "../num/mem.h"
+
 #define HEAD_B     UINT32_C(18)
 #define LEN_AT     4u
 #define CRC_B      4u
@@ -151,6 +153,20 @@ static int payload_bytes(struct exh_bytes *c, struct exh_wire_packet *p)
     }
 }
 
+/* Of memory, what the payload of a type takes: the others are up to ten times as long. */
+static size_t payload_size(const struct exh_wire_packet *p)
+{
+    switch (p->type) {
+    case EXH_WIRE_HELLO: return sizeof p->u.hello;
+    case EXH_WIRE_STATE: return sizeof p->u.state;
+    case EXH_WIRE_PLANES: return sizeof p->u.planes;
+    case EXH_WIRE_PARAM: return sizeof p->u.param;
+    case EXH_WIRE_ACK: return sizeof p->u.ack;
+    case EXH_WIRE_TRACE_ASK: return sizeof p->u.trace_ask;
+    default: return sizeof p->u.trace;
+    }
+}
+
 /* --- sending --- */
 
 int32_t exh_wire_encode(
@@ -202,6 +218,7 @@ static int read_packet(struct exh_wire_rx *rx, struct head *h, struct exh_wire_p
     p->type = h->type;
     p->seq = h->seq;
     p->stamp_us = h->stamp_us;
+    if (p->type == EXH_WIRE_TRACE) { p->u.trace = (struct exh_wire_trace){0}; } /* few frames */
     c.at = HEAD_B;
     if (!payload_bytes(&c, p)) {
         rx->unknown++;
@@ -290,10 +307,15 @@ int exh_wire_poll(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us)
     return 1;
 }
 
+static void hand_over(struct exh_wire_packet *p, const struct exh_wire_packet *now)
+{
+    memcpy(p, now, offsetof(struct exh_wire_packet, u) + payload_size(now));
+}
+
 int exh_wire_decode(
     struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf, size_t len_B)
 {
-    struct exh_wire_packet now = {0};
+    struct exh_wire_packet now;
     struct head h = {0, 0, 0, 0, 0, 0, 0};
     const uint32_t reordered = rx->reordered;
     int r = read_packet(rx, &h, &now, buf, len_B);
@@ -305,13 +327,13 @@ int exh_wire_decode(
     } else {
         r = refuse(rx, &h);
         if (rx->reordered == reordered || !may_be_late(h.type)) { return r; }
-        *p = now;
+        hand_over(p, &now);
         return h.type;
     }
     rx->accepted++;
     rx->quiet_us = 0;
     rx->open = 0;
-    *p = now;
+    hand_over(p, &now);
     return h.type;
 }
 
