@@ -307,11 +307,6 @@ int exh_wire_poll(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us)
     return 1;
 }
 
-static void hand_over(struct exh_wire_packet *p, const struct exh_wire_packet *now)
-{
-    memcpy(p, now, offsetof(struct exh_wire_packet, u) + payload_size(now));
-}
-
 int exh_wire_decode(
     struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf, size_t len_B)
 {
@@ -327,13 +322,13 @@ int exh_wire_decode(
     } else {
         r = refuse(rx, &h);
         if (rx->reordered == reordered || !may_be_late(h.type)) { return r; }
-        hand_over(p, &now);
+        memcpy(p, &now, offsetof(struct exh_wire_packet, u) + payload_size(&now));
         return h.type;
     }
     rx->accepted++;
     rx->quiet_us = 0;
     rx->open = 0;
-    hand_over(p, &now);
+    memcpy(p, &now, offsetof(struct exh_wire_packet, u) + payload_size(&now));
     return h.type;
 }
 
