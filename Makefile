@@ -68,8 +68,8 @@ base += $(shell $(CC) -fmacro-prefix-map=a=b -E -xc /dev/null >/dev/null 2>&1 &&
 
 # What all objects are compiled with. Another text here compiles all anew.
 stamp      := $(out)/flags
-flags_text := $(CC) | $(base) | $(PORT_CFLAGS) | $(PORT_FLOAT) | $(PORT_HOSTFLAGS) | $(CFLAGS) | \
-              $(LDFLAGS)
+flags_text := $(CC) | $(base) | $(PORT_CFLAGS) | $(PORT_WHOLE) | $(PORT_FLOAT) | \
+              $(PORT_HOSTFLAGS) | $(CFLAGS) | $(LDFLAGS)
 
 # lib/src/run needs a board and a scene: it is of images, not of the library.
 lib_src := $(sort $(filter-out lib/src/run/%,$(wildcard lib/src/*/*.c)))
@@ -129,12 +129,29 @@ include examples/custom/model.mk examples/frozen.mk
 image_of  := $(SCENE)$(if $(FROZEN),-frozen-$(subst /,_,$(FROZEN)))$(if $(filter \
              custom,$(SCENE)),$(filter-out -wall,-$(MODEL_NAME)))
 image     := $(out)/$(image_of)$(PORT_SUFFIX).elf
+# A scene that says SCENE_WHOLE is optimised as one program with library, loop and cards, where the
+# port says how (PORT_WHOLE). The port's own files are not: interrupts, faults and tests come in
+# there. Nor are records: a bound of the stack tells their indirect calls by file.
+one      := $(if $(FROZEN),,$(and $(PORT_WHOLE),$(SCENE_WHOLE)))
+one_at   := $(out)$(if $(one),/whole)
+one_lib  := $(if $(one),$(one_at)/libexhand.a,$(lib))
+one_link := $(if $(one),$(base) $(PORT_CFLAGS) $(PORT_WHOLE) -flto-partition=one \
+            -Wno-maybe-uninitialized $(CFLAGS))
+ifneq ($(one),)
+$(out)/$(SCENE)/ports/cards/%.o: SCENE_CFLAGS += $(PORT_WHOLE)
+$(one_at)/%.o: %.c $(stamp)
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(base) $(PORT_CFLAGS) $(if $(filter lib/%,$<),,$(PORT_HOSTFLAGS)) $(PORT_WHOLE) \
+	    $(CFLAGS) -c $< -o $@
+$(one_lib): $(lib_src:%.c=$(one_at)/%.o)
+	$(Q)rm -f $@ && $(CROSS)ar rcD $@ $^
+endif
 # The frozen scene and library come first, so that the other library gives them nothing.
 main_src  := $(or $(SCENE_MAIN),$(PORT_MAIN),lib/src/run/image.c lib/src/run/deadman.c)
 image_obj := $(if $(FROZEN),$(frozen_obj) $(frozen_lib)) \
              $(patsubst %,$(out)/$(SCENE)/%.o,$(basename $(main_src) $(PORT_SRC))) \
-             $(if $(SCENE_MAIN),,$(out)/lib/src/run/loop.o) \
-             $(if $(FROZEN),,$(SCENE_SRC:%.c=$(out)/%.o)) \
+             $(if $(SCENE_MAIN),,$(one_at)/lib/src/run/loop.o) \
+             $(if $(FROZEN),,$(SCENE_SRC:%.c=$(one_at)/%.o)) \
              $(if $(filter custom,$(SCENE)),$(model_obj))
 
 # These are compiled for one scene: a set of objects per scene.
@@ -146,10 +163,10 @@ $(out)/$(SCENE)/%.o: %.S $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) -Ilib/include $(PORT_CFLAGS) -g -c $< -o $@
 
-$(image): $(image_obj) $(lib) $(PORT_LDSCRIPT) $(frozen_stamp)
-	$(Q)$(CC) $(if $(FROZEN),$(whole_flags)) $(PORT_LDFLAGS) $(LDFLAGS) \
+$(image): $(image_obj) $(one_lib) $(PORT_LDSCRIPT) $(frozen_stamp)
+	$(Q)$(CC) $(if $(FROZEN),$(whole_flags),$(one_link)) $(PORT_LDFLAGS) $(LDFLAGS) \
 	    -Wl,--gc-sections,-Map=$(@:.elf=.map) \
-	    $(PORT_LDSCRIPT:%=-T %) $(image_obj) $(lib) $(SCENE_LIBS) -o $@
+	    $(PORT_LDSCRIPT:%=-T %) $(image_obj) $(one_lib) $(SCENE_LIBS) -o $@
 
 # What the machine boots from, if that is not the image itself.
 boot := $(if $(PORT_ISO),$(image:.elf=.iso))

@@ -22,7 +22,7 @@ static struct {
     uint64_t sum;
     uint32_t bin_per_count_q32;
     uint32_t bin[BINS + 1];
-} spent;
+} spent = {.least = UINT32_MAX};
 
 static uint32_t missed_in_all, late_in_all;
 static uint32_t second_ticks;            /* periods in a second, 2 at least */
@@ -96,13 +96,6 @@ void pc104_load_stop(void) { pc104_hang_ticks = 0; }
 
 void pc104_load_begin(void)
 {
-    if (spent.bin_per_count_q32 == 0) {
-        spent.least = UINT32_MAX;
-        spent.bin_per_count_q32 =
-            (uint32_t)exh_udiv64((uint64_t)BINS << 32, pc104_timer_counts(), NULL);
-        second_ticks = (uint32_t)exh_udiv64(pc104_timer_Hz(), pc104_timer_counts(), NULL);
-        second_ticks = second_ticks < 2 ? 2 : second_ticks;
-    }
     pc104_tick_began = pc104_ticks;
     pc104_hang_ticks = hang_ticks(); /* no grace: currents flow in the first, too */
     spent.began = pc104_timer_now();
@@ -257,10 +250,20 @@ static uint32_t apart(void)
     return period < most ? period : most;
 }
 
+/* Long divisions, which no tick makes, not even the first. */
+static void divide(void)
+{
+    second_ticks = (uint32_t)exh_udiv64(pc104_timer_Hz(), pc104_timer_counts(), NULL);
+    second_ticks = second_ticks < 2 ? 2 : second_ticks;
+    spent.bin_per_count_q32 =
+        (uint32_t)exh_udiv64((uint64_t)BINS << 32, pc104_timer_counts(), NULL);
+}
+
 int pc104_load_fits(uint32_t rate_Hz)
 {
     uint64_t cost;
     uint32_t need;
+    divide();
     if (pc104_par.budget_us) {
         cost = exh_udiv64((uint64_t)pc104_par.budget_us * pc104_timer_Hz(), 1000000, NULL);
     } else {

@@ -2,6 +2,7 @@
 /* The four string functions that the library and the compiler may call. The string
  * instructions keep the compiler from turning a loop back into a call of itself. */
 #include <stddef.h>
+#include <stdint.h>
 
 void *memcpy(void *restrict dst, const void *restrict src, size_t len_B);
 void *memmove(void *dst, const void *src, size_t len_B);
@@ -11,7 +12,9 @@ int memcmp(const void *a, const void *b, size_t len_B);
 void *memcpy(void *restrict dst, const void *restrict src, size_t len_B)
 {
     void *d = dst;
-    __asm__ volatile("rep movsb" : "+D"(d), "+S"(src), "+c"(len_B) : : "memory");
+    size_t words = len_B / 4, rest_B = len_B % 4;
+    __asm__ volatile("rep movsl" : "+D"(d), "+S"(src), "+c"(words) : : "memory");
+    __asm__ volatile("rep movsb" : "+D"(d), "+S"(src), "+c"(rest_B) : : "memory");
     return dst;
 }
 
@@ -27,8 +30,11 @@ void *memmove(void *dst, const void *src, size_t len_B)
 
 void *memset(void *dst, int value, size_t len_B)
 {
+    const uint32_t word = (uint32_t)(unsigned char)value * 0x01010101u;
     void *d = dst;
-    __asm__ volatile("rep stosb" : "+D"(d), "+c"(len_B) : "a"(value) : "memory");
+    size_t words = len_B / 4, rest_B = len_B % 4;
+    __asm__ volatile("rep stosl" : "+D"(d), "+c"(words) : "a"(word) : "memory");
+    __asm__ volatile("rep stosb" : "+D"(d), "+c"(rest_B) : "a"(word) : "memory");
     return dst;
 }
 

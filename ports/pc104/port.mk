@@ -32,6 +32,8 @@ PORT_HOSTFLAGS := -Iports
 # a controller in floats alone.
 PORT_CFLAGS   := -m32 -march=i686 -ffreestanding -fno-pic -fno-pie -fno-stack-protector \
                  -fcf-protection=none -fno-asynchronous-unwind-tables -mgeneral-regs-only
+# For a scene with much to do in a tick (SCENE_WHOLE): an eighth fewer instructions, and 30 KB more.
+PORT_WHOLE    := -O3 -flto -ffat-lto-objects
 PORT_FLOAT    := -msse2 -mfpmath=sse -fno-math-errno
 comma         := ,
 PORT_LDFLAGS   = -m32 -nostdlib -static -no-pie \

@@ -40,9 +40,12 @@ struct exh_bytes exh_bytes_measure(void)
 static uint8_t *move_past(struct exh_bytes *c, uint32_t n)
 {
     const uint32_t at = c->at;
-    const int fits = at <= c->cap && n <= c->cap - at;
+    if (at <= c->cap && n <= c->cap - at) { /* a cursor that measures has no room */
+        c->at = at + n;
+        return c->p + at;
+    }
     c->at = at > UINT32_MAX - n ? UINT32_MAX : at + n;
-    return fits && c->mode != EXH_BYTES_MEASURE ? c->p + at : NULL;
+    return NULL;
 }
 
 /* A value that stays: what is written, or only measured. */

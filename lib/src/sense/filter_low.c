@@ -27,8 +27,6 @@ static inline int32_t output(struct exh_filter *s, int64_t low)
     return exh_from_u32((uint32_t)((uint64_t)low >> POS_Q & UINT32_MAX));
 }
 
-static inline int32_t high_word(int64_t v) { return exh_from_u32((uint32_t)((uint64_t)v >> 32)); }
-
 /* (x - floor(pos)) * a modulo 2^64, in whichever way the CPU has the shorter code: the same
  * bits. 2a fits. */
 static inline uint64_t drive(int64_t pos, int32_t x, int32_t a)
@@ -43,19 +41,11 @@ static inline uint64_t drive(int64_t pos, int32_t x, int32_t a)
 #endif
 }
 
-/* Of cfg->shift, where it is used: a 32-bit compiler that does not see the mask right there
- * shifts 64 bits by way of a test and two moves. */
-#if UINTPTR_MAX > UINT32_MAX
-#define SHIFT const unsigned
-#else
-#define SHIFT const volatile unsigned
-#endif
-
 /* Damaged bytes may wrap here, which clipped() finds. Nothing else comes near. */
 EXH_FILTER_STEP(exh_filter_low2)
 {
     const int32_t a = cfg->a, b = cfg->b, c = cfg->c;
-    SHIFT shift = cfg->shift;
+    EXH_FILTER_WORD unsigned shift = cfg->shift;
     for (; n > 0; n--, s++, x++, y++) {
         const uint64_t friction = (uint64_t)((int64_t)high_word(s->vel) * b);
         const int64_t acc = exh_from_u64(drive(s->pos, *x, a) - friction);
@@ -72,7 +62,7 @@ EXH_FILTER_STEP(exh_filter_low2)
 EXH_FILTER_STEP(exh_filter_low1)
 {
     const int32_t a = cfg->a;
-    SHIFT shift = cfg->shift;
+    EXH_FILTER_WORD unsigned shift = cfg->shift;
     for (; n > 0; n--, s++, x++, y++) {
         const int64_t acc = exh_from_u64(drive(s->pos, *x, a));
         const int64_t move = acc >> (shift & 31);

@@ -5,6 +5,8 @@
 #include "exhand/error.h"
 #include "exhand/safety.h"
 
+#include "../num/mem.h"
+
 #define HEAD_B     UINT32_C(18)
 #define LEN_AT     4u
 #define CRC_B      4u
@@ -51,14 +53,18 @@ static void hello_bytes(struct exh_bytes *c, struct exh_wire_hello *h)
 
 static void finger_bytes(struct exh_bytes *c, struct exh_wire_state *s, unsigned f)
 {
-    int32_t v[] = {s->force_N_q20[f], s->d_m_q30[f], s->q_m_q30[f], s->q_lim_m_q30[f]};
-    exh_bytes_i32s(c, s->joint_turn_q32[f], 3);
-    exh_bytes_i32s(c, s->tip_m_q30[f], 3);
-    exh_bytes_i32s(c, v, 4);
-    s->force_N_q20[f] = v[0];
-    s->d_m_q30[f] = v[1];
-    s->q_m_q30[f] = v[2];
-    s->q_lim_m_q30[f] = v[3];
+    int32_t *const joint = s->joint_turn_q32[f], *const tip = s->tip_m_q30[f];
+    int32_t v[] = {joint[0], joint[1], joint[2], tip[0], tip[1], tip[2], s->force_N_q20[f],
+        s->d_m_q30[f], s->q_m_q30[f], s->q_lim_m_q30[f]};
+    exh_bytes_i32s(c, v, 10);
+    for (unsigned i = 0; i < 3; i++) {
+        joint[i] = v[i];
+        tip[i] = v[3 + i];
+    }
+    s->force_N_q20[f] = v[6];
+    s->d_m_q30[f] = v[7];
+    s->q_m_q30[f] = v[8];
+    s->q_lim_m_q30[f] = v[9];
 }
 
 static void state_bytes(struct exh_bytes *c, struct exh_wire_state *s)
@@ -76,12 +82,17 @@ static void state_bytes(struct exh_bytes *c, struct exh_wire_state *s)
 
 static void plane_bytes(struct exh_bytes *c, struct exh_wire_plane *p)
 {
+    const int32_t *const n = p->normal_q30, *const at = p->point_m_q30, *const hit = p->hit_m_q30;
+    int32_t v[] = {n[0], n[1], n[2], at[0], at[1], at[2], hit[0], hit[1], hit[2]};
     exh_bytes_u8(c, &p->kind);
     exh_bytes_u8(c, &p->material);
     exh_bytes_u16(c, &p->object);
-    exh_bytes_i32s(c, p->normal_q30, 3);
-    exh_bytes_i32s(c, p->point_m_q30, 3);
-    exh_bytes_i32s(c, p->hit_m_q30, 3);
+    exh_bytes_i32s(c, v, 9);
+    for (unsigned i = 0; i < 3; i++) {
+        p->normal_q30[i] = v[i];
+        p->point_m_q30[i] = v[3 + i];
+        p->hit_m_q30[i] = v[6 + i];
+    }
     demand(c, p->kind <= EXH_PLANE_HIT);
 }
 
@@ -142,6 +153,20 @@ static int payload_bytes(struct exh_bytes *c, struct exh_wire_packet *p)
     }
 }
 
+/* Of memory, what the payload of a type takes: the others are up to ten times as long. */
+static size_t payload_size(const struct exh_wire_packet *p)
+{
+    switch (p->type) {
+    case EXH_WIRE_HELLO: return sizeof p->u.hello;
+    case EXH_WIRE_STATE: return sizeof p->u.state;
+    case EXH_WIRE_PLANES: return sizeof p->u.planes;
+    case EXH_WIRE_PARAM: return sizeof p->u.param;
+    case EXH_WIRE_ACK: return sizeof p->u.ack;
+    case EXH_WIRE_TRACE_ASK: return sizeof p->u.trace_ask;
+    default: return sizeof p->u.trace;
+    }
+}
+
 /* --- sending --- */
 
 int32_t exh_wire_encode(
@@ -193,6 +218,7 @@ static int read_packet(struct exh_wire_rx *rx, struct head *h, struct exh_wire_p
     p->type = h->type;
     p->seq = h->seq;
     p->stamp_us = h->stamp_us;
+    if (p->type == EXH_WIRE_TRACE) { p->u.trace = (struct exh_wire_trace){0}; } /* few frames */
     c.at = HEAD_B;
     if (!payload_bytes(&c, p)) {
         rx->unknown++;
@@ -284,7 +310,7 @@ int exh_wire_poll(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us)
 int exh_wire_decode(
     struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf, size_t len_B)
 {
-    struct exh_wire_packet now = {0};
+    struct exh_wire_packet now;
     struct head h = {0, 0, 0, 0, 0, 0, 0};
     const uint32_t reordered = rx->reordered;
     int r = read_packet(rx, &h, &now, buf, len_B);
@@ -296,13 +322,13 @@ int exh_wire_decode(
     } else {
         r = refuse(rx, &h);
         if (rx->reordered == reordered || !may_be_late(h.type)) { return r; }
-        *p = now;
+        memcpy(p, &now, offsetof(struct exh_wire_packet, u) + payload_size(&now));
         return h.type;
     }
     rx->accepted++;
     rx->quiet_us = 0;
     rx->open = 0;
-    *p = now;
+    memcpy(p, &now, offsetof(struct exh_wire_packet, u) + payload_size(&now));
     return h.type;
 }
 

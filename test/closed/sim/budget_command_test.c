@@ -20,19 +20,23 @@ static int csv_int(const char *line, int n)
 TEST(figures_by_hand)
 {
     char *dir = said_dir();
-    /* 7952 * 2 / 1600 + 5 * 0.25 = 11.190; 12 accesses; 50 us less 11.190 are 12 of 3.234. */
+    /* 3697 * 2 / 1600 + 5 * 0.25 = 5.871; 12 accesses; 50 us less 5.871 are 12 of 3.677. */
     said(&s, dir, cli_budget, WORDS("budget", "--csv"));
-    CHECK(s.status == 0 &&
-              strstr(s.out,
-                  "\"drop, in "
-                  "turn\",20000,11,0,7952,11.190,12.000,25.000,10.000,0.000,40000,A/D,3.234\n"),
+    CHECK(
+        s.status == 0 &&
+            strstr(s.out,
+                "\"drop, in "
+                "turn\",20000,11,0,3697,5.871,12.000,25.000,10.000,0.000,40000,A/D,40000,3.677\n"),
         "%s", s.out);
-    /* 47.35875 and 32: 12601 Hz. */
-    CHECK(strstr(s.out, ",47.359,32.000,25.000,10.000,16.923,12601,instructions,1.645\n") != NULL,
+    /* 31.35 and 32: 15785 Hz; and 32 of 0.7: 18605. */
+    CHECK(strstr(s.out, ",31.350,32.000,25.000,10.000,16.923,15785,bus,18605,2.145\n") != NULL,
         "%s", s.out);
     said(&s, dir, cli_budget, WORDS("budget", "--access-us", "2", "--csv"));
-    CHECK(
-        strstr(s.out, ",47.359,64.000,25.000,10.000,16.923,8980,bus,1.645\n") != NULL, "%s", s.out);
+    CHECK(strstr(s.out, ",31.350,64.000,25.000,10.000,16.923,10488,bus,18605,2.145\n") != NULL,
+        "%s", s.out);
+    /* The fast access alone: 1e6 / (31.35 + 32 * 0.5). */
+    said(&s, dir, cli_budget, WORDS("budget", "--fast-us", "0.5", "--csv"));
+    CHECK(strstr(s.out, ",15785,bus,21119,2.145\n") != NULL, "%s", s.out);
     said_clean(dir);
 }
 

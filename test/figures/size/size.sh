@@ -9,7 +9,9 @@
 #          ports/template: the simulator around them would drown them. Instructions by callgrind,
 #          the mean of those of 3000 ticks, into the wall and back, that run in contact (scenes
 #          without a wall: that run; without safety: all; said beside the table).
-#   pc104  the image with constants for cards (CARDS=none), which is what runs under QEMU.
+#   pc104  the image with constants for cards (CARDS=none), which is what runs under QEMU, linked of
+#          its parts, so that they can be told apart. Of one that is linked as one program
+#          (SCENE_WHOLE) the stack must fit, too.
 #          Instructions by its own count there (time stamp counter, one per instruction), the
 #          dearest tick of 2000, arming, ramp and running among them; with nothing moving.
 #   mps2   the image, a loop-back for drives. Instructions in virtual time under QEMU, to 1: 64 ns
@@ -41,13 +43,21 @@ command -v "$cc" >/dev/null 2>&1 || { echo "$cc: not found: install gcc" >&2; ex
 
 note() { echo "size: $*" >&2; }
 
+# one SCENE: it is linked as one program
+one()
+{
+    case $b/$1 in */whole/* | *-frozen-*) return 0 ;; esac
+    return 1
+}
+
 # build PORT SCENE [VARIABLE...]: the image and the call graphs beside its objects. Of
 # SCENE-frozen-RATE those are what the linker made, which it leaves there.
 build()
 {
     port=$1 scene=$2
     shift 2
-    case $scene in *-frozen-*) set -- "$@" "FROZEN=${scene##*-}" SCENE_LIBS=-save-temps ;; esac
+    case $scene in *-frozen-*) set -- "$@" "FROZEN=${scene##*-}" ;; esac
+    one "$scene" && set -- "$@" SCENE_LIBS=-save-temps
     # shellcheck disable=SC2046 # none or one word
     $make -s "PORT=$port" "SCENE=${scene%-frozen-*}" "B=$b" CFLAGS=-fcallgraph-info=su "$@" \
         "$b/$port/$scene.elf" $([ "$port" = template ] && echo "$b/template/lib/src/run/log.o")
@@ -76,10 +86,14 @@ objects()
     own=$b/$1/examples/$2
     case $2 in *-frozen-*) own= ;; esac
     # shellcheck disable=SC2046,SC2086 # the names of our objects have no blanks
-    find "$b/$1/lib" "$b/$1/lib/src/run/loop.ci" $own "$b/$1/${2%-frozen-*}" \
-        $(shared "$1" "$2" ci) $(model "$1" "$2") -name '*.ci' |
-        sed 's/\.ci$/.o/' | sort
-    [ -n "$own" ] || echo "$b/$1/$2.elf.ltrans0.ltrans.o"
+    case $b in
+    */whole) find "$b/$1/$2" -name '*.ci' ;;
+    *)
+        find "$b/$1/lib" "$b/$1/lib/src/run/loop.ci" $own "$b/$1/${2%-frozen-*}" \
+            $(shared "$1" "$2" ci) $(model "$1" "$2") -name '*.ci'
+        ;;
+    esac | sed 's/\.ci$/.o/' | sort
+    if one "$2"; then echo "$b/$1/$2.elf.ltrans0.ltrans.o"; fi
 }
 
 # library_symbols PORT SCENE NM: global symbols of the library that the image has
@@ -224,6 +238,16 @@ posix_row()
     row "$1" posix $bytes "$(stack template "$1" objdump)" "$(callgrind "$1")"
 }
 
+# whole_fits SCENE: the stack of the pc104 image, where the linker makes one program of it
+whole_fits()
+{
+    grep -q '^SCENE_WHOLE' "examples/$1/scene.mk" || return 0
+    parts=$b b=$b/whole
+    build pc104 "$1" "CROSS=$cross" "CC=${cross}gcc" CARDS=none PORT_SUFFIX=
+    stack_fits pc104 "$1" "$(stack pc104 "$1" "${cross}objdump")" "${cross}nm"
+    b=$parts
+}
+
 pc104_row()
 {
     cross=i686-linux-gnu-
@@ -231,12 +255,13 @@ pc104_row()
         note "${cross}gcc: not found: no pc104 (package gcc-i686-linux-gnu)"
         return
     fi
-    build pc104 "$1" "CROSS=$cross" "CC=${cross}gcc" CARDS=none PORT_SUFFIX=
+    build pc104 "$1" "CROSS=$cross" "CC=${cross}gcc" CARDS=none PORT_SUFFIX= PORT_WHOLE=
     library_symbols pc104 "$1" "${cross}nm" >"$b/symbols.txt"
     compare_symbols pc104 "$1"
     bytes=$("${cross}size" "$b/pc104/$1.elf" | awk 'NR == 2 { print $1, $2, $3 }')
     stack=$(stack pc104 "$1" "${cross}objdump")
     stack_fits pc104 "$1" "$stack" "${cross}nm"
+    whole_fits "$1"
     # shellcheck disable=SC2086 # three numbers
     row "$1" pc104 $bytes "$stack" "$(counted "$1")"
 }

@@ -21,7 +21,7 @@ static struct run_options opt = {.options = "",
     .where = -1,
     .ticks = 1000,
     .spoil = -1};
-static int64_t late, status = 0x10, spread_ppm = -1;
+static int64_t late, status = 0x10, spread_ppm = -1, most = -1;
 
 static int take_setting(void *ctx, const char *text)
 {
@@ -107,6 +107,10 @@ static int judge(void)
     if (spread_ppm >= 0) {
         bad |= check(ppm <= (uint64_t)spread_ppm, "spread of the scene's part");
     }
+    if (most >= 0) {
+        bad |= check(count_range(&run.count.insns).max <= (uint64_t)most,
+            "instructions of the dearest tick");
+    }
     if (run.count.no_memory) { bad |= check(0, "memory for the figures"); }
     return bad;
 }
@@ -151,6 +155,9 @@ int main(int argc, char **argv)
             "count instructions one by one too, and compare: slow"},
         {"where", CLI_INT, &opt.where, 0, COUNT_KEYS - 1, "CLASS",
             "of ticks: blocks in which the cheapest and the dearest tick differ"},
+        {"whole", CLI_FLAG, &opt.whole, 0, 0, NULL,
+            "blocks of the image's cheapest and dearest tick, all of them"},
+        {"most", CLI_INT, &most, 0, 1e9, "N", "most instructions of a tick (any)"},
         {"records", CLI_TEXT, &opt.records, 0, 0, "FILE", "what the image puts out with log=debug"},
         {"spoil", CLI_INT, &opt.spoil, -1, 1e9, "TICK",
             "one encoder reads a count more in it: must be found"},
@@ -170,7 +177,7 @@ int main(int argc, char **argv)
     hil_run(&run.h);
     world_close(&run.world);
     err = opt.board ? judge_board() : judge();
-    if (opt.where >= 0) { where_print(); }
+    if (opt.where >= 0 || opt.whole) { where_print(opt.whole); }
     run_close();
     return cli_finish(err);
 }

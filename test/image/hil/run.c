@@ -34,7 +34,7 @@ static void on_back(struct hil *h, uint32_t address)
     run.runs = out.enable != 0;
     run.key = class_out(&run.class_of, h, &out, run.key);
     const uint32_t n = count_scene_end(&run.count, h, run.key);
-    if (run.opt->where >= 0 && run.key == (unsigned)run.opt->where) { where_end(n); }
+    if (!run.opt->whole && run.key == (unsigned)run.opt->where) { where_end(n); }
 }
 
 /* The scene's tick is called: tick(in, out). */
@@ -64,7 +64,7 @@ static void on_tick(struct hil *h, uint32_t address)
     }
     run.key = class_in(&run.class_of, h, &in) | (run.ticks == 1 ? COUNT_FIRST : 0);
     count_scene(&run.count, h);
-    if (run.opt->where >= 0) { where_begin(); }
+    if (run.opt->where >= 0 && !run.opt->whole) { where_begin(); }
 }
 
 static void on_wait(struct hil *h)
@@ -73,6 +73,7 @@ static void on_wait(struct hil *h)
         hil_broke(
             h, "%" PRIu64 " instructions by blocks, %" PRIu64 " one by one", h->insns, h->singly);
     }
+    if (run.opt->whole) { where_end((uint32_t)(h->insns - run.count.at_insns)); }
     count_wait(&run.count, h);
 }
 
@@ -133,7 +134,9 @@ static void on_irq(struct hil *h)
     if (run.opt->board) { loop_back(); }
     world_instant(&run.world);
     run.passed += h->waited != 0;
-    if (h->idle) { count_tick(&run.count, h); }
+    if (!h->idle) { return; }
+    count_tick(&run.count, h);
+    if (run.opt->whole) { where_begin(); }
 }
 
 static void on_line(struct hil *h, const char *text)
@@ -203,7 +206,7 @@ static void open_hooks(struct hil *h)
     h->wait = on_wait;
     h->set = on_set;
     h->tick = on_irq;
-    h->block_fn = run.opt->where >= 0 ? where_block : NULL;
+    h->block_fn = run.opt->where >= 0 || run.opt->whole ? where_block : NULL;
     h->max_insns = UINT64_C(1) << 40;
     if (run.tick) { hil_watch_at(h, run.tick, on_tick); }
     watch(h, "exh_board_wait", on_loop);

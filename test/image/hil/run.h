@@ -10,7 +10,7 @@
 struct run_options {
     const char *image, *options; /* the file, and its command line */
     const char *records;         /* where what comes out of port 0xE9 goes, or NULL */
-    int wild, quiet, singly, loop, absent, board, turns, glove_last;
+    int wild, quiet, singly, loop, absent, board, turns, glove_last, whole;
     double cpi, port_us, hpet_MHz, baud;
     int64_t seed, where, ticks, rate_Hz, glove_age, monitor_age, spoil;
     struct ref_setting set[REF_SETTINGS];

@@ -62,14 +62,14 @@ static int by_address(const void *a, const void *b)
     return (x->address > y->address) - (x->address < y->address);
 }
 
-void where_print(void)
+void where_print(int all)
 {
     static struct block sum[BLOCKS];
     unsigned sums = add(sum, 0, &cheapest, 0);
     sums = add(sum, sums, &dearest, 1);
     qsort(sum, sums, sizeof sum[0], by_address);
     for (unsigned i = 0; i < sums; i++) {
-        if (sum[i].n[0] != sum[i].n[1]) {
+        if (all || sum[i].n[0] != sum[i].n[1]) {
             printf("  0x%06" PRIx32 " %6" PRIu32 " %6" PRIu32 "\n", sum[i].address, sum[i].n[0],
                 sum[i].n[1]);
         }

@@ -10,7 +10,7 @@ void where_begin(void);
 void where_end(uint32_t n);
 /* A hook of the machine: n instructions at an address. */
 void where_block(uint32_t address, unsigned n);
-/* Blocks that differ: address, instructions in the cheapest tick, and in the dearest. */
-void where_print(void);
+/* Blocks that differ, or all: address, instructions in the cheapest tick, and in the dearest. */
+void where_print(int all);
 
 #endif
