@@ -40,9 +40,9 @@ struct exh_bytes exh_bytes_measure(void)
 static uint8_t *move_past(struct exh_bytes *c, uint32_t n)
 {
     const uint32_t at = c->at;
-    if (at <= c->cap && n <= c->cap - at) { /* a cursor that measures has no room */
+    if (at <= c->cap && n <= c->cap - at) {
         c->at = at + n;
-        return c->p + at;
+        return c->mode != EXH_BYTES_MEASURE ? c->p + at : NULL;
     }
     c->at = at > UINT32_MAX - n ? UINT32_MAX : at + n;
     return NULL;

@@ -18,16 +18,17 @@ static inline int64_t bounded(int64_t v)
     return high + most < 2 * most ? v : exh_clamp64(v, MOST);
 }
 
-/* exh_mul64_q31() of a coefficient, which is never below 0: its low product needs no sign. */
+/* exh_mul64_q31() of a coefficient, which is never below 0: its low product needs no sign. One of
+ * damaged memory may wrap. */
 static inline int64_t share(int64_t a, int32_t b)
 {
-    const int64_t high = (int64_t)high_word(a) * b;
+    const uint64_t high = (uint64_t)((int64_t)high_word(a) * b);
     const uint64_t low = (uint64_t)(uint32_t)((uint64_t)a & UINT32_MAX) * (uint32_t)b;
-    return 2 * high + (int64_t)((low + (UINT32_C(1) << 30)) >> 31);
+    return exh_from_u64(2 * high + ((low + (UINT32_C(1) << 30)) >> 31));
 }
 
 /* The limit is seen in the high word; within it the low one is all there is. */
-static inline int32_t output(int64_t low)
+static inline int32_t within(int64_t low)
 {
     const uint32_t high = (uint32_t)((uint64_t)low >> 32), half = UINT32_C(1) << (31 + Q - 32);
     if (high + half >= 2 * half) { return exh_sat32(low >> Q); }
@@ -54,13 +55,13 @@ EXH_FILTER_STEP(exh_filter_high2)
         widen(s);
         pos = bounded(s->pos);
         vel = bounded(s->vel);
-        e = (int64_t)*x * (INT32_C(1) << Q) + HALF - pos;
+        e = exh_wrap_diff64((int64_t)*x * (INT32_C(1) << Q) + HALF, pos);
         mid = exh_wrap_add64(share(vel, a), share(e, b));
         move = exh_wrap_add64(share(vel, c), share(e, d));
         low = exh_wrap_add64(pos, move);
         s->vel = exh_wrap_diff64(exh_wrap_add64(mid, mid), vel);
         s->pos = exh_wrap_add64(low, move);
-        *y = output(low);
+        *y = within(low);
     }
 }
 
@@ -71,9 +72,9 @@ EXH_FILTER_STEP(exh_filter_high1)
         int64_t pos, move, low;
         widen(s);
         pos = bounded(s->pos);
-        move = share((int64_t)*x * (INT32_C(1) << Q) + HALF - pos, a);
+        move = share(exh_wrap_diff64((int64_t)*x * (INT32_C(1) << Q) + HALF, pos), a);
         low = exh_wrap_add64(pos, move);
         s->pos = exh_wrap_add64(low, move);
-        *y = output(low);
+        *y = within(low);
     }
 }

@@ -218,7 +218,6 @@ static int read_packet(struct exh_wire_rx *rx, struct head *h, struct exh_wire_p
     p->type = h->type;
     p->seq = h->seq;
     p->stamp_us = h->stamp_us;
-    if (p->type == EXH_WIRE_TRACE) { p->u.trace = (struct exh_wire_trace){0}; } /* few frames */
     c.at = HEAD_B;
     if (!payload_bytes(&c, p)) {
         rx->unknown++;
@@ -310,7 +309,7 @@ int exh_wire_poll(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us)
 int exh_wire_decode(
     struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf, size_t len_B)
 {
-    struct exh_wire_packet now;
+    struct exh_wire_packet now = {0};
     struct head h = {0, 0, 0, 0, 0, 0, 0};
     const uint32_t reordered = rx->reordered;
     int r = read_packet(rx, &h, &now, buf, len_B);

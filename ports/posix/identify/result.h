@@ -27,7 +27,7 @@ struct result_file {
 };
 
 /* A residual above this: the model does not fit, and nobody may be advised by the file. */
-#define RESULT_RESIDUAL_MAX 2.5
+#define RESULT_RESIDUAL_MAX 1.6
 
 /* An estimate, of a run so sampled, with a known mass. */
 struct fit;

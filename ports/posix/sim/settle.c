@@ -2,6 +2,7 @@
 #include "settle.h"
 
 #include "codes.h"
+#include "grid.h"
 #include "plant.h"
 
 #include <string.h>
@@ -24,6 +25,7 @@ struct run {
     const struct sim_device *d;
     const struct settle_wall *w;
     struct plant plant;
+    struct plant_pieces pieces;
     double now_s, tick_s, servo_s, contact_s; /* < 0: no contact yet */
     double grid, ref_A, latched_A, force_N, start_cnt;
     /* the controller */
@@ -115,7 +117,11 @@ static int advance(struct run *r)
     double next_s = earlier(r->tick_s, r->servo_s);
     if (r->queued) { next_s = earlier(next_s, r->out_s[r->head]); }
     if (next_s > r->now_s) {
-        plant_advance(&r->plant, r->d, next_s - r->now_s, r->ref_A, 0);
+        const double dt_s = sim_grid_s(r->now_s, next_s);
+        if (dt_s > 0) {
+            plant_advance_piece(
+                &r->plant, r->d, plant_pieces_find(&r->pieces, r->d, dt_s, 0), r->ref_A);
+        }
         r->now_s = next_s;
     }
     while (r->queued && r->out_s[r->head] <= r->now_s) {

@@ -64,7 +64,8 @@ void gains_defaults(struct gains_options *a)
     a->o.wall.slew_Nps = of_scene("slew_up");
     a->window = INT64_C(1) << (int)of_scene("vel_p");
     a->cases = 32;
-    a->margin_percent = a->k_Npm = a->b_Nspm = a->phase = -1;
+    a->k_Npm = a->b_Nspm = a->phase = -1;
+    a->margin_percent = 3;
     a->rate_Hz[0] = 2000;
     a->rates = 1;
     a->jobs = jobs_cores();
@@ -110,7 +111,6 @@ int gains_refuse(struct gains_options *a)
         return 2;
     }
     if (a->off_percent > 0) { around(&a->o, a->off_percent / 100); }
-    if (a->margin_percent < 0) { a->margin_percent = a->has_file ? 0 : 3; }
     a->o.margin = a->margin_percent / 100;
     a->o.cases = (int)a->cases;
     a->o.at_phase = a->phase >= 0;
@@ -307,7 +307,7 @@ int gains_command(int argc, char **argv, const struct gains_study *study)
         {"off", CLI_REAL, &a.off_percent, 0, 50, "PERCENT",
             "also with masses so much more and less, and friction so much less (0)"},
         {"margin", CLI_REAL, &a.margin_percent, 0, 50, "PERCENT",
-            "every second fall with so much less friction (3; 0 with --device)"},
+            "every second fall with so much less friction (3)"},
         {"cases", CLI_INT, &a.cases, 2, 1000, "N", "falls of each pair; more allow less (32)"},
         {"rule", CLI_FLAG, &a.rule, 0, 0, NULL, "print only the rule, as --set takes it and as C"},
         {"jobs", CLI_INT, &a.jobs, 1, 1024, "N", "processes at a time (one a core)"},

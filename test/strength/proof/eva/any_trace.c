@@ -41,6 +41,7 @@ static void traced(uint32_t frames)
     struct exh_bytes c = exh_bytes_writer(image_B, sizeof image_B);
     any_trace(&own, own_frame, frames);
     ANY(signal);
+    (void)exh_trace_reads(&own);
     exh_trace_step(&own, any_u32(), signal);
     exh_trace_serialize(&c, &own);
     ANY(what);
