@@ -6,8 +6,8 @@ PORT_SRC  := ports/template/board.c
 # PORT_PKGS     packages of Debian that have it; PORT_QEMU: what PORT_RUN needs, the program and its
 #               packages
 # PORT_CFLAGS   target and freestanding flags, for the library too
-# PORT_WHOLE    flags with -flto, for scenes that say SCENE_WHOLE: one program of library, scene, loop
-#               and cards, faster and longer; the port's own files stay apart
+# PORT_WHOLE    flags with -flto, for scenes that say SCENE_WHOLE: library, scene, loop and cards
+#               become one program, faster and longer; the port's own files stay apart
 # PORT_LDFLAGS  e.g. -nostdlib -static
 # PORT_LDSCRIPT one per memory map, in ldscripts/
 # PORT_RUN      program that runs an image: exit status 0 when it said "done"

@@ -217,7 +217,7 @@ MUTANTS = (
     ("weigh", L + "bench/weigh.c", "s->coded = s->mon = (struct exh_mean){0, 0};", ""),
     ("filter", L + "sense/filter_low.c", "(int64_t)high_word(p) * c",
      "(int64_t)high_word(s->vel) * c"),
-    ("filter", L + "sense/filter_high.c", "+ HALF - pos;", "- pos;"),
+    ("filter", L + "sense/filter_high.c", "+ HALF, pos);\n        mid", ", pos);\n        mid"),
     ("filter", L + "sense/filter.c", "cfg->b = coefficient(b, n, 31);",
      "cfg->b = coefficient(b, n, 31) - 1;"),
     ("filter", L + "sense/filter.c", "{ s[i].vel = 0; }", "{ }"),
