@@ -97,11 +97,11 @@ static int apply(void)
     return err;
 }
 
-void mail_before(struct exh_scene_in *in)
+int mail_before(struct exh_scene_in *in)
 {
     uint32_t asked;
     uint8_t command;
-    if (pthread_mutex_trylock(&lock) != 0) { return; }
+    if (pthread_mutex_trylock(&lock) != 0) { return 0; }
     asked = exh_regs_poll(&mail.regs);
     command = exh_regs_command(asked);
     if (asked & 1u << EXH_COIL_APPLY) {
@@ -115,6 +115,7 @@ void mail_before(struct exh_scene_in *in)
         exh_regs_complete(&mail.regs, 0);
     }
     mail_give();
+    return 1;
 }
 
 /* One at a time: a second SAVE waits until the first is written. */
@@ -129,12 +130,18 @@ void mail_after(const struct exh_scene_in *in)
 {
     if (exh_trace_reads(&mail.own)) { (void)exh_scene_signals(mail.sc); }
     exh_trace_step(&mail.own, mail.sc->safety->tick, mail.sc->values);
-    if (pthread_mutex_trylock(&lock) != 0) { return; }
+    (void)mail_show(in);
+}
+
+int mail_show(const struct exh_scene_in *in)
+{
+    if (pthread_mutex_trylock(&lock) != 0) { return 0; }
     exh_trace_copy(&mail.own, &mail.shown);
     copy_values();
     exh_regs_update(&mail.regs, mail.sc->safety, in->drive.din);
     make_image();
     mail_give();
+    return 1;
 }
 
 void mail_save(void)
@@ -159,7 +166,7 @@ void mail_end(void)
 {
     struct exh_scene_in in = {0};
     mail_save();
-    mail_before(&in); /* an APPLY that came with it is staged first, as before any tick */
+    (void)mail_before(&in); /* an APPLY that came with it is staged first, as before any tick */
     make_image();
     mail_save();
 }

@@ -21,11 +21,13 @@ struct mail_cfg {
     int remote;       /* RUN and CLEAR may be commanded */
 };
 
-/* mail.c. start, before and after: as hooks of the loop, before those that log. */
+/* mail.c. start, before and after: as hooks of the loop, before those that log. A tick never waits:
+ * 0 of before and show means that the server has the registers, and the next tick does it. */
 void mail_open(const struct mail_cfg *cfg);
 int mail_start(const struct exh_scene *sc, struct exh_scene_board board); /* 0 or -EXH_E… */
-void mail_before(struct exh_scene_in *in);
-void mail_after(const struct exh_scene_in *in);
+int mail_before(struct exh_scene_in *in);
+void mail_after(const struct exh_scene_in *in); /* a step of the trace, and show */
+int mail_show(const struct exh_scene_in *in);
 
 /* The registers, for one request; nobody else has them until they are given back. */
 struct exh_regs *mail_take(void);

@@ -219,7 +219,7 @@ static void tick(void)
     struct exh_scene_in in = {.command = EXH_CMD_NONE};
     const uint32_t asked = exh_regs_poll(&ours.r);
     const uint8_t command = exh_regs_command(asked);
-    mail_before(&in);
+    while (!mail_before(&in)) {} /* the server may not have put them down yet */
     if (asked & 1u << EXH_COIL_APPLY) {
         exh_regs_complete(&ours.r, exh_regs_apply(&ours.r, &ours.p));
     }
@@ -230,6 +230,7 @@ static void tick(void)
     /* the copy, as behind a tick: nothing has moved but the parameters */
     CHECK(memcmp(sc->params->active, ours.active, 4 * ours.r.params_n) == 0, "other parameters");
     mail_after(&in);
+    while (!mail_show(&in)) {}
     exh_regs_update(&ours.r, sc->safety, in.drive.din);
 }
 

@@ -59,7 +59,7 @@ static int32_t ask_for_more(void)
 static void tick(void)
 {
     struct exh_scene_in in = {0};
-    mail_before(&in);
+    (void)mail_before(&in);
     (void)exh_params_apply(sc->params);
     mail_after(&in);
 }
@@ -101,7 +101,7 @@ TEST(in_a_last_tick_that_found_the_registers_in_use)
     begin(path);
     was = sc->params->staged[k];
     ask(SAVE);
-    mail_before(&in);
+    (void)mail_before(&in);
     (void)mail_take();
     mail_after(&in);
     mail_give();

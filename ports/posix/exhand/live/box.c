@@ -30,7 +30,7 @@ static void start(const struct exh_scene *sc, struct exh_scene_board board)
 static void before(uint32_t tick, struct exh_scene_in *in)
 {
     live_person_before(tick, in);
-    if (clients.on) { mail_before(in); }
+    if (clients.on) { (void)mail_before(in); }
 }
 
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
