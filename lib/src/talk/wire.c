@@ -76,6 +76,7 @@ static void state_bytes(struct exh_bytes *c, struct exh_wire_state *s)
 
 static void plane_bytes(struct exh_bytes *c, struct exh_wire_plane *p)
 {
+    /* In one call, which checks the room once. */
     const int32_t *const n = p->normal_q30, *const at = p->point_m_q30, *const hit = p->hit_m_q30;
     int32_t v[] = {n[0], n[1], n[2], at[0], at[1], at[2], hit[0], hit[1], hit[2]};
     exh_bytes_u8(c, &p->kind);
