@@ -18,7 +18,7 @@ int estimate_finish(struct fit *f, const struct identify_data *d, const struct o
 void estimate_lag_anew(struct model *m);
 
 /* So often the device that was found is told apart again, on the simulated bench. */
-#define RESAMPLES 6
+#define RESAMPLES 8
 
 /* Values without what the estimate itself is off by, and their intervals: how far the estimates of
  * RESAMPLES such devices, each a run with other chance and a fit from another start, are off and
