@@ -143,11 +143,14 @@ TEST(a_constant_input_is_reached_exactly)
 }
 
 /* A few LSB from rest at any speed: no cycle keeps it away. Such cycles live in narrow ranges of
- * fc (NUMERICS.md, "Choices"), so many cut-offs are tried, all of a low kind's upper half. */
+ * fc (NUMERICS.md, "Choices"), so many cut-offs are tried, all of a low kind's upper half; and
+ * those of a high kind, whose state comes to stand within 2^-17 LSB of rest. */
 TEST(no_cycle_around_rest)
 {
     while (check_case(100)) {
-        const struct exh_filter_par par = {2, check_i32_in(30 << 16, (106 << 16) - 1)};
+        const int low = check_i32_in(0, 1);
+        const struct exh_filter_par par = {
+            2, check_i32_in((low ? 30 : 106) << 16, ((low ? 106 : 489) << 16) - 1)};
         const int32_t level = check_i32();
         struct exh_filter_cfg cfg;
         CHECK_EQ_I64(exh_filter_setup(&cfg, &par, (struct exh_period){1, 1000}), 0);
@@ -162,6 +165,9 @@ TEST(no_cycle_around_rest)
                 CHECK(
                     y == level, "fc %" PRId32 ": %" PRId32 " at %" PRId32, par.fc_Hz_q16, y, level);
             }
+            CHECK(
+                !s.wide || floor_shr(s.pos - ((int64_t)level * (1 << 22) + (1 << 21)) + 32, 6) == 0,
+                "fc %" PRId32 ": the state is at %" PRId64, par.fc_Hz_q16, s.pos);
         }
     }
 }
