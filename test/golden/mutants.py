@@ -199,7 +199,7 @@ MUTANTS = (
     ("safety", L + "safe/safety_open.c", "(s->state == EXH_STATE_ARM && s->share_q30 > 0)",
      "s->state == EXH_STATE_ARM"),
     ("safety", GATE, "asked, -span, span", "asked, 0, span"),
-    ("safety", GATE, "peak < most ?", "0 ?"),
+    ("safety", GATE, "exh_clamp(peak, 0, most)", "most"),
     ("safety", GATE, "    s->limits = 0;", ""),
     ("safety", GATE, "falls ? s->off_raw[k] : UINT16_MAX", "UINT16_MAX"),
     ("calibrate", L + "bench/calibrate.c", "rem >= m->n - rem", "rem > m->n - rem"),

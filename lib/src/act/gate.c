@@ -14,7 +14,7 @@ static uint16_t code_of(
         cur_A_q26, par->dac_rawpA_q16, EXH_Q_CUR + EXH_Q_DAC); /* 20 bits and a sign */
     const int64_t peak = (int64_t)par->i_peak_A_q26 * par->dac_rawpA_q16 >> (EXH_Q_CUR + EXH_Q_DAC);
     const int32_t most = par->dac_span_raw < most_raw ? par->dac_span_raw : most_raw;
-    const int32_t span = peak < most ? (int32_t)peak : most;
+    const int32_t span = exh_clamp(peak, 0, most);
     const int32_t spanned = exh_clamp32(asked, -span, span);
     const int32_t code = exh_clamp32(par->dac_zero_raw + spanned, 0, UINT16_MAX);
     if (code != par->dac_zero_raw + asked) { *limits |= EXH_LIMIT_DAC; }
