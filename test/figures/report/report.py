@@ -159,24 +159,25 @@ class Report:
             s.fail("gnuplot: " + last_line(p.stdout))
 
     def commands(self):
-        """Sections that still have to run, by command; of each no old file is left."""
+        """The sections by command, the longest first; of each no old file is left."""
         by_command = {}
         for s in self.sections:
-            if s.state == "not run":
-                for kind in ("png", "md", "csv"):
-                    path = os.path.join(self.out, "%s.%s" % (s.name, kind))
-                    if os.path.isfile(path):
-                        os.remove(path)
-                by_command.setdefault(s.command, []).append(s)
+            for kind in ("png", "md", "csv"):
+                path = os.path.join(self.out, "%s.%s" % (s.name, kind))
+                if os.path.isfile(path):
+                    os.remove(path)
+            by_command.setdefault(s.command, []).append(s)
         return sorted(by_command.values(), key=lambda some: -some[0].seconds)
 
     def run_all(self):
         """What needs nothing made runs beside the making, the longest first."""
         with ThreadPoolExecutor(self.args.jobs) as pool:
-            free = [c for c in self.commands() if c[0].make == "-"]
-            running = [pool.submit(self.measure, c) for c in free]
+            commands = self.commands()
+            running = [pool.submit(self.measure, c) for c in commands if c[0].make == "-"]
             self.build()
-            running += [pool.submit(self.measure, c) for c in self.commands() if c not in free]
+            for c in commands:
+                made = [s for s in c if s.state == "not run"] if c[0].make != "-" else []
+                running += [pool.submit(self.measure, made)] if made else []
             for r in running:
                 r.result()
 
