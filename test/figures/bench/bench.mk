@@ -13,7 +13,7 @@ $(B)/posix/test/figures/bench/kernels.o: \
     PORT_HOSTFLAGS += -DBENCH_FLAGS='"-std=c99 -O$(O)$(if $(CFLAGS), $(CFLAGS))"'
 $(B)/bench/kernels: $(bench_obj) $(B)/posix/test/no_board.o $(bench_scenes:%.c=$(B)/posix/%.o)
 $(B)/bench/velocity: $(B)/posix/test/figures/bench/velocity.o \
-    $(patsubst %,$(B)/posix/test/figures/bench/%.o,measure plain bare)
+    $(patsubst %,$(B)/posix/test/figures/bench/%.o,measure plain)
 $(B)/bench/speed: $(B)/posix/test/figures/bench/speed.o $(filter-out %/main.o,$(exh_obj)) $(sim_obj)
 $(bench_bin): $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
@@ -87,7 +87,7 @@ $(peers) $(peers)-i686: $(peers_src) $(peers_deps)
 # Kernels of ours, of others and in plain floating point, built alike, for the report.
 work     := $(B)/bench/work
 work_src := $(filter-out %/work_cmsis.c %/work_fixmath.c,$(wildcard test/figures/bench/work*.c)) \
-            $(addprefix test/figures/bench/,plain.c bare.c law.c path.c measure.c) \
+            $(addprefix test/figures/bench/,plain.c law.c path.c measure.c) \
             examples/drop/drop.c lib/src/run/calib_set.c
 ifneq ($(wildcard $(cmsis)/.complete),)
 work_src += test/figures/bench/work_cmsis.c \

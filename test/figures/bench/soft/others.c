@@ -28,13 +28,14 @@ const struct soft_group soft_twins = {twins, sizeof twins / sizeof twins[0], twi
 
 /* --- bare --- */
 
-static const struct bare_law wall = {2045184, 6471680, 0, 0, 100 << 20};
+static struct bare_law wall;
 static struct bare_pole difference, pole;
 static struct bare_track track;
 
 static void bare_start(void)
 {
     const struct bare_scale scale = {569684462, 5}; /* 66.3 um at 2 kHz */
+    wall = (struct bare_law){2045184, 6471680, 0, 0, 100 << 20};
     difference = (struct bare_pole){scale, 0, 0, 0};
     pole = (struct bare_pole){scale, 2, 0, 0};
     track = (struct bare_track){scale, 408021893, 21474836, 0, 0};
