@@ -12,20 +12,20 @@ static inline int64_t bare_round(int64_t x, unsigned bits)
     return (x + (INT64_C(1) << (bits - 1))) >> bits;
 }
 
-/* The contact law: contact test, F0 by the velocity's sign, one sum rounded once, clamp. N, q20, of
- * m, q30, and m/s, q27. */
+/* The contact law: contact test, F0 by the velocity's sign, two products rounded once each, clamp.
+ * N, q20, of m, q30, and m/s, q27. */
 struct bare_law {
     int32_t k_q10, b_q20, f0_q20, lim_q30, f_max_q20;
 };
 
 static inline int32_t bare_law(const struct bare_law *p, int32_t pos_q30, int32_t vel_q27)
 {
-    int64_t f = vel_q27 < 0 ? p->f0_q20 : 0;
+    int32_t f = vel_q27 < 0 ? p->f0_q20 : 0;
     if (pos_q30 >= p->lim_q30) {
-        const int64_t spring_q40 = (int64_t)p->k_q10 * (pos_q30 - p->lim_q30);
-        f += bare_round(spring_q40 * 128 + (int64_t)p->b_q20 * vel_q27, 27);
+        f += (int32_t)bare_round((int64_t)p->k_q10 * (pos_q30 - p->lim_q30), 20);
+        f += (int32_t)bare_round((int64_t)p->b_q20 * vel_q27, 27);
     }
-    return f < 0 ? 0 : f > p->f_max_q20 ? p->f_max_q20 : (int32_t)f;
+    return f < 0 ? 0 : f > p->f_max_q20 ? p->f_max_q20 : f;
 }
 
 /* --- velocity out of counts: m/s, q27 --- */

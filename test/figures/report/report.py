@@ -40,7 +40,7 @@ MISSING = 3
 VERDICT = ("**Take exhand where the CPU has no FPU for double, where a log of one machine must "
            "replay to the bit on another, or where sums may never drift; take plain double where "
            "there is such an FPU and none of these is asked for: it is more exact there and, but "
-           "for sines, cheaper.**")
+           "for sines and fingertips, cheaper.**")
 
 
 class Section:
