@@ -113,7 +113,7 @@ class Report:
             if s.make != "-" and s.make not in done:
                 self.say("make " + s.make)
                 status, text, cpu = run("make --no-print-directory -s B='%s' %s" %
-                                        (self.args.build, s.make), self.env, 900)
+                                        (self.args.build, s.make), self.env, 1800)
                 done[s.make] = made(s.make, status, text)
                 self.made.append((s.make, cpu))
                 if status:
