@@ -33,14 +33,14 @@ def kind_of(name):
     return "float" if any(w in name for w in ("double", "float", "f32", "f64")) else "integer"
 
 
-def judged(points):
+def judged(points, where=""):
     """In which panels is one of ours on the front, alone or beside others?"""
     on = work.on_front(points)
     off = [k for k, v in on.items() if not v]
     alone = [k for k in on
              if all(p.kind == "ours" for p in work.front([q for q in points if q.panel == k]))]
-    print("note: Ours is on the front of integer code in %d of %d panels, alone on it in %d%s." % (
-        len(on) - len(off), len(on), len(alone), "; not in: " + "; ".join(off) if off else ""))
+    print("note: %sOurs is on the front of integer code in %d of %d panels, alone on it in %d%s." % (
+        where, len(on) - len(off), len(on), len(alone), "; not in: " + "; ".join(off) if off else ""))
 
 
 COSTS = (("x64", "x86-64", "instructions"), ("i686", "i686", "instructions"),
@@ -186,16 +186,17 @@ def cortex(cpu):
               for n in [named.get(r["name"], r["name"])]]
     save("cortex_" + cpu, rows[0].keys(), [r.values() for r in rows])
     work.draw(OUT, "cortex_" + cpu, points, 1e-17, "instructions", "error", 3, False)
-    judged(points)
+    where = "On a Cortex-%s: " % cpu.upper()
+    judged(points, where)
     cost = {(r["kernel"], r["name"]): float(r["instructions"]) for r in rows}
     ours = {k: v for (k, n), v in cost.items() if n.startswith("exhand")}
     times = {k: ["%.1f" % (v / ours[k]) for (j, n), v in cost.items()
                  if j == k and n.startswith("plain")] for k in ours}
-    print("note: Plain double and float cost so many times ours: %s." % "; ".join(
-        "%s %s" % (k, " and ".join(v)) for k, v in times.items() if v))
-    print("note: Above fc/fs = %s the 22 low-passes take %.0f instructions. All integer kernels of "
-          "a tick in one (22 low-passes, fingertips, distances, laws of five fingers): %.0f."
-          % (STEEP, cost["filter_high", "exhand"], cost["tick", "exhand"]))
+    print("note: %splain double and float cost so many times ours: %s." % (where, "; ".join(
+        "%s %s" % (k, " and ".join(v)) for k, v in times.items() if v)))
+    print("note: %sabove fc/fs = %s the 22 low-passes take %.0f instructions. All integer kernels "
+          "of a tick in one (22 low-passes, fingertips, distances, laws of five fingers): %.0f."
+          % (where, STEEP, cost["filter_high", "exhand"], cost["tick", "exhand"]))
 
 
 SECTIONS = {
