@@ -39,8 +39,9 @@ def judged(points, where=""):
     off = [k for k, v in on.items() if not v]
     alone = [k for k in on
              if all(p.kind == "ours" for p in work.front([q for q in points if q.panel == k]))]
-    print("note: %sOurs is on the front of integer code in %d of %d panels, alone on it in %d%s." % (
-        where, len(on) - len(off), len(on), len(alone), "; not in: " + "; ".join(off) if off else ""))
+    print("note: %sOurs is on the front of integer code in %d of %d panels, alone on it in %d%s." %
+          (where, len(on) - len(off), len(on), len(alone),
+           "; not in: " + "; ".join(off) if off else ""))
 
 
 COSTS = (("x64", "x86-64", "instructions"), ("i686", "i686", "instructions"),
