@@ -224,7 +224,7 @@ MUTANTS = (
     ("filter", L + "sense/filter.c", "cfg->b = coefficient(b, n, 31);",
      "cfg->b = coefficient(b, n, 31) - 1;"),
     ("filter", L + "sense/filter.c", "{ s[i].vel = 0; }", "{ }"),
-    ("filter", L + "sense/filter.c", "to->a >= from->a", "to->a > from->a"),
+    ("filter", L + "sense/filter.c", "to->a >= from->a", "1"),
     ("quantizer", L + "sense/quantizer_tick.h", "off > cfg->keep", "off >= cfg->keep"),
     ("quantizer", L + "sense/quantizer_tick.h", "(uint32_t)(x < most ? x : most)", "(uint32_t)x"),
     ("quantizer", L + "sense/quantizer.c", "(uint32_t)par->hyst_raw_q16 / 2",
@@ -416,7 +416,11 @@ THIN = {
     "if (t->result < 0 || !same(": 0.80,               # sim/bilateral_tick, as of all below
     "if (err < 0) { bilateral_trace_stop(t); }": 0.50,
     "!t->answer && n < EXH_WIRE_FRAMES": 0.50,
-    "falls ? s->off_raw[k] : UINT16_MAX": 0.84,        # unit/gate, proof
+    "falls ? s->off_raw[k] : UINT16_MAX": 0.80,        # unit/gate, proof
+    # codes are few to an ampere: only then a limit is another
+    "exh_clamp(peak, 0, most)": 0.50,                  # unit/gate, proof
+    "coded(cfg, now) >>": 0.80,                        # unit/drive
+    "to->a >= from->a": 0.28,                          # unit/filter; two high kinds are rare
     # Of 768 requests, 256 on the line, few come there; unit/modbus, unit/trace and unit/modbus_rtu
     # tell them.
     "q->len_B != 10u + q->p[9]": 0.88,

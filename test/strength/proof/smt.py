@@ -171,8 +171,8 @@ def line_is_below_32():
 
 LEMMAS = [shr_is_floor, from_u64_keeps_bits, wrapped_sum_is_the_sum, gain_floor_is_no_more,
           share_of_limit, whole_codes_are_no_more, release_ends, release_step_is_bounded,
-          unit_has_components_of_one, toward_stays_between, mean_is_within_32_bits, excess_is_a_square_at_most,
-          line_is_below_32] + smt_passivity.LEMMAS + smt_hand.LEMMAS
+          unit_has_components_of_one, toward_stays_between, mean_is_within_32_bits,
+          excess_is_a_square_at_most, line_is_below_32] + smt_passivity.LEMMAS + smt_hand.LEMMAS
 
 if __name__ == "__main__":
     sys.exit(0 if {f.__name__: f for f in LEMMAS}[sys.argv[1]]() else 1)
