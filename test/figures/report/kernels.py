@@ -12,7 +12,7 @@ import work
 BENCH = os.path.join(os.environ.get("B", "build"), "bench")
 OUT = os.environ.get("OUT", "build/report")
 RATIOS = ("0.0001", "0.01", "0.4")
-STEEP = 0.105  # of the rate: above it ours is of another kind, which costs more
+STEEP = 0.105  # of the rate: above it ours is of another kind
 
 
 def rows_of(name):
