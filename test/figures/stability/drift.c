@@ -170,8 +170,8 @@ static const struct law {
         nothing_summed, 0},
     {"drift: low-passes: every period as an early one, to 1 LSB", low_start, low_tick,
         nothing_summed, 1},
-    {"drift: force, and code of the current that I2t holds back: to 2 LSB", hot_start, hot_tick,
-        nothing_summed, 2},
+    {"drift: force, and code of the current that I2t holds back: to 1 LSB", hot_start, hot_tick,
+        nothing_summed, 1},
 };
 
 struct seen {

@@ -160,8 +160,8 @@ static int table(const struct certificate *c)
 {
     const struct sums s = sums_of(c);
     const double hit = s.values ? 100.0 * s.hit / s.values : 0;
-    const double median = s.share[ONE_SIXTY_FOUR][s.shares / 2],
-                 tenth = s.share[ONE_SIXTY_FOUR][s.shares / 10];
+    const double median = s.share[ONE_SIXTEEN][s.shares / 2],
+                 tenth = s.share[ONE_SIXTEEN][s.shares / 10];
     const int ok[] = {hit >= 93 && hit <= 97, s.unstable[0] == 0 && s.runs[0] > 0, median >= 0.8,
         tenth >= 0.5, s.most_s <= 120};
     int bad = 0;
@@ -183,9 +183,10 @@ static int table(const struct certificate *c)
             ok[2] ? "holds" : "NOT");
         printf("| stable area allowed, nine of ten | %.0f %% | >= 50 %% | %s |\n", 100 * tenth,
             ok[3] ? "holds" : "NOT");
-        printf("| the same two, stable as seen at 16 places; at 4 | %.0f, %.0f; %.0f, %.0f %% | "
-               "| |\n",
-            100 * s.share[ONE_SIXTEEN][s.shares / 2], 100 * s.share[ONE_SIXTEEN][s.shares / 10],
+        printf(
+            "| the same two, stable as seen at eight places; at four | %.0f, %.0f; %.0f, %.0f %% | "
+            "| |\n",
+            100 * s.share[ONE_EIGHT][s.shares / 2], 100 * s.share[ONE_EIGHT][s.shares / 10],
             100 * s.share[ONE_FOUR][s.shares / 2], 100 * s.share[ONE_FOUR][s.shares / 10]);
     }
     printf("| time of the device, longest | %.0f s | <= 120 s | %s |\n", s.most_s,
@@ -242,7 +243,7 @@ int cli_certificate(int argc, char **argv)
         {"rate", CLI_INT, &c.o.rate_Hz, 100, 20000, "HZ", "loop rate (2000)"},
         {"repeats", CLI_INT, &c.o.repeats, 2, 100, "N", "rounds (the scene's)"},
         {"grid", CLI_INT, &c.grid, 0, 40, "N",
-            "N x N pairs tell the stable area; 0: no advice (7)"},
+            "N x N runs tell the stable area; 0: no advice (10)"},
         {"results", CLI_TEXT, &c.path, 0, 0, "FILE", "a line a device: goes on behind those there"},
         {"told", CLI_FLAG, &c.o.told, 0, 0, NULL,
             "the advisor is told the device: nothing is identified"},
@@ -252,7 +253,7 @@ int cli_certificate(int argc, char **argv)
     };
     const struct cli_command about = {"certificate", "[options]",
         "Random devices: identify, file, rule; then runs of the drop scene on the device itself,\n"
-        "inside of the rule and all over. A pair is stable if every fall rests at 64 places of "
+        "inside of the rule and all over. A pair is stable if every fall rests at 16 places of "
         "the\n"
         "wall between two counts, ten falls a place; a run is unstable if two falls of its ten do\n"
         "not rest. Exit status 1: something promised does not hold.",
@@ -262,7 +263,7 @@ int cli_certificate(int argc, char **argv)
     c.devices = 20;
     c.o.seed = 1;
     c.o.rate_Hz = 2000;
-    c.grid = 7;
+    c.grid = 10;
     c.jobs = jobs_cores();
     err = cli_parse(&about, argc, argv, NULL);
     if (err) { return err == 1 ? 0 : err; }

@@ -372,57 +372,9 @@ TEST(recovers_from_any_state)
     }
 }
 
-/* A high kind has no limit but the output's: up to four times full scale each state goes on, an
- * output beyond starts anew. */
-TEST(a_high_output_beyond_4_times_starts_anew)
-{
-    static const struct exh_filter_cfg still[] = {
-        {0, 0, 0, 0, EXH_FILTER_HIGH1}, {0, INT32_MAX, 0, 0, EXH_FILTER_HIGH2}};
-    const int64_t full = INT64_C(1) << (31 + 22), last = 4 * full;
-    const struct {
-        int64_t pos;
-        int32_t y;
-        int clips, anew;
-    } row[] = {
-        {full - 1, INT32_MAX, 0, 0},
-        {full, INT32_MAX, 1, 0},
-        {last, INT32_MAX, 1, 0},
-        {last + 1, INT32_MAX, 1, 1},
-        {-full, INT32_MIN, 0, 0},
-        {-full - 1, INT32_MIN, 1, 0},
-        {-last, INT32_MIN, 1, 0},
-        {-last - 1, INT32_MIN, 1, 1},
-    };
-    for (size_t i = 0; i < 2 * LEN(row); i++) {
-        const uint32_t before = check_saturations;
-        struct exh_filter s = {row[i / 2].pos, 0, 1}, fresh;
-        exh_filter_reset(&fresh, &row[i / 2].y, 1);
-        CHECK_EQ_I64(one(&s, &still[i % 2], 0), row[i / 2].y);
-        CHECK((check_saturations != before) == row[i / 2].clips, "row %zu", i);
-        CHECK_EQ_I64(s.pos, row[i / 2].anew ? fresh.pos : row[i / 2].pos);
-        CHECK_EQ_I64(s.wide, !row[i / 2].anew);
-    }
-}
-
-/* 5/4 of full scale is the last a state may be at without starting anew. */
-TEST(the_last_state_that_goes_on)
-{
-    const struct exh_filter_cfg *cfg = tuned(1, 1 << 16, 1000);
-    const int64_t last = INT64_C(5) << 60;
-    struct exh_filter s = {last, 0, 0}, more = {last + (INT64_C(1) << 55), 0, 0}, fresh;
-    const int32_t rail = INT32_MAX;
-    exh_filter_reset(&fresh, &rail, 1);
-    CHECK_EQ_I64(one(&s, cfg, rail), rail);
-    CHECK_EQ_I64(one(&more, cfg, rail), rail);
-    CHECK(s.pos != fresh.pos, "started anew");
-    CHECK(more.pos == fresh.pos, "went on");
-}
-
 /* Where nothing moves: the output's ends, what is told of them, and the last state that stays. */
-TEST(limits_to_the_bit)
+static void limits(const struct exh_filter_cfg *still, int64_t full, int64_t last, uint8_t wide)
 {
-    static const struct exh_filter_cfg still = {0, 0, 0, 0, EXH_FILTER_LOW1};
-    const int64_t full = INT64_C(1) << 62, last = INT64_C(5) << 60;
     const struct {
         int64_t pos;
         int32_t y;
@@ -439,12 +391,43 @@ TEST(limits_to_the_bit)
     };
     for (size_t i = 0; i < LEN(row); i++) {
         const uint32_t before = check_saturations;
-        struct exh_filter s = {row[i].pos, 0, 0}, fresh;
+        struct exh_filter s = {row[i].pos, 0, wide}, fresh;
         exh_filter_reset(&fresh, &row[i].y, 1);
-        CHECK_EQ_I64(one(&s, &still, 0), row[i].y);
+        CHECK_EQ_I64(one(&s, still, 0), row[i].y);
         CHECK((check_saturations != before) == row[i].clips, "row %zu: told %d", i, !row[i].clips);
         CHECK_EQ_I64(s.pos, row[i].anew ? fresh.pos : row[i].pos);
+        CHECK_EQ_I64(s.wide, wide && !row[i].anew);
     }
+}
+
+/* A high kind has no limit but the output's: up to four times full scale each state goes on, an
+ * output beyond starts anew. */
+TEST(a_high_output_beyond_4_times_starts_anew)
+{
+    static const struct exh_filter_cfg still[] = {
+        {0, 0, 0, 0, EXH_FILTER_HIGH1}, {0, INT32_MAX, 0, 0, EXH_FILTER_HIGH2}};
+    const int64_t full = INT64_C(1) << (31 + 22);
+    for (size_t i = 0; i < LEN(still); i++) { limits(&still[i], full, 4 * full, 1); }
+}
+
+/* 5/4 of full scale is the last a state may be at without starting anew. */
+TEST(the_last_state_that_goes_on)
+{
+    const struct exh_filter_cfg *cfg = tuned(1, 1 << 16, 1000);
+    const int64_t last = INT64_C(5) << 60;
+    struct exh_filter s = {last, 0, 0}, more = {last + (INT64_C(1) << 55), 0, 0}, fresh;
+    const int32_t rail = INT32_MAX;
+    exh_filter_reset(&fresh, &rail, 1);
+    CHECK_EQ_I64(one(&s, cfg, rail), rail);
+    CHECK_EQ_I64(one(&more, cfg, rail), rail);
+    CHECK(s.pos != fresh.pos, "started anew");
+    CHECK(more.pos == fresh.pos, "went on");
+}
+
+TEST(limits_to_the_bit)
+{
+    static const struct exh_filter_cfg still = {0, 0, 0, 0, EXH_FILTER_LOW1};
+    limits(&still, INT64_C(1) << 62, INT64_C(5) << 60, 0);
 }
 
 /* What a low kind takes over of a high one's state: full scale of either sign at most. */
