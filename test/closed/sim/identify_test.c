@@ -42,7 +42,7 @@ static void run(const struct identify_session *c)
 TEST(what_is_found_is_the_device)
 {
     static const double off[MODEL_PARS] = {
-        0.03, 0.3, 0.03, 0.06, 0.01, 0.01, 0.02, 0.03, 0.03, 0.06, 1};
+        0.03, 0.3, 0.03, 0.02, 0.01, 0.01, 0.02, 0.03, 0.03, 0.06, 0.05};
     struct identify_session c = session(3);
     const struct model truth = model_of(&c.board.device, 1.0 / c.rate_Hz);
     struct estimate_of e;

@@ -23,8 +23,7 @@ static void keep_sum(struct model *m, const struct result_file *f)
     }
 }
 
-/* The delay holds the lag. A run tells their sum alone, so the lag is anything within it: in turn
- * none, all and the half. */
+/* In turn the shortest, the longest and the middle, which may be none, all and half of the delay. */
 static double lag(const struct result_file *f, int turn)
 {
     static const double share[] = {0, 1, 0.5};
