@@ -18,8 +18,17 @@ static void put(FILE *f, int device, int outside, int unstable, int covered, dou
     fprintf(f, "\n");
 }
 
-/* 20 devices, of whose 240 values twelve are outside. */
-static void certify(const char *dir, int more_outside, int unstable, int covered, double device_s)
+/* A device without intervals and rule, though its model may fit. */
+static void put_none(FILE *f, int device, int fits)
+{
+    fprintf(f, "7,2000,4,%d,0,%d,0,0,0,0,0,0,0,0.5,40,1", device, fits);
+    for (int n = 0; n < 2 * ONE_PLACES + 4 * ONE_VALUES; n++) { fprintf(f, ",0"); }
+    fprintf(f, "\n");
+}
+
+/* 20 devices, of whose 240 values twelve are outside; the last so many have no rule. */
+static void certify(
+    const char *dir, int more_outside, int unstable, int covered, double device_s, int none)
 {
     char path[300];
     FILE *f;
@@ -27,7 +36,8 @@ static void certify(const char *dir, int more_outside, int unstable, int covered
     f = fopen(path, "w");
     CHECK(f != NULL, "%s", path);
     put(f, 0, 2 + more_outside, unstable, covered, device_s);
-    for (int i = 1; i < 20; i++) { put(f, i, i % 2, 0, covered, 40); }
+    for (int i = 1; i < 20 - none; i++) { put(f, i, i % 2, 0, covered, 40); }
+    for (int i = 20 - none; i < 20; i++) { put_none(f, i, i % 2); }
     fclose(f);
     said(&s, dir, cli_certificate,
         WORDS("certificate", "--devices", "20", "--seed", "7", "--grid", "4", "--results", path));
@@ -36,9 +46,9 @@ static void certify(const char *dir, int more_outside, int unstable, int covered
 TEST(what_holds_is_said)
 {
     char *dir = said_dir();
-    certify(dir, 0, 0, 8, 40);
+    certify(dir, 0, 0, 8, 40, 0);
     CHECK(s.status == 0, "%d\n%s%s", s.status, s.out, s.err);
-    CHECK(strstr(s.out, "| 95.0 % |"), "%s", s.out);
+    CHECK(strstr(s.out, "| 95.0 % of 240 |"), "%s", s.out);
     CHECK(strstr(s.out, "| 73, 73; 67, 67 % |"), "%s", s.out);
     CHECK(strstr(s.out, "| 0 of 480 |") && strstr(s.out, "| 20 of 240 |"), "%s", s.out);
     said_clean(dir);
@@ -55,10 +65,25 @@ TEST(what_does_not_hold_fails)
         {0, 0, 8, 121, "| 121 s | <= 120 s | NOT |"}};
     char *dir = said_dir();
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
-        certify(dir, row[i].outside, row[i].unstable, row[i].covered, row[i].device_s);
+        certify(dir, row[i].outside, row[i].unstable, row[i].covered, row[i].device_s, 0);
         CHECK(s.status == 1 && strstr(s.out, row[i].says), "row %zu: %d\n%s%s", i, s.status, s.out,
             s.err);
     }
+    said_clean(dir);
+}
+
+/* They have no values that could be inside, and nothing is allowed for them. */
+TEST(devices_without_a_rule_count)
+{
+    char *dir = said_dir();
+    certify(dir, 0, 0, 8, 40, 2);
+    CHECK(s.status == 0 && strstr(s.out, "| 94.9 % of 216 |"), "%d\n%s%s", s.status, s.out, s.err);
+    CHECK(strstr(s.out, "| 20; 19, 18 |") && strstr(s.out, "| the same, nine of ten | 80 %"), "%s",
+        s.out);
+    certify(dir, 0, 0, 8, 40, 3);
+    CHECK(s.status == 1 && strstr(s.out, "| the same, nine of ten | 0 % | >= 50 % | NOT |"),
+        "%d\n%s%s", s.status, s.out, s.err);
+    CHECK(strstr(s.out, "| the same two, of devices with a rule | 80, 80 % |"), "%s", s.out);
     said_clean(dir);
 }
 
@@ -81,4 +106,5 @@ TEST(it_goes_on)
     said_clean(dir);
 }
 
-TEST_MAIN("certificate", what_holds_is_said, what_does_not_hold_fails, it_goes_on);
+TEST_MAIN("certificate", what_holds_is_said, what_does_not_hold_fails, devices_without_a_rule_count,
+    it_goes_on);

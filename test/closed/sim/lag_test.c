@@ -15,8 +15,8 @@
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
 
 static struct identify_data data;
-static double
-    waited_s; /* from a tick until the drive looked, mean over the steps of the last run */
+/* From a tick until the drive looked, mean over the steps of the last run. */
+static double waited_s;
 
 struct chain {
     double T_s, wait_s, drive_s, monitor_s;
@@ -121,8 +121,7 @@ TEST(the_motion_says_which_lag_is_the_drives)
     CHECK(fabs(lag.drive_s - c.drive_s) < 15e-6, "%g s", lag.drive_s);
 }
 
-/* Where the drive's clock hardly drifts, a run sees a part of its period: the mean is this run's.
- */
+/* A drive's clock that hardly drifts shows a run a part of its period: the mean is this run's. */
 TEST(the_mean_of_a_run_is_its_own)
 {
     const struct chain c = {500e-6, 350e-6, 250e-6, 450e-6, 1 + 1.5e-5, 0.047, 1};
