@@ -243,10 +243,13 @@ class Writer:
         process = self.begin()
         delay_s = rng.random() * 1.1 * self.took_s
         time.sleep(delay_s)
-        if sig == signal.SIGKILL:
-            os.killpg(process.pid, sig)
-        else:
-            process.send_signal(sig)
+        try:
+            if sig == signal.SIGKILL:
+                os.killpg(process.pid, sig)
+            else:
+                process.send_signal(sig)
+        except ProcessLookupError:
+            pass  # it has ended, and a companion's poll() has reaped it
         status, said = end(process)
         how = f"{sig.name} after {delay_s:.4f} s"
         due = -sig if sig == signal.SIGKILL else 128 + sig
