@@ -140,12 +140,14 @@ def velocity():
 def soft():
     """Where floating point is software: errors are those of this machine, which has the same
     formats."""
-    names = {"fixed": ("exhand", "ours"), "double": ("plain double, by software", "float"),
+    names = {"fixed": ("exhand", "ours"), "cheap": ("exhand-cheap", "ours"),
+             "double": ("plain double, by software", "float"),
              "float": ("plain float, by software", "float")}
-    of = {"fixed": "exhand", "double": "plain double", "float": "plain float"}
+    of = {"fixed": "exhand", "cheap": "exhand-cheap", "double": "plain double",
+          "float": "plain float"}
     wrong = {("filter", w): max(ppm(r["%s_2" % k]) for k in ("rest", "step", "sine"))
              for r in rows_of("filters.csv")
-             for w, n in of.items() if r["name"].startswith(n)}
+             for w, n in of.items() if (r["name"] + " ").startswith(n + " ")}
     wrong.update({(r["kernel"], w): float(r["max"]) for r in rows_of("work.csv")
                   for w, n in of.items()
                   if r["name"].startswith(n) and

@@ -31,11 +31,14 @@ static int32_t any(void)
 
 static struct exh_filter_cfg filter_cfg;
 static struct exh_filter filter[CHANNELS];
+static struct exh_filter_cheap_cfg cheap_cfg;
+static struct exh_filter_cheap cheap[CHANNELS];
 static int32_t x[OPS + CHANNELS], y[CHANNELS];
 static double b_double[5], s_double[CHANNELS][2];
 static float b_float[5], s_float[CHANNELS][2];
 
 static void filter_op(uint32_t i) { exh_filter_step(filter, &filter_cfg, &x[i], y, CHANNELS); }
+static void cheap_op(uint32_t i) { exh_filter_cheap_step(cheap, &cheap_cfg, &x[i], y, CHANNELS); }
 
 #define FILTER(T) \
     static void filter_##T##_op(uint32_t i) \
@@ -57,6 +60,7 @@ static void filter_start(void)
         -1.911197067426073, 0.914975834801433};
     static const struct exh_filter_par par = {2, EXH_Q(20, 1, 16)};
     EXH_ASSERT(exh_filter_setup(&filter_cfg, &par, (struct exh_period){1, 2000}) == 0);
+    EXH_ASSERT(exh_filter_cheap_setup(&cheap_cfg, &par, (struct exh_period){1, 2000}) == 0);
     for (uint32_t i = 0; i < OPS + CHANNELS; i++) { x[i] = any(); }
     for (int k = 0; k < 5; k++) { b_float[k] = (float)(b_double[k] = b[k]); }
 }
@@ -218,6 +222,7 @@ static const struct {
     void (*op)(uint32_t i);
 } ops[] = {
     {"filter,fixed", filter_op},
+    {"filter,cheap", cheap_op},
     {"filter,double", filter_double_op},
     {"filter,float", filter_float_op},
     {"law,fixed", law_op},
