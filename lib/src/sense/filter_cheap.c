@@ -84,18 +84,31 @@ static inline int32_t multiple(int32_t k, int32_t v)
     return exh_from_u32((uint32_t)k * (uint32_t)v);
 }
 
-/* b (x + 2 in1 + in2 - 4 at), and the input moves on: by one product of 64 bits where there is one,
- * else by one a word. */
-static inline uint64_t driven(struct exh_filter_cheap *s, int32_t x, int32_t at, int32_t b)
+/* b, 2 b and -4 b. */
+struct factors {
+    int32_t b, twice, back;
+};
+
+static struct factors factors_of(int32_t b)
 {
-    const int32_t in1 = s->in1, in2 = s->in2;
-    s->in2 = in1;
-    s->in1 = x;
+    return (struct factors){b, multiple(2, b), multiple(-4, b)};
+}
+
+/* sum + b (x + 2 in1 + in2 - 4 at), and the input moves on: by one product of 64 bits where there
+ * is one, else by one a word. */
+static inline uint64_t driven(
+    uint64_t sum, struct exh_filter_cheap *s, int32_t x, int32_t at, const struct factors *k)
+{
 #if UINTPTR_MAX > UINT32_MAX
-    return (uint64_t)((int64_t)x + 2 * (int64_t)in1 + in2 - 4 * (int64_t)at) * (uint64_t)b;
+    const int64_t off = x + 2 * (int64_t)s->in1 + s->in2 - 4 * (int64_t)at;
+    sum += (uint64_t)off * (uint64_t)k->b;
 #else
-    return times(x, b) + times(in1, multiple(2, b)) + times(in2, b) + times(at, multiple(-4, b));
+    sum += times(s->in1, k->twice) + times(s->in2, k->b) + times(at, k->back);
+    sum += times(x, k->b);
 #endif
+    s->in2 = s->in1;
+    s->in1 = x;
+    return sum;
 }
 
 static void rest(struct exh_filter_cheap *s, int32_t at)
@@ -108,11 +121,13 @@ static void rest(struct exh_filter_cheap *s, int32_t at)
 static void step_low(struct exh_filter_cheap *s, const struct exh_filter_cheap_cfg *cfg,
     const int32_t *x, int32_t *y, unsigned n)
 {
-    const int32_t a = cfg->a, b = cfg->b, c = cfg->c;
+    const int32_t a = cfg->a, c = cfg->c;
+    const struct factors k = factors_of(cfg->b);
     for (; n > 0; n--, s++, x++, y++) {
         const int32_t at = word(s->pos);
+        const uint64_t sum = (uint64_t)s->vel + times(word(s->vel), a);
         int32_t v, to;
-        s->vel = exh_from_u64((uint64_t)s->vel + times(word(s->vel), a) + driven(s, *x, at, b));
+        s->vel = exh_from_u64(driven(sum, s, *x, at, &k));
         v = word(s->vel);
         s->pos = exh_from_u64((uint64_t)s->pos + times(v, c));
         to = word(s->pos);
@@ -131,7 +146,8 @@ static void step_low(struct exh_filter_cheap *s, const struct exh_filter_cheap_c
 static void step_high(struct exh_filter_cheap *s, const struct exh_filter_cheap_cfg *cfg,
     const int32_t *x, int32_t *y, unsigned n)
 {
-    const int32_t a = cfg->a, b = cfg->b, c = cfg->c;
+    const int32_t a = cfg->a, c = cfg->c;
+    const struct factors k = factors_of(cfg->b);
     const uint32_t mask = (UINT32_C(1) << HIGH_Q) - 1;
     const uint32_t kept = a > MIDDLE || a < -MIDDLE ? mask : 0;
     const uint32_t turn = a > MIDDLE ? 0 : a < -MIDDLE ? mask : HALF;
@@ -139,7 +155,7 @@ static void step_high(struct exh_filter_cheap *s, const struct exh_filter_cheap_
         const int32_t before = word(s->pos);
         uint64_t sum = ((uint32_t)((uint64_t)s->pos & kept) ^ turn) + times(before, a);
         uint32_t left;
-        sum += times(word(s->vel), c) + driven(s, *x, 0, b);
+        sum = driven(sum + times(word(s->vel), c), s, *x, 0, &k);
         left = (uint32_t)(sum & mask);
         *y = exh_sat32(exh_from_u64(sum) >> HIGH_Q);
         s->vel = words(before, 0);
