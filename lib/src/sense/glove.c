@@ -163,6 +163,16 @@ uint32_t exh_glove_believe(struct exh_glove *s, const struct exh_glove_cfg *cfg,
     return faulty;
 }
 
+/* The limit is seen in the high word alone, of a small CPU. */
+static inline int32_t angle_of(int32_t from_zero_raw_q15, int32_t gain_turnpraw_q38)
+{
+    const unsigned n = EXH_Q_ZERO + EXH_Q_TPRAW - EXH_Q_TURN;
+    const uint64_t half = UINT64_C(1) << (31 + n);
+    const int64_t v = (int64_t)from_zero_raw_q15 * gain_turnpraw_q38 + (INT64_C(1) << (n - 1));
+    if ((uint64_t)v + half >= 2 * half) { return exh_sat32(v >> n); }
+    return exh_from_u32((uint32_t)((uint64_t)v >> n & UINT32_MAX));
+}
+
 void exh_glove_angles(struct exh_glove *s, const struct exh_glove_cfg *cfg, unsigned from,
     unsigned to, int32_t *angle_turn_q32)
 {
@@ -174,8 +184,7 @@ void exh_glove_angles(struct exh_glove *s, const struct exh_glove_cfg *cfg, unsi
     for (unsigned i = from; i < to; i++, cal++) {
         const int32_t code = quantizer_in_place(&s->quantizer[i], &cfg->quantizer, x[i]);
         /* Half the code: the difference to a zero at the far end fits. */
-        angle_turn_q32[i] = exh_sat32(exh_mul_shr(exh_wrap_diff(code >> 1, cal->zero_raw_q15),
-            cal->gain_turnpraw_q38, EXH_Q_ZERO + EXH_Q_TPRAW - EXH_Q_TURN));
+        x[i] = angle_of(exh_wrap_diff(code >> 1, cal->zero_raw_q15), cal->gain_turnpraw_q38);
     }
 }
 
