@@ -40,7 +40,7 @@ static void take_planes(
     for (unsigned k = 0; k < bilateral_n(cfg); k++) {
         const unsigned f = bilateral_at(cfg, k);
         const struct exh_plane plane = exh_wire_plane_of(planes, f);
-        if (bilateral_finger_age(s, cfg, f) == UINT32_MAX) { continue; }
+        if (bilateral_finger_age(s, cfg, k) == UINT32_MAX) { continue; }
         (void)exh_precontact_update(&s->finger[f].precontact, &cfg->finger[f].precontact, &plane,
             age_ticks); /* a refused one it counts itself */
     }
@@ -68,8 +68,7 @@ void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
     if (exh_wire_poll(&w->rx, now_us(w) - before_us, 1000u * (uint32_t)cfg->par->own.quiet_ms)) {
         w->exchanges = 0; /* perhaps it does not know us any more */
     }
-    w->age_ticks += missed < UINT32_MAX - w->age_ticks ? missed : UINT32_MAX - w->age_ticks;
-    w->age_ticks += w->age_ticks < UINT32_MAX;
+    w->age_ticks = bilateral_later(w->age_ticks, missed);
     w->acks = 0;
     for (unsigned i = 0; i < in->packets; i++) {
         struct exh_wire_packet p;
