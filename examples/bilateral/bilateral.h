@@ -160,6 +160,9 @@ struct bilateral_trace {
     uint8_t answer;       /* 1: it is still to be told */
 };
 
+#define BILATERAL_HELLO 1u
+#define BILATERAL_STATE 2u
+
 struct bilateral_wire {
     struct exh_wire_tx tx;
     struct exh_wire_rx rx;
@@ -171,6 +174,8 @@ struct bilateral_wire {
     uint32_t wait_ticks; /* to the next exchange */
     uint32_t differs;    /* enum exh_wire_difference, of the newest HELLO */
     uint32_t odd;        /* HELLOs that differed */
+    uint8_t due;         /* still to be sent: BILATERAL_HELLO, BILATERAL_STATE */
+    uint8_t heard;       /* 1: packets came in this tick */
     uint8_t acks;        /* answers to be given at the end of this tick */
     struct exh_wire_ack ack[EXH_SCENE_PACKETS];
     struct bilateral_trace trace;
