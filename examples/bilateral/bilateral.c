@@ -169,7 +169,7 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
     struct exh_drive_out placed;
 
     box.din = sense(s, cfg, in, sig->paper, now);
-    bilateral_age(s, in);
+    bilateral_age(s, cfg, in);
     bilateral_wire_take(s, cfg, mail, in->missed, params);
     bilateral_see(s, cfg, in);
     box.raised = bilateral_causes(s, cfg, in);

@@ -136,6 +136,7 @@ struct bilateral_frame {
     uint32_t faults;                           /* sensors that it does not believe */
     uint32_t before_ticks; /* how old the frame before is; UINT32_MAX: there is none */
     uint8_t left;          /* parts still to be computed */
+    uint8_t places;        /* made anew in every tick: fingers at these places are of it */
 };
 
 /* --- the link --- */
@@ -295,7 +296,8 @@ void bilateral_finger_bytes(struct exh_bytes *c, struct bilateral_finger *s);
 
 void bilateral_frame_setup(struct bilateral_cfg *cfg);
 /* In every tick, before anybody asks for an age. */
-void bilateral_age(struct bilateral *s, const struct exh_scene_in *in);
+void bilateral_age(
+    struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_scene_in *in);
 /* In every tick: takes a frame that is new, and computes a part of the newest. */
 void bilateral_see(
     struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_scene_in *in);

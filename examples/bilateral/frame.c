@@ -2,23 +2,23 @@
 /* A glove frame through the ticks until the next: codes, angles, fingers. */
 #include "bilateral.h"
 
-#include "exhand/fix.h"
-
 /* Parts of about the same cost: sensors and places up to these. The first part also has all codes,
  * the one with the last sensor the cross terms. */
 #define SENSOR_PARTS 4u
 static const struct bilateral_part upto[BILATERAL_PARTS + 1] = {
     {0, 0}, {4, 0}, {10, 0}, {16, 0}, {22, 0}, {22, 2}, {22, 4}, {22, 5}};
 
+static unsigned at_most(unsigned v, unsigned most) { return v < most ? v : most; }
+
 /* As many as there are, or as there are ticks to the next frame: all of a frame is done by then. */
 void bilateral_frame_setup(struct bilateral_cfg *cfg)
 {
     const unsigned all = SENSOR_PARTS + (cfg->n + 1u) / 2;
     const unsigned every = (unsigned)cfg->par->glove_own.every;
-    const unsigned parts = every < all ? every : all;
+    const unsigned parts = every - 1u < all ? every : all; /* of 0, which is refused, too */
     cfg->part[0] = upto[0];
     for (unsigned p = 1; p <= parts; p++) {
-        cfg->part[p] = upto[(p * all + parts - 1) / parts];
+        cfg->part[p] = upto[at_most((p * all + parts - 1) / parts, BILATERAL_PARTS)];
         if (cfg->part[p].places > cfg->n) { cfg->part[p].places = cfg->n; }
     }
     cfg->parts = (uint8_t)parts;
@@ -28,8 +28,6 @@ static unsigned parts_of(const struct bilateral_cfg *cfg)
 {
     return cfg->parts < BILATERAL_PARTS ? cfg->parts : BILATERAL_PARTS;
 }
-
-static unsigned at_most(unsigned v, unsigned most) { return v < most ? v : most; }
 
 /* Of damaged memory a part is another, and none beyond an array. */
 static void compute(struct bilateral *s, const struct bilateral_cfg *cfg, unsigned part)
@@ -51,8 +49,9 @@ static void compute(struct bilateral *s, const struct bilateral_cfg *cfg, unsign
 
 static void next(struct bilateral *s, const struct bilateral_cfg *cfg)
 {
-    const unsigned parts = parts_of(cfg);
-    compute(s, cfg, parts - at_most(s->frame.left, parts));
+    const unsigned parts = parts_of(cfg), part = parts - at_most(s->frame.left, parts);
+    compute(s, cfg, part);
+    s->frame.places = cfg->part[part + 1].places;
     s->frame.left--;
     if (s->frame.left == 0) { s->glove_faults = s->frame.faults; }
 }
@@ -64,10 +63,13 @@ static void newest(struct bilateral *s, const struct exh_scene_in *in)
 }
 
 /* The age of the frame before is for those fingers that are still of it. */
-void bilateral_age(struct bilateral *s, const struct exh_scene_in *in)
+void bilateral_age(
+    struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_scene_in *in)
 {
+    const unsigned parts = parts_of(cfg);
     const uint32_t before_ticks = bilateral_later(s->frame.before_ticks, in->missed);
     newest(s, in);
+    s->frame.places = cfg->part[parts - at_most(s->frame.left, parts)].places;
     if (!in->glove_new && s->frame.left == 0) {
         s->frame.before_ticks = s->glove_age_ticks;
     } else {
@@ -97,10 +99,8 @@ void bilateral_see(
 uint32_t bilateral_finger_age(
     const struct bilateral *s, const struct bilateral_cfg *cfg, unsigned place)
 {
-    const unsigned parts = parts_of(cfg), left = at_most(s->frame.left, parts);
     if (s->glove_faults & cfg->finger[bilateral_at(cfg, place)].sensors) { return UINT32_MAX; }
-    return left == 0 || cfg->part[parts - left].places > place ? s->glove_age_ticks
-                                                               : s->frame.before_ticks;
+    return place < s->frame.places ? s->glove_age_ticks : s->frame.before_ticks;
 }
 
 void bilateral_frame_bytes(struct exh_bytes *c, struct bilateral_frame *s)
