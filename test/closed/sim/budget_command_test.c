@@ -28,15 +28,15 @@ TEST(figures_by_hand)
                 "\"drop, in "
                 "turn\",20000,11,0,3794,5.992,12.000,25.000,10.000,0.000,40000,A/D,40000,3.667\n"),
         "%s", s.out);
-    /* 30.977 and 32: 15879 Hz; and 32 of 0.7: 18734. */
-    CHECK(strstr(s.out, ",30.977,32.000,25.000,10.000,16.923,15879,bus,18734,2.157\n") != NULL,
+    /* 15556 * 2 / 1600 + 5 * 0.25 = 20.695; and 32: 18977 Hz; and 32 of 0.7: 23205. */
+    CHECK(strstr(s.out, ",20.695,32.000,25.000,10.000,27.500,18977,bus,23205,2.478\n") != NULL,
         "%s", s.out);
     said(&s, dir, cli_budget, WORDS("budget", "--access-us", "2", "--csv"));
-    CHECK(strstr(s.out, ",30.977,64.000,25.000,10.000,16.923,10529,bus,18734,2.157\n") != NULL,
+    CHECK(strstr(s.out, ",20.695,64.000,25.000,10.000,27.500,11807,bus,23205,2.478\n") != NULL,
         "%s", s.out);
-    /* The fast access alone: 1e6 / (30.977 + 32 * 0.5). */
+    /* The fast access alone: 1e6 / (20.695 + 32 * 0.5). */
     said(&s, dir, cli_budget, WORDS("budget", "--fast-us", "0.5", "--csv"));
-    CHECK(strstr(s.out, ",15879,bus,21287,2.157\n") != NULL, "%s", s.out);
+    CHECK(strstr(s.out, ",18977,bus,27252,2.478\n") != NULL, "%s", s.out);
     said_clean(dir);
 }
 
