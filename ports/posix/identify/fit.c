@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "identify/fit.h"
 
+#include "identify/solve.h"
+
 #include "sim/random.h"
 
 #include <math.h>
@@ -232,35 +234,6 @@ static void normal(const struct work *w, double a[N][N], double g[N])
     }
 }
 
-/* x of A x = g, A's diagonal raised. 0; -1: not definite. */
-static int solve(double a[N][N], double raise, const double g[N], double x[N])
-{
-    double c[N][N];
-    for (int i = 0; i < N; i++) {
-        for (int l = 0; l <= i; l++) {
-            double s =
-                a[i][l] + (i == l ? raise * a[i][i] + 1e-12 * a[i][i] + (a[i][i] <= 0 ? 1 : 0) : 0);
-            for (int k = 0; k < l; k++) { s -= c[i][k] * c[l][k]; }
-            if (i == l) {
-                if (!(s > 0)) { return -1; }
-                c[i][i] = sqrt(s);
-            } else {
-                c[i][l] = s / c[l][l];
-            }
-        }
-    }
-    for (int i = 0; i < N; i++) {
-        x[i] = g[i];
-        for (int k = 0; k < i; k++) { x[i] -= c[i][k] * x[k]; }
-        x[i] /= c[i][i];
-    }
-    for (int i = N - 1; i >= 0; i--) {
-        for (int k = i + 1; k < N; k++) { x[i] -= c[k][i] * x[k]; }
-        x[i] /= c[i][i];
-    }
-    return 0;
-}
-
 static void move(struct model *m, const double x[N])
 {
     double u[N];
@@ -279,7 +252,7 @@ int fit_run(
     struct work w;
     double a[N][N], g[N], x[N], mean[N] = {0}, sums = 0, raise = how.bold ? 1e-6 : 1e-3;
     if (work_open(&w, d, o)) { return -1; }
-    w.free = how.free;
+    w.free = how.free & ~f->held;
     w.floor = how.floor_m / d->step_m;
     f->good = 0;
     f->cost = residuals(&w, &f->at);
@@ -292,7 +265,7 @@ int fit_run(
         for (int tries = 0; tries < 8 && !here; tries++) {
             struct model next = f->at;
             double cost;
-            if (solve(a, raise, g, x) == 0) {
+            if (solve_raised(N, a[0], raise, g, x) == 0) {
                 move(&next, x);
                 cost = residuals(&w, &next);
                 if (cost < f->cost || (how.bold && cost < 1.2 * f->cost)) {
@@ -321,18 +294,19 @@ int fit_run(
     return 0;
 }
 
-void fit_shake(struct model *m, struct sim_random *chance)
+void fit_shake(struct fit *f, struct sim_random *chance)
 {
     /* Shares of a value that is no logarithm, else of 1. */
     static const double far[N] = {0.01, 0.05, 0.05, 0.05, 0.01, 0.01, 0.02, 0.1, 0.01, 0.01, 0.1};
     double u[N];
-    to_free(m, u);
+    to_free(&f->at, u);
     for (int i = 0; i < N; i++) {
         const int plain =
             i == MODEL_COULOMB || i == MODEL_VISCOUS || i == MODEL_CABLE_B || i == MODEL_DELAY;
-        u[i] += far[i] * (plain ? u[i] : 1) * (2 * sim_random_unit(chance) - 1);
+        const double by = far[i] * (plain ? u[i] : 1) * (2 * sim_random_unit(chance) - 1);
+        if (!(f->held >> i & 1)) { u[i] += by; }
     }
-    from_free(u, m);
+    from_free(u, &f->at);
 }
 
 double fit_cost(const struct model *m, const struct identify_data *d, const struct observations *o,

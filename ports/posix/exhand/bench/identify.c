@@ -111,7 +111,7 @@ static int tell(const struct options *o, const struct identify_data *data)
         cli_complain(err < 0 ? "out of memory" : "the run has too little to fit");
         return 1;
     }
-    result_take(&x.r, &e.fit, data->T_s, data->mass_kg);
+    result_take(&x.r, &e, data->T_s, data->mass_kg);
     print(&e, &x.r, o->log ? NULL : &truth);
     if (o->out && write_files(o->out, &x)) { return 1; }
     return x.r.residual > RESULT_RESIDUAL_MAX;
