@@ -232,8 +232,9 @@ int identify_estimate(struct estimate_of *e, const struct identify_data *d)
     memset(&told, 0, sizeof told);
     err = rotor(&told, d);
     if (err) { return err; }
-    err = observe(&few, d, 1u << IDENTIFY_MASS, 2, 0.06) || observe(&all, d, 3, 0, 0.05) ? -1 : 0;
-    if (err) { return err; }
+    if (observe(&few, d, 1u << IDENTIFY_MASS, 2, 0.06) || observe(&all, d, 3, 0, 0.05)) {
+        return -1;
+    }
     e->rounds = all.rounds;
     e->counts = all.n;
     e->fit.cost = (double)INFINITY;

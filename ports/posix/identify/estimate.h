@@ -18,8 +18,7 @@ struct estimate_of {
 int estimate_finish(struct fit *f, const struct identify_data *d, const struct observations *o);
 
 /* What the monitor tells of this run: a fit holds it from then on. 0; 1: nothing; -1: out of
- * memory.
- */
+ * memory. */
 int estimate_lag(struct fit *f, struct lag *lag, const struct identify_data *d);
 /* Behind the fit: lag and delay of the device. */
 void estimate_lag_end(struct fit *f, struct lag *lag, const struct identify_data *d);

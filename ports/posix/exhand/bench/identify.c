@@ -81,9 +81,8 @@ static void write_trace(FILE *f, const void *ctx)
 static void write_pictures(FILE *f, const void *ctx)
 {
     (void)ctx;
-    fprintf(f, "# Made by exhand identify. In this directory: gnuplot -c pictures.gp PLOTS, where\n"
-               "# PLOTS is the path of ports/posix/plot.\n"
-               "out='identify.png'; trace='trace.csv'\nload ARG1.'/identify.gp'\n");
+    outfile_pictures(f, "identify");
+    fprintf(f, "out='identify.png'; trace='trace.csv'\nload plots.'/identify.gp'\n");
 }
 
 static int write_files(const char *dir, const struct found *x)
