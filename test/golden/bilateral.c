@@ -145,7 +145,8 @@ static void any_par(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
     p->own.glove_ms = golden_draw(r, 0, 15) ? any_ms(r, 4, 10, rate_Hz) : 0;
     p->own.link_ms = golden_draw(r, 0, 15) ? any_ms(r, 10, 14, rate_Hz) : 0;
     p->calib.uncalibrated = 1;
-    p->glove_own.every = (int32_t)golden_draw(r, 1, 8);
+    /* Below 0.25 Hz, no legal cutoff is left. */
+    p->glove_own.every = (int32_t)golden_draw(r, 1, T.num < T.den ? 8 : 4);
     p->glove_own.present = (INT32_C(1) << EXH_GLOVE_SENSORS) - 1;
     for (unsigned f = 0; f < FINGERS; f++) { any_finger(f, r, rate_Hz); }
     for (unsigned i = 0; i < BILATERAL_MATERIALS; i++) {

@@ -74,7 +74,7 @@ class Par:
         self.f0_rest = any_ms(rng, 1, 12, rate)
         self.glove_time = any_ms(rng, 4, 10, rate) if rng.draw(0, 15) else 0
         self.link_time = any_ms(rng, 10, 14, rate) if rng.draw(0, 15) else 0
-        self.every = rng.draw(1, 8)
+        self.every = rng.draw(1, 8 if T[0] < T[1] else 4)  # below 0.25 Hz, no cutoff is legal
         self.finger = [FingerPar(rng, rate) for _ in range(FINGERS)]
         self.material = [[any_size(rng, m) for m in (1024000000, 1048576000, 104857600)]
                          for _ in range(MATERIALS)]
