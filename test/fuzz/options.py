@@ -90,8 +90,6 @@ ALLOWED = [
 # Any name is good for a file or a folder that is written: of these only what can't be.
 WRITTEN = {"out", "results", "log", "blackbox", "save", "save-params", "plot"}
 WRITTEN_IN = {("watch", "csv"), ("glove", "record")}
-# What a file holds is looked at when the work is done.
-NOT_TRIED = {("bilateral", "networks"), ("certificate", "results")}
 UNWRITABLE = ["", "x" * 4000, "/nosuch/dir/file", "/dev/full/x"]
 
 CRASH = re.compile("died|exit status|a sanitizer")  # never allowed
@@ -175,8 +173,6 @@ def trials(program, command, some):
     """Of the values so many, which go on from option to option."""
     deal = 0
     for option, takes in options(program, command):
-        if (command, option) in NOT_TRIED:
-            continue
         if option in WRITTEN or (command, option) in WRITTEN_IN:
             values = UNWRITABLE
         else:

@@ -38,8 +38,7 @@ static void put_config(struct golden *g, const struct exh_filter_cfg *f)
     golden_put(g, f->kind);
     golden_put(g, f->a);
     golden_put(g, two ? f->b : 0);
-    golden_put(g, two ? f->c : 0);
-    golden_put(g, f->kind == EXH_FILTER_HIGH2 ? f->d : 0);
+    golden_put(g, f->kind == EXH_FILTER_LOW2 ? f->c : 0);
     golden_put(g, low ? f->shift : 0);
 }
 

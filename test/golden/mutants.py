@@ -131,8 +131,10 @@ MUTANTS = (
     ("drive", DRIVE, "(held > end) == rises ? end : held", "(held < end) == rises ? end : held"),
     ("drive", DRIVE, ">> cfg->i2t_shift >> 2;", ">> cfg->i2t_shift >> 1;"),
     ("drive", DRIVE, "heat < 0 ? 0 :", ""),
-    ("drive", DRIVE, "const int32_t hot = i2t_limit(s, cfg);",
-     "const int32_t hot = cfg->par->i_peak_A_q26;"),
+    ("drive", DRIVE, "const int32_t allowed = i2t_limit(s, cfg),",
+     "const int32_t allowed = cfg->par->i_peak_A_q26,"),
+    ("drive", DRIVE, "hot = whole_codes(cfg, allowed);", "hot = allowed;"),
+    ("drive", DRIVE, "coded(cfg, now) >>", "now >>"),
     ("drive", DRIVE, "exh_wrap_diff64(held, asked);", "exh_wrap_diff64(asked, held);"),
     ("drive", DRIVE, "permit->fall, s->force_N_q20) + 1;", "permit->fall, s->force_N_q20);"),
     ("drive", DRIVE, "if (s->fall_N_q20 == 0) {", "{"),
@@ -197,6 +199,7 @@ MUTANTS = (
     ("safety", L + "safe/safety_open.c", "(s->state == EXH_STATE_ARM && s->share_q30 > 0)",
      "s->state == EXH_STATE_ARM"),
     ("safety", GATE, "asked, -span, span", "asked, 0, span"),
+    ("safety", GATE, "exh_clamp(peak, 0, most)", "most"),
     ("safety", GATE, "    s->limits = 0;", ""),
     ("safety", GATE, "falls ? s->off_raw[k] : UINT16_MAX", "UINT16_MAX"),
     ("calibrate", L + "bench/calibrate.c", "rem >= m->n - rem", "rem > m->n - rem"),
@@ -217,10 +220,11 @@ MUTANTS = (
     ("weigh", L + "bench/weigh.c", "s->coded = s->mon = (struct exh_mean){0, 0};", ""),
     ("filter", L + "sense/filter_low.c", "(int64_t)high_word(p) * c",
      "(int64_t)high_word(s->vel) * c"),
-    ("filter", L + "sense/filter_high.c", "+ HALF, pos);\n        mid", ", pos);\n        mid"),
+    ("filter", L + "sense/filter_high.c", "<< Q | HALF;", "<< Q;"),
     ("filter", L + "sense/filter.c", "cfg->b = coefficient(b, n, 31);",
      "cfg->b = coefficient(b, n, 31) - 1;"),
     ("filter", L + "sense/filter.c", "{ s[i].vel = 0; }", "{ }"),
+    ("filter", L + "sense/filter.c", "to->a >= from->a", "1"),
     ("filter_cheap", L + "sense/filter_cheap.c", "times(word(s->vel), a)",
      "times(word(s->vel), a) + 1"),
     ("filter_cheap", L + "sense/filter_cheap.c", "& (to ^ at)) < 0", "& (to ^ v)) < 0"),
@@ -250,8 +254,7 @@ MUTANTS = (
     ("hand", L + "sense/hand.c", "v_m_q34.z, 32) + 3)", "v_m_q34.z, 32) + 2)"),
     ("hand", L + "sense/hand.c", "+ den / 2, den", ", den"),
     ("hand", L + "sense/hand.c", "sensor == bent[1] || sensor == bent[2]", "sensor == bent[1]"),
-    ("hand", L + "sense/hand.c", "exh_clamp32(exh_limit32(want), j->lo_turn_q32, j->hi_turn_q32)",
-     "exh_limit32(want)"),
+    ("hand", L + "sense/hand.c", "exh_clamp32(want, j->lo_turn_q32, j->hi_turn_q32)", "want"),
     ("precontact", L + "law/precontact.c", "+ HALF_Q60, cfg", ", cfg"),
     ("precontact", L + "law/precontact.c", "par->printed_sign ? -pad_m_q30 : pad_m_q30",
      "pad_m_q30"),
@@ -313,6 +316,9 @@ MUTANTS = (
      "out->dac_raw[k] = placed->dac_raw[k];"),
     ("bilateral", Y + "finger.c", "if (p->phase == EXH_PRECONTACT_FROZEN &&", "if ("),
     ("bilateral", Y + "wire.c", "w->set += ack.result == 0;", "w->set++;"),
+    ("bilateral", Y + "wire.c", "if (w->heard && !last && w->tx.seq > 0) { return; }", ""),
+    ("bilateral", Y + "frame.c", "s->worn && before_ticks < UINT16_MAX",
+     "before_ticks < UINT16_MAX"),
     ("bilateral", Y + "wire.c", "s->age_ticks = UINT32_MAX;", "s->age_ticks = 0;"),
     ("bilateral", H + "axis.h", "raised |= EXH_FAULT_TRACKING;", ""),
     ("bilateral", Y + "cause.c", "s->unsure_ticks >= cfg->glove_ticks",
@@ -417,7 +423,11 @@ THIN = {
     "if (t->result < 0 || !same(": 0.80,               # sim/bilateral_tick, as of all below
     "if (err < 0) { bilateral_trace_stop(t); }": 0.50,
     "!t->answer && n < EXH_WIRE_FRAMES": 0.50,
-    "falls ? s->off_raw[k] : UINT16_MAX": 0.84,        # unit/gate, proof
+    "falls ? s->off_raw[k] : UINT16_MAX": 0.80,        # unit/gate, proof
+    # codes are few to an ampere: only then a limit is another
+    "exh_clamp(peak, 0, most)": 0.50,                  # unit/gate, proof
+    "coded(cfg, now) >>": 0.80,                        # unit/drive
+    "to->a >= from->a": 0.28,                          # unit/filter; two high kinds are rare
     # Of 768 requests, 256 on the line, few come there; unit/modbus, unit/trace and unit/modbus_rtu
     # tell them.
     "q->len_B != 10u + q->p[9]": 0.88,

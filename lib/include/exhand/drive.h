@@ -65,7 +65,7 @@ struct exh_drive_par {
     int32_t f_max_N_q20;   /* force limit, N, 0 .. 100 */
     int32_t slew_up_Nps;   /* rise of force, N/s, 1 .. 10^7 */
     int32_t slew_down_Nps; /* fall of force, N/s, 1000 .. 10^7 */
-    int32_t i_peak_A_q26;  /* never more than this, A, 0.1 .. 6.6 */
+    int32_t i_peak_A_q26;  /* no code stands for more, A, 0.1 .. 6.6 */
     int32_t i_cont_A_q26;  /* for ever, A, 0 .. 3.3 and <= i_peak */
     int32_t peak_ms;       /* how long i_peak from cold, ms, 1 .. 2700 */
     int32_t dac_zero_raw;  /* code of 0 A, 0 .. 65535 */
@@ -141,7 +141,8 @@ static inline uint32_t exh_drive_force_step(struct exh_drive *s, const struct ex
 
 /* Fills table, peak and i2t for the force commanded; zeroes the rest. The I2t
  * limit leaves the peak untouched while less than 3/4 of the budget is used,
- * then folds back to i_cont without a step. Returns limit bits. */
+ * then folds back to i_cont without a step. Both limits are rounded down to whole D/A codes, and
+ * the heat counts the current that the nearest code stands for. Returns limit bits. */
 uint32_t exh_drive_current_step(struct exh_drive *s, const struct exh_drive_cfg *cfg,
     const struct exh_force_ledger *f, struct exh_current_ledger *i);
 

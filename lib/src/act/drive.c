@@ -197,14 +197,32 @@ static int32_t i2t_limit(const struct exh_drive *s, const struct exh_drive_cfg *
     return cfg->par->i_cont_A_q26 + exh_clamp(extra, 0, span);
 }
 
+/* The largest whole number of D/A codes within a limit: a current of at most that is rounded to no
+ * code beyond the limit. */
+static int32_t whole_codes(const struct exh_drive_cfg *cfg, int32_t limit_A_q26)
+{
+    const int64_t codes = (int64_t)limit_A_q26 * cfg->par->dac_rawpA_q16 >> (EXH_Q_CUR + EXH_Q_DAC);
+    return exh_clamp(exh_gain_floor(cfg->dac_A_q26, (int32_t)codes), 0, limit_A_q26);
+}
+
+/* What the code of a current stands for, as the gate makes it. */
+static int32_t coded(const struct exh_drive_cfg *cfg, int32_t cur_A_q26)
+{
+    const int32_t code =
+        (int32_t)exh_mul_shr(cur_A_q26, cfg->par->dac_rawpA_q16, EXH_Q_CUR + EXH_Q_DAC);
+    return exh_sat32(exh_gain_mul(cfg->dac_A_q26, code));
+}
+
 uint32_t exh_drive_current_step(struct exh_drive *s, const struct exh_drive_cfg *cfg,
     const struct exh_force_ledger *f, struct exh_current_ledger *i)
 {
     const int32_t table = exh_table_at(cfg->force_to_cur, f->force_N_q20);
-    const int32_t peak = exh_clamp32(table, -cfg->par->i_peak_A_q26, cfg->par->i_peak_A_q26);
-    const int32_t hot = i2t_limit(s, cfg);
+    const int32_t allowed = i2t_limit(s, cfg), hot = whole_codes(cfg, allowed);
+    /* Without heat the two limits are one, and it is the peak's. */
+    const int32_t top = allowed < cfg->par->i_peak_A_q26 ? cfg->par->i_peak_A_q26 : hot;
+    const int32_t peak = exh_clamp32(table, -top, top);
     const int32_t now = exh_clamp32(peak, -hot, hot);
-    const int32_t now_A_q16 = now >> (EXH_Q_CUR - 16);
+    const int32_t now_A_q16 = coded(cfg, now) >> (EXH_Q_CUR - 16);
     const int32_t cont_A_q16 = cfg->par->i_cont_A_q26 >> (EXH_Q_CUR - 16);
     const int64_t heat =
         s->i2t_q32 + (int64_t)now_A_q16 * now_A_q16 - (int64_t)cont_A_q16 * cont_A_q16;

@@ -50,13 +50,10 @@ static void low2(struct exh_filter_cfg *cfg, struct exh_real g, struct exh_real 
 
 static void high2(struct exh_filter_cfg *cfg, struct exh_real g, struct exh_real damped)
 {
-    const struct exh_real one = exh_real_of(1), unit = exh_real_of(23); /* of vel: 23/16 LSB */
+    const struct exh_real one = exh_real_of(1);
     const struct exh_real inv = exh_real_div(one, exh_real_add(one, damped));
-    const struct exh_real mid = exh_real_mul(g, inv);
-    cfg->a = coefficient(inv, 31, 31);
-    cfg->b = coefficient(exh_real_div(mid, unit), 31 + 4, 31);
-    cfg->c = coefficient(exh_real_mul(mid, unit), 31 - 4, 31);
-    cfg->d = coefficient(exh_real_mul(g, mid), 31, 31);
+    cfg->a = coefficient(exh_real_mul(exh_real_mul(g, g), inv), 31, 31);
+    cfg->b = coefficient(inv, 31, 31);
 }
 
 static void low1(struct exh_filter_cfg *cfg, struct exh_real g)
@@ -99,7 +96,7 @@ int exh_filter_setup(
     /* g > 11/32. Beyond a quarter of the rate g > 1, and without end. */
     high = num > den / 4 || exh_real_round(exh_real_scale(g, 32)) > UINT64_C(11) << 27;
     damped = exh_real_mul(g, exh_real_add(g, EXH_REAL_SQRT2));
-    *cfg = (struct exh_filter_cfg){0, 0, 0, 0, 0, 0};
+    *cfg = (struct exh_filter_cfg){0, 0, 0, 0, 0};
     if (par->order == 1 && high) {
         cfg->kind = EXH_FILTER_HIGH1;
         high1(cfg, g);
@@ -118,11 +115,6 @@ int exh_filter_setup(
 
 /* --- the tick, and around it --- */
 
-static int second_order(const struct exh_filter_cfg *cfg)
-{
-    return cfg->kind == EXH_FILTER_LOW2 || cfg->kind == EXH_FILTER_HIGH2;
-}
-
 void exh_filter_step(struct exh_filter *s, const struct exh_filter_cfg *cfg, const int32_t *x,
     int32_t *y, unsigned n)
 {
@@ -140,24 +132,25 @@ void exh_filter_reset(struct exh_filter *s, const int32_t *x, unsigned n)
     for (unsigned i = 0; i < n; i++) { exh_filter_rest(&s[i], x[i]); }
 }
 
-/* v * 2^n, as far as full scale of the low kinds goes. */
-static int64_t narrowed(int64_t v, unsigned n)
+/* Speeds of the same unit, which the new filter can brake. */
+static int speed_stays(const struct exh_filter_cfg *from, const struct exh_filter_cfg *to)
 {
-    const int64_t most = INT64_C(1) << (62 - n);
-    return exh_clamp64(v, most) * (INT64_C(1) << n);
+    return from->kind == to->kind &&
+           (to->kind == EXH_FILTER_LOW2 || (to->kind == EXH_FILTER_HIGH2 && to->a >= from->a));
 }
 
-/* Both states keep what they mean: the output does not jump, it goes on from there. The
- * high kinds see by themselves what they are given. */
+/* The place keeps what it means: the output does not jump, it goes on from there. The high kinds
+ * see by themselves what they are given. */
 void exh_filter_retune(struct exh_filter *s, const struct exh_filter_cfg *from,
     const struct exh_filter_cfg *to, unsigned n)
 {
     const int to_low = to->kind == EXH_FILTER_LOW2 || to->kind == EXH_FILTER_LOW1;
+    const unsigned more = POS_Q - EXH_FILTER_HIGH_Q;
+    const int64_t full = INT64_C(1) << (62 - more);
     for (unsigned i = 0; i < n; i++) {
-        if (second_order(from) != second_order(to)) { s[i].vel = 0; }
+        if (!speed_stays(from, to)) { s[i].vel = 0; }
         if (to_low && s[i].wide) {
-            s[i].pos = narrowed(s[i].pos, POS_Q - EXH_FILTER_HIGH_Q);
-            s[i].vel = narrowed(s[i].vel, VEL_Q - EXH_FILTER_HIGH_Q);
+            s[i].pos = exh_clamp64(s[i].pos, full) * (INT64_C(1) << more);
             s[i].wide = 0;
         }
     }

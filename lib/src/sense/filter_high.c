@@ -1,67 +1,80 @@
 /* SPDX-License-Identifier: MIT */
-/* The high kinds: cut-off up to half the rate. Fractions of 31 bits times 64-bit states. */
+/* The high kinds: cut-off up to half the rate. Fractions of 31 bits times 64-bit states, of which
+ * no more than 32 by 32 bits are ever multiplied. */
 #include "filter_tick.h"
 
 #include "exhand/fix.h"
 
 #define Q    EXH_FILTER_HIGH_Q
-#define HALF (INT64_C(1) << (Q - 1))
+#define HALF (UINT64_C(1) << (Q - 1))
 
-/* States swing up to 32 times the input where that swings at half the rate. There they
- * stop, which takes energy and so cannot start an oscillation. */
-#define MOST (INT64_C(1) << (31 + 5 + Q))
+/* Twice 4 times full scale: an output that no input can cause. */
+#define FAR (INT64_C(8) << (31 + Q))
 
-/* The high word alone says that a state is within. */
-static inline int64_t bounded(int64_t v)
-{
-    const uint32_t high = (uint32_t)((uint64_t)v >> 32), most = (uint32_t)(MOST >> 32);
-    return high + most < 2 * most ? v : exh_clamp64(v, MOST);
-}
-
-/* exh_mul64_q31() of a coefficient, which is never below 0: its low product needs no sign. One of
- * damaged memory may wrap. */
-static inline int64_t share(int64_t a, int32_t b)
-{
-    const uint64_t high = (uint64_t)((int64_t)high_word(a) * b);
-    const uint64_t low = (uint64_t)(uint32_t)((uint64_t)a & UINT32_MAX) * (uint32_t)b;
-    return exh_from_u64(2 * high + ((low + (UINT32_C(1) << 30)) >> 31));
-}
-
-/* The limit is seen in the high word; within it the low one is all there is. */
-static inline int32_t within(int64_t low)
-{
-    const uint32_t high = (uint32_t)((uint64_t)low >> 32), half = UINT32_C(1) << (31 + Q - 32);
-    if (high + half >= 2 * half) { return exh_sat32(low >> Q); }
-    return exh_from_u32((uint32_t)((uint64_t)low >> Q & UINT32_MAX));
-}
-
-/* What a reset, or a low kind before, left: into our format. A low kind that is settled stands
- * anywhere within an LSB of pos, and of vel, of which it sees the integer part alone; so do we. */
+/* What a reset, or a low kind before, left: into our format. Neither leaves a speed. */
 static void widen(struct exh_filter *s)
 {
-    if (!s->wide) {
-        s->pos >>= EXH_FILTER_POS_Q - Q;
-        s->vel = (s->vel >> EXH_FILTER_VEL_Q) * (INT32_C(1) << Q);
-        s->wide = 1;
-    }
+    s->pos >>= EXH_FILTER_POS_Q - Q;
+    s->wide = 1;
 }
 
-/* Coefficients of damaged memory may wrap here. */
+/* The output where it does not fit. A state that no input can cause starts anew there. */
+static int32_t at_rail(struct exh_filter *s, int64_t twice)
+{
+    const int32_t y = twice < 0 ? INT32_MIN : INT32_MAX;
+    EXH_SATURATED();
+    if (twice > FAR || twice < -FAR) { exh_filter_rest(s, y); }
+    return y;
+}
+
+/* Of the state before and now the mean. The limit is seen in the high word alone. */
+static inline int32_t mean(struct exh_filter *s, uint64_t before)
+{
+    const uint64_t twice = before + (uint64_t)s->pos, full = UINT64_C(1) << (32 + Q);
+    if (twice + full >= 2 * full) { return at_rail(s, exh_from_u64(twice)); }
+    return exh_from_u32((uint32_t)(twice >> (Q + 1) & UINT32_MAX));
+}
+
+static inline uint32_t low_word(int64_t v) { return (uint32_t)((uint64_t)v & UINT32_MAX); }
+
+/* Modulo 2^64: the words of damaged coefficients may wrap. */
+static inline uint64_t times(int32_t word, int32_t c) { return (uint64_t)((int64_t)word * c); }
+
+/* floor((e a + v b) / 2^32), of the four words' products the low ones added before they are cut. */
+static inline uint64_t sum(
+    int64_t e, EXH_FILTER_WORD int32_t *a, int64_t v, EXH_FILTER_WORD int32_t *b)
+{
+    const int32_t of_e = *a, of_v = *b;
+    const uint64_t below =
+        (uint64_t)low_word(e) * (uint32_t)of_e + (uint64_t)low_word(v) * (uint32_t)of_v;
+    return times(high_word(e), of_e) + (uint32_t)(below >> 32) + times(high_word(v), of_v);
+}
+
+/* Of one of the two, likewise. */
+static inline uint64_t share(int64_t e, EXH_FILTER_WORD int32_t *a)
+{
+    const int32_t of_e = *a;
+    const uint64_t below = (uint64_t)low_word(e) * (uint32_t)of_e;
+    return times(high_word(e), of_e) + (uint32_t)(below >> 32);
+}
+
+static inline int64_t error_of(const struct exh_filter *s, int32_t x)
+{
+    const uint64_t at = (uint64_t)(int64_t)x << Q | HALF;
+    return exh_from_u64(at - (uint64_t)s->pos);
+}
+
+/* Modulo 2^64: a state of damaged bytes may wrap here. */
 EXH_FILTER_STEP(exh_filter_high2)
 {
-    EXH_FILTER_WORD int32_t a = cfg->a, b = cfg->b, c = cfg->c, d = cfg->d;
+    EXH_FILTER_WORD int32_t a = cfg->a, b = cfg->b;
     for (; n > 0; n--, s++, x++, y++) {
-        int64_t pos, vel, e, mid, move, low;
-        widen(s);
-        pos = bounded(s->pos);
-        vel = bounded(s->vel);
-        e = exh_wrap_diff64((int64_t)*x * (INT32_C(1) << Q) + HALF, pos);
-        mid = exh_wrap_add64(share(vel, a), share(e, b));
-        move = exh_wrap_add64(share(vel, c), share(e, d));
-        low = exh_wrap_add64(pos, move);
-        s->vel = exh_wrap_diff64(exh_wrap_add64(mid, mid), vel);
-        s->pos = exh_wrap_add64(low, move);
-        *y = within(low);
+        if (s->wide == 0) { widen(s); }
+        const uint64_t before = (uint64_t)s->pos;
+        const uint64_t move = 4 * sum(error_of(s, *x), &a, s->vel, &b);
+        s->pos = exh_from_u64(before + move);
+        s->vel = exh_from_u64(move - (uint64_t)s->vel);
+        *y = mean(s, before);
     }
 }
 
@@ -69,12 +82,9 @@ EXH_FILTER_STEP(exh_filter_high1)
 {
     EXH_FILTER_WORD int32_t a = cfg->a;
     for (; n > 0; n--, s++, x++, y++) {
-        int64_t pos, move, low;
-        widen(s);
-        pos = bounded(s->pos);
-        move = share(exh_wrap_diff64((int64_t)*x * (INT32_C(1) << Q) + HALF, pos), a);
-        low = exh_wrap_add64(pos, move);
-        s->pos = exh_wrap_add64(low, move);
-        *y = within(low);
+        if (s->wide == 0) { widen(s); }
+        const uint64_t before = (uint64_t)s->pos;
+        s->pos = exh_from_u64(before + 4 * share(error_of(s, *x), &a));
+        *y = mean(s, before);
     }
 }

@@ -10,7 +10,7 @@
 /* Fraction bits: pos of the low kinds, vel of LOW2, both of the high kinds. */
 #define EXH_FILTER_POS_Q  31
 #define EXH_FILTER_VEL_Q  32
-#define EXH_FILTER_HIGH_Q 26
+#define EXH_FILTER_HIGH_Q 22
 
 /* What a channel's step reads of cfg where it uses it. A 32-bit compiler that does not see a mask
  * there shifts 64 bits by way of a test and two moves; one that widens a coefficient ahead of the

@@ -253,6 +253,19 @@ int outfile_write(
     return outfile_close(f);
 }
 
+void outfile_pictures(FILE *f, const char *command)
+{
+    fprintf(f,
+        "# Made by exhand %s. In this directory: gnuplot -c pictures.gp PLOTS, where\n"
+        "# PLOTS is the path of ports/posix/plot.\n"
+        "if (!exists('ARG1') || strlen(ARG1) == 0) {\n"
+        "    print 'give the path of ports/posix/plot: gnuplot -c pictures.gp PLOTS'\n"
+        "    exit status 2\n"
+        "}\n"
+        "plots=ARG1\n",
+        command);
+}
+
 long outfile_read(
     const char *option, const char *path, const char *expected, void *to, size_t cap_B)
 {

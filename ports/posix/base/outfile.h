@@ -48,6 +48,10 @@ int outfile_dir(const char *dir, const char *name);
 int outfile_write(
     const char *dir, const char *name, void (*write)(FILE *f, const void *ctx), const void *ctx);
 
+/* What pictures.gp of a command begins with: how it is run, and a word to whoever runs it
+ * otherwise. Then `plots` is the path of ports/posix/plot. */
+void outfile_pictures(FILE *f, const char *command);
+
 /* An image of at most cap bytes that an option names: its length, or -status after a line on
  * stderr that says what file was expected. */
 long outfile_read(

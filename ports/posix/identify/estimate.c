@@ -19,7 +19,10 @@
 #define GOOD       0.1 /* a start that came so far is the one */
 #define AGAIN      4   /* from what was found, at most */
 #define LAG_S      200e-6
-#define HOPELESS   20 /* a cost from which plain steps lead nowhere */
+#define DENIED     1.25 /* a cost so much larger with the monitor's delay: the motion has another */
+#define SHARP_S    6e-6 /* the monitor tells the delay better than the motion, */
+#define SURE_S     50e-6 /* and closer lags the motion does not tell from each other */
+#define HOPELESS   20    /* a cost from which plain steps lead nowhere */
 
 struct starts {
     struct model m[STARTS_MAX];
@@ -138,12 +141,65 @@ int estimate_finish(struct fit *f, const struct identify_data *d, const struct o
     return err;
 }
 
-/* The lag is what a run tells least. One that is wrong keeps all others in a ditch of the cost. */
-void estimate_lag_anew(struct model *m)
+/* Lags close to each other, or one that may be wait, leave the delay to the motion. */
+static void hold(struct fit *f, const struct lag *lag)
+{
+    f->at.value[MODEL_LAG] = lag->drive_s;
+    f->held = 1u << MODEL_LAG;
+    if (fabs(lag->drive_s - lag->monitor_s) > SURE_S && lag->monitor_error_s < SHARP_S) {
+        f->held |= 1u << MODEL_DELAY;
+        f->at.value[MODEL_DELAY] = lag->run_s + lag->drive_s;
+    }
+}
+
+int estimate_lag(struct fit *f, struct lag *lag, const struct identify_data *d)
+{
+    const int err = lag_tell(lag, d, f->at.value[MODEL_DELAY]);
+    if (err == 0) { hold(f, lag); }
+    return err;
+}
+
+void estimate_lag_end(struct fit *f, struct lag *lag, const struct identify_data *d)
+{
+    if (!(f->held >> MODEL_DELAY & 1)) { lag_order(lag, f->at.value[MODEL_DELAY]); }
+    f->at.value[MODEL_LAG] = lag->drive_s;
+    f->at.value[MODEL_DELAY] += lag->wait_s + 0.5 / d->servo_Hz - lag->run_s;
+}
+
+/* With what the monitor tells, either lag the drive's, unless the motion denies both. */
+static int with_monitor(
+    struct estimate_of *e, const struct identify_data *d, const struct observations *o)
+{
+    struct fit best = e->fit;
+    struct lag lag;
+    int err = lag_tell(&lag, d, e->fit.at.value[MODEL_DELAY]), held = 1;
+    best.cost *= DENIED;
+    for (int i = 0; i < 2 && err == 0 && held; i++) {
+        struct fit f = e->fit;
+        hold(&f, &lag);
+        held = f.held >> MODEL_DELAY & 1;
+        err = estimate_finish(&f, d, o);
+        show(0);
+        if (err == 0 && f.cost < best.cost) {
+            best = f;
+            e->lag = lag;
+            e->lag_told = 1;
+        }
+        lag_swap(&lag);
+    }
+    if (e->lag_told) { e->fit = best; }
+    return err < 0 ? err : 0;
+}
+
+/* The lag is what the motion tells least. One that is wrong keeps all others in a ditch of the
+ * cost. */
+void estimate_lag_anew(struct fit *f)
 {
     const double least_s = LAG_S + 0.5 / MODEL_SERVO_HZ;
-    m->value[MODEL_LAG] = LAG_S;
-    if (m->value[MODEL_DELAY] < least_s) { m->value[MODEL_DELAY] = least_s; }
+    double *v = f->at.value;
+    if (f->held >> MODEL_LAG & 1) { return; }
+    v[MODEL_LAG] = LAG_S;
+    if (v[MODEL_DELAY] < least_s) { v[MODEL_DELAY] = least_s; }
 }
 
 /* Out of a ditch: again with the lag of a start, as long as that is worth it; at last from a little
@@ -155,8 +211,8 @@ static int again(struct fit *best, const struct identify_data *d, const struct o
     for (int i = 0, last = 0; i < AGAIN && err == 0 && !last; i++) {
         struct fit f = *best;
         last = i == AGAIN - 1;
-        if (last) { fit_shake(&f.at, chance); }
-        estimate_lag_anew(&f.at);
+        if (last) { fit_shake(&f, chance); }
+        estimate_lag_anew(&f);
         err = estimate_finish(&f, d, o);
         show(0);
         if (i < AGAIN - 2 && !(f.cost < 0.98 * best->cost)) { i = AGAIN - 2; }
@@ -192,13 +248,15 @@ int identify_estimate(struct estimate_of *e, const struct identify_data *d)
     }
     for (int i = 0; i < SHAKEN && err == 0 && e->fit.cost > RESULT_RESIDUAL_MAX; i++) {
         struct fit f = e->fit;
-        fit_shake(&f.at, &chance);
+        fit_shake(&f, &chance);
         f.at.value[MODEL_LAG] = told.at.value[MODEL_LAG];
         err = estimate_finish(&f, d, &all);
         show(0);
         if (err == 0 && f.cost < e->fit.cost) { e->fit = f; }
     }
+    if (err == 0) { err = with_monitor(e, d, &all); }
     if (err == 0) { err = again(&e->fit, d, &all, &chance); }
+    if (err == 0 && e->lag_told) { estimate_lag_end(&e->fit, &e->lag, d); }
     show(1);
     observe_free(&few);
     observe_free(&all);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "identify/fit.h"
 
+#include "identify/solve.h"
+
 #include "sim/random.h"
 
 #include <math.h>
@@ -13,10 +15,11 @@
 struct work {
     const struct identify_data *d;
     const struct observations *o;
-    float *q;         /* a run's positions */
+    float *q[MODEL_LANES]; /* positions of runs side by side */
     double *at;       /* the model's positions at the observations, where the cost was seen last */
     double *r;        /* residuals, centred in their groups */
-    double *j[N];     /* their derivatives */
+    double *j[N];     /* their derivatives, */
+    double *down[N];  /* of two sides what was seen with the step down */
     double *w;        /* weights */
     double *sum, *ws; /* of groups */
     unsigned free;    /* bits of what is fitted */
@@ -27,13 +30,16 @@ static double *numbers(size_t n) { return calloc(n ? n : 1, sizeof(double)); }
 
 static void work_free(struct work *w)
 {
-    free(w->q);
+    for (int i = 0; i < MODEL_LANES; i++) { free(w->q[i]); }
     free(w->at);
     free(w->r);
     free(w->w);
     free(w->sum);
     free(w->ws);
-    for (int i = 0; i < N; i++) { free(w->j[i]); }
+    for (int i = 0; i < N; i++) {
+        free(w->j[i]);
+        free(w->down[i]);
+    }
 }
 
 static int work_open(struct work *w, const struct identify_data *d, const struct observations *o)
@@ -42,30 +48,36 @@ static int work_open(struct work *w, const struct identify_data *d, const struct
     memset(w, 0, sizeof *w);
     w->d = d;
     w->o = o;
-    w->q = calloc(d->n ? d->n : 1, sizeof *w->q);
     w->at = numbers(o->n);
     w->r = numbers(o->n);
     w->w = numbers(o->n);
     w->sum = numbers(o->groups);
     w->ws = numbers(o->groups);
-    ok = w->q && w->at && w->r && w->w && w->sum && w->ws;
+    ok = w->at && w->r && w->w && w->sum && w->ws;
     for (int i = 0; i < N; i++) {
         w->j[i] = numbers(o->n);
-        ok &= w->j[i] != NULL;
+        w->down[i] = numbers(o->n);
+        ok &= w->j[i] != NULL && w->down[i] != NULL;
+    }
+    for (int i = 0; i < MODEL_LANES; i++) {
+        w->q[i] = calloc(d->n ? d->n : 1, sizeof *w->q[i]);
+        ok &= w->q[i] != NULL;
     }
     if (!ok) { work_free(w); }
     return ok ? 0 : -1;
 }
 
-/* The model's mean over the ticks of each observation. */
-static void predict(struct work *w, const struct model *m, double *to)
+/* The models' means over the ticks of each observation. */
+static void predict(struct work *w, const struct model *m, int models, double *const *to)
 {
-    model_run(m, w->d, w->o->last, w->q);
-    for (size_t i = 0; i < w->o->n; i++) {
-        const struct observation *o = &w->o->o[i];
-        double sum = 0;
-        for (uint32_t k = 0; k < o->ticks; k++) { sum += (double)w->q[o->from + k]; }
-        to[i] = sum / o->ticks;
+    model_run(m, models, w->d, w->o->last, w->q);
+    for (int n = 0; n < models; n++) {
+        for (size_t i = 0; i < w->o->n; i++) {
+            const struct observation *o = &w->o->o[i];
+            double sum = 0;
+            for (uint32_t k = 0; k < o->ticks; k++) { sum += (double)w->q[n][o->from + k]; }
+            to[n][i] = sum / o->ticks;
+        }
     }
 }
 
@@ -87,7 +99,7 @@ static void centre(struct work *w, double *v)
 static double residuals(struct work *w, const struct model *m)
 {
     double cost = 0;
-    predict(w, m, w->at);
+    predict(w, m, 1, &w->at);
     for (size_t i = 0; i < w->o->n; i++) {
         w->r[i] = (double)w->o->o[i].cnt - w->at[i];
         w->w[i] = 1 / (1 / (double)w->o->o[i].weight + w->floor * w->floor);
@@ -159,36 +171,52 @@ static double grain(int i, const double u[N])
     return plain && share > least[i] ? share : least[i];
 }
 
-/* By differences: wide and two-sided, as the model is rough where something sticks or slackens; or,
- * at half the price, from where the cost was seen last. */
-static void derivatives(struct work *w, const struct model *m, int two_sided, double *spare)
+/* What is fitted, with the step up and, of two sides, the step down. */
+struct stepped {
+    struct model m[2 * N];
+    double *to[2 * N], apart[N];
+    int n;
+};
+
+static void steps_of(struct work *w, const struct model *m, int two_sided, struct stepped *s)
 {
     double u[N];
     to_free(m, u);
+    s->n = 0;
     for (int i = 0; i < N; i++) {
-        double up[N], down[N], h = (two_sided ? 4 : 1) * grain(i, u);
-        struct model a, b;
+        const double h = (two_sided ? 4 : 1) * grain(i, u);
+        double up[N], down[N];
+        if (!(w->free >> i & 1)) { continue; }
+        memcpy(up, u, sizeof up);
+        memcpy(down, u, sizeof down);
+        up[i] += h;
+        if (two_sided) { down[i] -= h; }
+        if (!model_row[i].in_log && down[i] < 0) { down[i] = 0; }
+        s->apart[i] = up[i] - down[i];
+        from_free(up, &s->m[s->n]);
+        s->to[s->n++] = w->j[i];
+        if (!two_sided) { continue; }
+        from_free(down, &s->m[s->n]);
+        s->to[s->n++] = w->down[i];
+    }
+}
+
+/* By differences: wide and two-sided, as the model is rough where something sticks or slackens; or,
+ * at half the price, from where the cost was seen last. */
+static void derivatives(struct work *w, const struct model *m, int two_sided)
+{
+    struct stepped s;
+    steps_of(w, m, two_sided, &s);
+    for (int i = 0; i < s.n; i += MODEL_LANES) {
+        predict(w, &s.m[i], s.n - i < MODEL_LANES ? s.n - i : MODEL_LANES, &s.to[i]);
+    }
+    for (int i = 0; i < N; i++) {
+        const double *down = two_sided ? w->down[i] : w->at;
         if (!(w->free >> i & 1)) {
             memset(w->j[i], 0, w->o->n * sizeof *w->j[i]);
             continue;
         }
-        memcpy(up, u, sizeof up);
-        memcpy(down, u, sizeof down);
-        up[i] += h;
-        down[i] -= h;
-        if (!model_row[i].in_log && down[i] < 0) { down[i] = 0; }
-        from_free(up, &a);
-        predict(w, &a, w->j[i]);
-        if (two_sided) {
-            from_free(down, &b);
-            predict(w, &b, spare);
-        } else {
-            down[i] = u[i];
-            memcpy(spare, w->at, w->o->n * sizeof *spare);
-        }
-        for (size_t k = 0; k < w->o->n; k++) {
-            w->j[i][k] = (w->j[i][k] - spare[k]) / (up[i] - down[i]);
-        }
+        for (size_t k = 0; k < w->o->n; k++) { w->j[i][k] = (w->j[i][k] - down[k]) / s.apart[i]; }
         centre(w, w->j[i]);
     }
 }
@@ -204,35 +232,6 @@ static void normal(const struct work *w, double a[N][N], double g[N])
             a[i][l] = a[l][i] = s;
         }
     }
-}
-
-/* x of A x = g, A's diagonal raised. 0; -1: not definite. */
-static int solve(double a[N][N], double raise, const double g[N], double x[N])
-{
-    double c[N][N];
-    for (int i = 0; i < N; i++) {
-        for (int l = 0; l <= i; l++) {
-            double s =
-                a[i][l] + (i == l ? raise * a[i][i] + 1e-12 * a[i][i] + (a[i][i] <= 0 ? 1 : 0) : 0);
-            for (int k = 0; k < l; k++) { s -= c[i][k] * c[l][k]; }
-            if (i == l) {
-                if (!(s > 0)) { return -1; }
-                c[i][i] = sqrt(s);
-            } else {
-                c[i][l] = s / c[l][l];
-            }
-        }
-    }
-    for (int i = 0; i < N; i++) {
-        x[i] = g[i];
-        for (int k = 0; k < i; k++) { x[i] -= c[i][k] * x[k]; }
-        x[i] /= c[i][i];
-    }
-    for (int i = N - 1; i >= 0; i--) {
-        for (int k = i + 1; k < N; k++) { x[i] -= c[k][i] * x[k]; }
-        x[i] /= c[i][i];
-    }
-    return 0;
 }
 
 static void move(struct model *m, const double x[N])
@@ -251,13 +250,9 @@ int fit_run(
     struct fit *f, const struct identify_data *d, const struct observations *o, struct fit_how how)
 {
     struct work w;
-    double *spare = numbers(o->n), a[N][N], g[N], x[N], mean[N] = {0}, sums = 0,
-           raise = how.bold ? 1e-6 : 1e-3;
-    if (spare == NULL || work_open(&w, d, o)) {
-        free(spare);
-        return -1;
-    }
-    w.free = how.free;
+    double a[N][N], g[N], x[N], mean[N] = {0}, sums = 0, raise = how.bold ? 1e-6 : 1e-3;
+    if (work_open(&w, d, o)) { return -1; }
+    w.free = how.free & ~f->held;
     w.floor = how.floor_m / d->step_m;
     f->good = 0;
     f->cost = residuals(&w, &f->at);
@@ -265,12 +260,12 @@ int fit_run(
         const double was = f->cost;
         int here = 0;
         /* Plain steps are short: their derivatives are those of the first. */
-        if (!how.bold || f->steps == 0) { derivatives(&w, &f->at, !how.one_sided, spare); }
+        if (!how.bold || f->steps == 0) { derivatives(&w, &f->at, !how.one_sided); }
         normal(&w, a, g);
         for (int tries = 0; tries < 8 && !here; tries++) {
             struct model next = f->at;
             double cost;
-            if (solve(a, raise, g, x) == 0) {
+            if (solve_raised(N, a[0], raise, g, x) == 0) {
                 move(&next, x);
                 cost = residuals(&w, &next);
                 if (cost < f->cost || (how.bold && cost < 1.2 * f->cost)) {
@@ -295,23 +290,23 @@ int fit_run(
         from_free(mean, &f->at);
         f->cost = residuals(&w, &f->at);
     }
-    free(spare);
     work_free(&w);
     return 0;
 }
 
-void fit_shake(struct model *m, struct sim_random *chance)
+void fit_shake(struct fit *f, struct sim_random *chance)
 {
     /* Shares of a value that is no logarithm, else of 1. */
     static const double far[N] = {0.01, 0.05, 0.05, 0.05, 0.01, 0.01, 0.02, 0.1, 0.01, 0.01, 0.1};
     double u[N];
-    to_free(m, u);
+    to_free(&f->at, u);
     for (int i = 0; i < N; i++) {
         const int plain =
             i == MODEL_COULOMB || i == MODEL_VISCOUS || i == MODEL_CABLE_B || i == MODEL_DELAY;
-        u[i] += far[i] * (plain ? u[i] : 1) * (2 * sim_random_unit(chance) - 1);
+        const double by = far[i] * (plain ? u[i] : 1) * (2 * sim_random_unit(chance) - 1);
+        if (!(f->held >> i & 1)) { u[i] += by; }
     }
-    from_free(u, m);
+    from_free(u, &f->at);
 }
 
 double fit_cost(const struct model *m, const struct identify_data *d, const struct observations *o,

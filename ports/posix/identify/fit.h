@@ -8,6 +8,7 @@
 
 struct fit {
     struct model at;
+    unsigned held;                            /* bits of enum model_par that no fit moves */
     double cost;                              /* mean of weight residual^2 */
     int steps;                                /* taken */
     int good;                                 /* it came to its end */
@@ -34,9 +35,9 @@ int fit_run(
 /* Of a model as it is; infinite: out of memory. */
 double fit_cost(const struct model *m, const struct identify_data *d, const struct observations *o,
     double floor_m);
-/* Moves it by chance, about as far as a start is that came near. */
+/* Moves what is not held by chance, about as far as a start is that came near. */
 struct sim_random;
-void fit_shake(struct model *m, struct sim_random *chance);
+void fit_shake(struct fit *f, struct sim_random *chance);
 
 /* Where to begin, from currents and times of the run. */
 struct model fit_start(const struct identify_data *d);

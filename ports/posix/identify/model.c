@@ -6,6 +6,7 @@
 #include "identify/identify.h"
 
 #include <stddef.h>
+#include <string.h>
 
 #define TWO_PI    6.283185307179586
 #define SUBSTEP_S 250e-6
@@ -62,24 +63,52 @@ struct sim_device model_device(const struct model *m, double T_s, double servo_H
     return d;
 }
 
-struct sim {
-    struct sim_device device;
-    struct plant plant;
-    double stand_m;
-    int slack;
+/* The models that run side by side. */
+struct lanes {
+    int n, slack;
+    struct sim_device device[MODEL_LANES];
+    struct plant plant[MODEL_LANES];
+    struct plant_piece piece[2][MODEL_LANES]; /* in a tick, of the older and the newer command */
+    ptrdiff_t ticks[MODEL_LANES];             /* of delay */
+    double per_m[MODEL_LANES], stand_m[MODEL_LANES];
 };
 
-static void advance(struct sim *s, const struct plant_piece *piece, double ref_A)
+static struct plant_piece piece_of(const struct sim_device *d, double dt_s)
 {
-    struct plant *p = &s->plant;
-    if (!(piece->h_s > 0)) { return; }
-    plant_advance_piece(p, &s->device, piece, ref_A);
-    if (s->slack) {
-        p->x_m = p->q_m - FAR_M;
-        p->v_mps = 0;
-    } else if (p->x_m > s->stand_m) {
-        p->x_m = s->stand_m;
-        if (p->v_mps > 0) { p->v_mps = 0; }
+    struct plant_piece s = plant_piece_of(d, dt_s);
+    if (!(s.h_s > 0)) { s.n = 0; }
+    return s;
+}
+
+static void add(struct lanes *l, const struct model *m, const struct identify_data *d)
+{
+    const double late_s = m->value[MODEL_DELAY] - m->value[MODEL_LAG];
+    const double some_s = late_s > 0 ? late_s : 0;
+    struct sim_device *device = &l->device[l->n];
+    double most_s, phase_s;
+    *device = model_device(m, d->T_s, d->servo_Hz);
+    device->mass_kg = d->mass_kg;
+    device->substep_s = SUBSTEP_S;
+    device->mon_lag_s = 0; /* nobody looks at it */
+    most_s = plant_step_that_will_do(device, 0, 0);
+    if (most_s > 0 && most_s < SUBSTEP_S) { device->substep_s = most_s; }
+    l->per_m[l->n] = 1 / m->value[MODEL_STEP];
+    l->ticks[l->n] = (ptrdiff_t)(some_s / d->T_s);
+    phase_s = some_s - (double)l->ticks[l->n] * d->T_s;
+    l->piece[0][l->n] = piece_of(device, phase_s);
+    l->piece[1][l->n++] = piece_of(device, d->T_s - phase_s);
+}
+
+/* Where the hand left it. */
+static void release(struct lanes *l, const struct identify_sample *x)
+{
+    const struct plant rest = {0};
+    l->slack = x->stage == IDENTIFY_SLACK;
+    for (int k = 0; k < l->n; k++) {
+        struct plant *p = &l->plant[k];
+        *p = rest;
+        p->q_m = l->stand_m[k] = x->cnt / l->per_m[k];
+        p->x_m = l->slack ? p->q_m - FAR_M : p->q_m;
     }
 }
 
@@ -88,38 +117,39 @@ static double coded_A(const struct identify_data *d, ptrdiff_t i)
     return i < 0 ? 0 : (double)d->sample[i].coded_A;
 }
 
-void model_run(const struct model *m, const struct identify_data *d, size_t n, float *q_cnt)
+/* Before or behind the place in tick i at which the newer command arrives. */
+static void advance(struct lanes *l, const struct identify_data *d, size_t i, int behind)
 {
-    const struct plant rest = {0};
-    const double per_m = 1 / m->value[MODEL_STEP], T_s = d->T_s;
-    const double late_s = m->value[MODEL_DELAY] - m->value[MODEL_LAG];
-    const double some_s = late_s > 0 ? late_s : 0;
-    const ptrdiff_t ticks = (ptrdiff_t)(some_s / T_s);
-    const double phase_s = some_s - (double)ticks * T_s;
-    struct sim s = {.device = model_device(m, T_s, d->servo_Hz)};
-    struct plant_piece before, behind; /* in a tick, of the older and of the newer command */
+    double ref_A[MODEL_LANES];
+    for (int k = 0; k < l->n; k++) { ref_A[k] = coded_A(d, (ptrdiff_t)i - l->ticks[k] - !behind); }
+    plant_advance_each(l->plant, l->device, l->piece[behind], ref_A, l->n);
+    for (int k = 0; k < l->n; k++) {
+        struct plant *p = &l->plant[k];
+        if (l->piece[behind][k].n == 0) { continue; }
+        if (l->slack) {
+            p->x_m = p->q_m - FAR_M;
+            p->v_mps = 0;
+        } else if (p->x_m > l->stand_m[k]) {
+            p->x_m = l->stand_m[k];
+            if (p->v_mps > 0) { p->v_mps = 0; }
+        }
+    }
+}
+
+void model_run(
+    const struct model *m, int models, const struct identify_data *d, size_t n, float *const *q_cnt)
+{
+    struct lanes l;
     int busy = 0;
-    double most_s = 0;
-    s.device.mass_kg = d->mass_kg;
-    s.device.substep_s = SUBSTEP_S;
-    s.device.mon_lag_s = 0; /* nobody looks at it */
-    most_s = plant_step_that_will_do(&s.device, 0, 0);
-    if (most_s > 0 && most_s < SUBSTEP_S) { s.device.substep_s = most_s; }
-    before = plant_piece_of(&s.device, phase_s);
-    behind = plant_piece_of(&s.device, T_s - phase_s);
+    memset(&l, 0, sizeof l);
+    while (l.n < models) { add(&l, &m[l.n], d); }
     for (size_t i = 0; i < n; i++) {
         const struct identify_sample *x = &d->sample[i];
-        if (!busy && x->busy) { /* where the hand left it */
-            s.plant = rest;
-            s.plant.q_m = x->cnt / per_m;
-            s.slack = x->stage == IDENTIFY_SLACK;
-            s.stand_m = s.plant.q_m;
-            s.plant.x_m = s.slack ? s.plant.q_m - FAR_M : s.plant.q_m;
-        }
+        if (!busy && x->busy) { release(&l, x); }
         busy = x->busy;
-        q_cnt[i] = (float)(s.plant.q_m * per_m);
+        for (int k = 0; k < l.n; k++) { q_cnt[k][i] = (float)(l.plant[k].q_m * l.per_m[k]); }
         if (!busy) { continue; }
-        advance(&s, &before, coded_A(d, (ptrdiff_t)i - ticks - 1));
-        advance(&s, &behind, coded_A(d, (ptrdiff_t)i - ticks));
+        advance(&l, d, i, 0);
+        advance(&l, d, i, 1);
     }
 }

@@ -46,7 +46,11 @@ struct model model_of(const struct sim_device *d, double T_s);
 /* The other way: a device for the advisor at that period. */
 struct sim_device model_device(const struct model *m, double T_s, double servo_Hz);
 
-/* Position at each sample, counts, of the first n. */
-void model_run(const struct model *m, const struct identify_data *d, size_t n, float *q_cnt);
+/* Models that run at a time. */
+#define MODEL_LANES 4
+
+/* Position of each of 1 .. MODEL_LANES models at each sample, counts, of the first n. */
+void model_run(const struct model *m, int models, const struct identify_data *d, size_t n,
+    float *const *q_cnt);
 
 #endif

@@ -11,12 +11,11 @@
 #include <string.h>
 
 #define SEED       0x7265736D70 /* no seed of a simulated device that anybody gives */
-#define STUDENT_95 2.5706       /* for RESAMPLES - 1 */
+#define STUDENT_95 2.3646       /* for RESAMPLES - 1 */
 #define TRIES      4            /* starts of a fit, at most */
-#define WIDER      1.15         /* the device's own fit began farther away than these */
 
 struct again {
-    int done;
+    int done, lag_told;
     struct model at;
 };
 
@@ -27,20 +26,27 @@ struct context {
 
 /* From other starts, until the model fits this run as well as it fitted the device's. A fit that
  * ended in a ditch tells nothing of how well a run tells a device. */
-static int told_again(struct fit *best, const struct identify_data *d, const struct fit *was,
+static int told_again(struct again *r, const struct identify_data *d, const struct estimate_of *e,
     struct sim_random *chance)
 {
+    const struct fit *was = &e->fit;
+    struct fit first = *was, best = *was;
+    struct lag lag;
     struct observations all;
     int err = observe(&all, d, 3, 0, 0.05);
-    best->cost = (double)INFINITY;
-    for (int i = 0; i < TRIES && err == 0 && !(best->cost < 1.25 * was->cost); i++) {
-        struct fit f = *was;
-        fit_shake(&f.at, chance);
-        estimate_lag_anew(&f.at);
+    first.held = 0;
+    r->lag_told = err == 0 && e->lag_told && estimate_lag(&first, &lag, d) == 0;
+    best.cost = (double)INFINITY;
+    for (int i = 0; i < TRIES && err == 0 && !(best.cost < 1.25 * was->cost); i++) {
+        struct fit f = first;
+        fit_shake(&f, chance);
+        estimate_lag_anew(&f);
         err = estimate_finish(&f, d, &all);
-        if (f.cost < best->cost) { *best = f; }
+        if (f.cost < best.cost) { best = f; }
     }
+    if (err == 0 && r->lag_told) { estimate_lag_end(&best, &lag, d); }
     observe_free(&all);
+    r->at = best.at;
     return err;
 }
 
@@ -51,11 +57,11 @@ static void work(const void *ctx, int i, void *result)
     struct sim_random chance = {SEED + (uint64_t)i};
     struct identify_session s;
     struct identify_data data;
-    struct fit f = c->e->fit;
     memset(&s, 0, sizeof s);
     s.board = posix_config_default();
     s.board.device = model_device(&c->e->fit.at, c->d->T_s, c->d->servo_Hz);
     s.board.device.mass_kg = c->d->mass_kg;
+    if (c->e->lag_told) { s.board.device.mon_lag_s = c->e->lag.monitor_s; }
     (void)plant_take_step(&s.board.device, 0, 0);
     s.board.seed = sim_random_u64(&chance) >> 1;
     s.rate_Hz = (uint32_t)(1 / c->d->T_s + 0.5);
@@ -65,8 +71,7 @@ static void work(const void *ctx, int i, void *result)
         identify_data_free(&data);
         return;
     }
-    r->done = told_again(&f, &data, &c->e->fit, &chance) == 0;
-    r->at = f.at;
+    r->done = told_again(r, &data, c->e, &chance) == 0;
     identify_data_free(&data);
 }
 
@@ -81,15 +86,17 @@ static double back(int i, double u)
     return v < model_row[i].min ? model_row[i].min : v > model_row[i].max ? model_row[i].max : v;
 }
 
-/* A run tells the delay and hardly how much of it is lag: anything within it. */
-static void within_delay(struct fit *f)
+static double lower(double a, double b) { return a < b ? a : b; }
+
+/* The lag is within the delay; where the monitor did not tell it each time, anything within it. */
+static void within_delay(struct fit *f, int told)
 {
-    const double most_s = f->at.value[MODEL_DELAY] - 0.5 / MODEL_SERVO_HZ;
-    f->low[MODEL_LAG] = model_row[MODEL_LAG].min;
-    f->high[MODEL_LAG] = most_s > f->low[MODEL_LAG] ? most_s : f->low[MODEL_LAG];
-    if (f->at.value[MODEL_LAG] > f->high[MODEL_LAG]) {
-        f->at.value[MODEL_LAG] = f->high[MODEL_LAG];
-    }
+    const double least_s = model_row[MODEL_LAG].min;
+    const double rest_s = f->at.value[MODEL_DELAY] - 0.5 / MODEL_SERVO_HZ;
+    const double most_s = rest_s > least_s ? rest_s : least_s;
+    f->low[MODEL_LAG] = told ? lower(f->low[MODEL_LAG], most_s) : least_s;
+    f->high[MODEL_LAG] = told ? lower(f->high[MODEL_LAG], most_s) : most_s;
+    f->at.value[MODEL_LAG] = lower(f->at.value[MODEL_LAG], most_s);
 }
 
 /* The sum of both frictions of the string; its parts were taken before. */
@@ -102,7 +109,7 @@ static void take_sum(struct fit *f, const struct model *told, const struct again
         const double apart = model_mu(&r[k].at) - model_mu(told) - mean;
         square += apart * apart / (n - 1);
     }
-    half = WIDER * STUDENT_95 * sqrt(square * (1 + 1.0 / n));
+    half = STUDENT_95 * sqrt(square * (1 + 1.0 / n));
     f->mu_low = value > half ? value - half : 0;
     f->mu_high = value + half;
 }
@@ -110,6 +117,7 @@ static void take_sum(struct fit *f, const struct model *told, const struct again
 static void take(struct fit *f, const struct again *r, int n)
 {
     const struct model told = f->at;
+    int lags = 0;
     for (int i = 0; i < MODEL_PARS; i++) {
         const double u = log_or(i, told.value[i]);
         double mean = 0, square = 0, half;
@@ -118,13 +126,14 @@ static void take(struct fit *f, const struct again *r, int n)
             const double apart = log_or(i, r[k].at.value[i]) - u - mean;
             square += apart * apart / (n - 1);
         }
-        half = WIDER * STUDENT_95 * sqrt(square * (1 + 1.0 / n));
+        half = STUDENT_95 * sqrt(square * (1 + 1.0 / n));
         f->at.value[i] = back(i, u - mean);
         f->low[i] = back(i, u - mean - half);
         f->high[i] = back(i, u - mean + half);
     }
     take_sum(f, &told, r, n);
-    within_delay(f);
+    for (int k = 0; k < n; k++) { lags += r[k].lag_told; }
+    within_delay(f, lags == n);
 }
 
 int identify_resample(struct estimate_of *e, const struct identify_data *d, int jobs)

@@ -3,7 +3,7 @@
 
 #include "base/fifo.h"
 #include "base/option.h"
-#include "identify/fit.h"
+#include "identify/estimate.h"
 
 #include <errno.h>
 #include <stddef.h>
@@ -20,6 +20,7 @@ static const struct {
     {"rate", "hz", 1, 20000, offsetof(struct result_file, rate_Hz)},
     {"known_mass", "kg", 0.001, 5, offsetof(struct result_file, mass_kg)},
     {"residual", "", 0, RESULT_RESIDUAL_MAX, offsetof(struct result_file, residual)},
+    {"monitor_lag", "s", 0, 0.01, offsetof(struct result_file, monitor_lag_s)},
 };
 #define SINGLES (sizeof single / sizeof single[0])
 
@@ -30,12 +31,21 @@ static const struct model_row sum_row = {"mu_both", "", 0, 4, 0};
 
 static const struct model_row *row_of(int i) { return i < MODEL_PARS ? &model_row[i] : &sum_row; }
 
-void result_take(struct result_file *r, const struct fit *f, double T_s, double mass_kg)
+/* A lag less than it is lets more through: no rest is said where there is none. */
+static double at_least(const struct lag *lag)
 {
+    const double s = lag->monitor_s - 2 * lag->monitor_error_s;
+    return s > 0 ? s : 0;
+}
+
+void result_take(struct result_file *r, const struct estimate_of *e, double T_s, double mass_kg)
+{
+    const struct fit *f = &e->fit;
     memset(r, 0, sizeof *r);
     r->rate_Hz = 1 / T_s;
     r->mass_kg = mass_kg;
     r->residual = f->cost;
+    r->monitor_lag_s = e->lag_told ? at_least(&e->lag) : 0;
     r->value = f->at;
     for (int i = 0; i < MODEL_PARS; i++) {
         const double low = f->low[i], high = f->high[i];
@@ -50,8 +60,9 @@ void result_write(FILE *f, const struct result_file *r)
 {
     fprintf(f,
         HEAD "\n# value, low and high of its 95 %% interval, unit\n"
-             "rate = %.9g hz\nknown_mass = %.9g kg\nresidual = %.4g\n",
-        r->rate_Hz, r->mass_kg, r->residual);
+             "rate = %.9g hz\nknown_mass = %.9g kg\nresidual = %.4g\n"
+             "monitor_lag = %.4g s\n",
+        r->rate_Hz, r->mass_kg, r->residual, r->monitor_lag_s);
     for (int i = 0; i < MODEL_PARS; i++) {
         fprintf(f, "%s = %.7g %.7g %.7g%s%s\n", model_row[i].name, r->value.value[i],
             r->low.value[i], r->high.value[i], model_row[i].unit[0] ? " " : "", model_row[i].unit);

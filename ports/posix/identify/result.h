@@ -7,6 +7,7 @@
  *   rate = 2000 hz
  *   known_mass = 0.5 kg
  *   residual = 0.33
+ *   monitor_lag = 0.00032 s               at least; 0: nobody knows
  *   rotor = 0.0464 0.0461 0.0467 kg       value, low, high, unit: one line of each of model_row[],
  *   mu_both = 0.271 0.27 0.273            and of mu_motor + mu_mass
  */
@@ -21,7 +22,8 @@
 
 struct result_file {
     double rate_Hz, mass_kg;
-    double residual; /* mean square over what edges of counts allow */
+    double residual;      /* mean square over what edges of counts allow */
+    double monitor_lag_s; /* of the current's monitor, at least: what a rest is judged by */
     struct model value, low, high;
     double mu_low, mu_high; /* of model_mu() of the value */
 };
@@ -30,8 +32,8 @@ struct result_file {
 #define RESULT_RESIDUAL_MAX 1.6
 
 /* An estimate, of a run so sampled, with a known mass. */
-struct fit;
-void result_take(struct result_file *r, const struct fit *f, double T_s, double mass_kg);
+struct estimate_of;
+void result_take(struct result_file *r, const struct estimate_of *e, double T_s, double mass_kg);
 
 void result_write(FILE *f, const struct result_file *r);
 

@@ -12,7 +12,7 @@ int identify_trace(FILE *f, const struct identify_data *d, const struct model *m
     double off = 0, begin_s[IDENTIFY_STAGES] = {0};
     int first[IDENTIFY_STAGES] = {1, 1}, part = -1;
     if (q == NULL) { return -1; }
-    model_run(m, d, d->n, q);
+    model_run(m, 1, d, d->n, &q);
     fprintf(f, "stage,t_s,part,current_a,measured_mm,modelled_mm,apart_mm\n");
     for (size_t i = 0; i < d->n; i++) {
         const struct identify_sample *x = &d->sample[i];

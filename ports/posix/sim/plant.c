@@ -26,10 +26,12 @@ double sim_exp_neg(double x)
     return e;
 }
 
-/* Dry friction may take up to `most` off a velocity, never turn it. */
+/* Dry friction may take up to `most` off a velocity, never turn it. Without branches, here and in
+ * tension(): no processor can predict when something sticks. */
 static double shrink(double v, double most)
 {
-    return v > most ? v - most : v < -most ? v + most : 0;
+    const double taken = v < most ? v : most;
+    return v - (taken > -most ? taken : -most);
 }
 
 /* What a deviation of the current adds to the monitor's: y (e^-x - e^-y) / (y - x). */
@@ -77,7 +79,8 @@ static inline void step_current(struct plant *p, const struct plant_piece *s, do
 static double tension(const struct sim_device *d, double stretch_m, double opening_mps)
 {
     const double T = d->cable_npm * stretch_m + d->cable_nspm * opening_mps;
-    return stretch_m < 0 || T < 0 ? 0 : T;
+    const double pull_N = 0 > T ? 0 : T;
+    return stretch_m < 0 ? 0 : pull_N;
 }
 
 /* The hand NULL: there is none, and the mass has its weight; t_s: the middle of the step. */
@@ -116,6 +119,20 @@ void plant_advance_piece(
     for (int i = 1; i < s->n; i++) { /* rare: by itself, nothing is fetched in advance for it */
         step_string(p, d, s, ref_A, NULL, 0);
         step_current(p, s, ref_A);
+    }
+}
+
+void plant_advance_each(struct plant *p, const struct sim_device *d, const struct plant_piece *s,
+    const double *ref_A, int plants)
+{
+    int most = 0;
+    for (int k = 0; k < plants; k++) { most = s[k].n > most ? s[k].n : most; }
+    for (int i = 0; i < most; i++) {
+        for (int k = 0; k < plants; k++) {
+            if (i >= s[k].n) { continue; }
+            step_string(&p[k], &d[k], &s[k], ref_A[k], NULL, 0);
+            step_current(&p[k], &s[k], ref_A[k]);
+        }
     }
 }
 

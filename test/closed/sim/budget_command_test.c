@@ -20,24 +20,23 @@ static int csv_int(const char *line, int n)
 TEST(figures_by_hand)
 {
     char *dir = said_dir();
-    /* 3697 * 2 / 1600 + 5 * 0.25 = 5.871; 12 accesses; 50 us less 5.871 are 12 of 3.677. */
+    /* 3794 * 2 / 1600 + 5 * 0.25 = 5.992; 12 accesses; 50 us less 5.992 are 12 of 3.667. */
     said(&s, dir, cli_budget, WORDS("budget", "--csv"));
     CHECK(
         s.status == 0 &&
             strstr(s.out,
                 "\"drop, in "
-                "turn\",20000,11,0,3697,5.871,12.000,25.000,10.000,0.000,40000,A/D,40000,3.677\n"),
+                "turn\",20000,11,0,3794,5.992,12.000,25.000,10.000,0.000,40000,A/D,40000,3.667\n"),
         "%s", s.out);
-    /* 32.169 and 32: 15584 Hz; and 32 of 0.7: 18326. */
-    CHECK(strstr(s.out, ",32.169,32.000,25.000,10.000,16.923,15584,instructions,18326,2.120\n") !=
-              NULL,
+    /* 15556 * 2 / 1600 + 5 * 0.25 = 20.695; and 32: 18977 Hz; and 32 of 0.7: 23205. */
+    CHECK(strstr(s.out, ",20.695,32.000,25.000,10.000,27.500,18977,bus,23205,2.478\n") != NULL,
         "%s", s.out);
     said(&s, dir, cli_budget, WORDS("budget", "--access-us", "2", "--csv"));
-    CHECK(strstr(s.out, ",32.169,64.000,25.000,10.000,16.923,10398,bus,18326,2.120\n") != NULL,
+    CHECK(strstr(s.out, ",20.695,64.000,25.000,10.000,27.500,11807,bus,23205,2.478\n") != NULL,
         "%s", s.out);
-    /* The fast access alone: 1e6 / (32.169 + 32 * 0.5). */
+    /* The fast access alone: 1e6 / (20.695 + 32 * 0.5). */
     said(&s, dir, cli_budget, WORDS("budget", "--fast-us", "0.5", "--csv"));
-    CHECK(strstr(s.out, ",15584,instructions,20760,2.120\n") != NULL, "%s", s.out);
+    CHECK(strstr(s.out, ",18977,bus,27252,2.478\n") != NULL, "%s", s.out);
     said_clean(dir);
 }
 

@@ -357,6 +357,26 @@ TEST(the_judge_observes_as_long_as_the_device)
 
 /* ---- The directory ---------------------------------------------------------------- */
 
+/* Run without the path that it needs, it says so instead of what gnuplot misses. */
+TEST(a_script_of_pictures_asks_for_its_path)
+{
+    static struct said s;
+    char *dir = said_dir();
+    char command[400];
+    if (system("command -v gnuplot >/dev/null 2>&1") != 0) {
+        check_note("no gnuplot here: pictures.gp is not run");
+        return;
+    }
+    said(&s, dir, cli_drop, WORDS("drop", "--rate", "90", "--falls", "2", "--out", dir));
+    snprintf(command, sizeof command, "cd %s && gnuplot pictures.gp 2>&1 | grep -qx '%s'", dir,
+        "give the path of ports/posix/plot: gnuplot -c pictures.gp PLOTS");
+    CHECK(system(command) == 0, "%s", command);
+    snprintf(command, sizeof command,
+        "p=$PWD/ports/posix/plot; cd %s && gnuplot -c pictures.gp $p && test -s fall.png", dir);
+    CHECK(system(command) == 0, "%s", command);
+    said_clean(dir);
+}
+
 TEST(any_directory_name_will_do)
 {
     char *base = said_dir();
@@ -517,6 +537,6 @@ TEST_MAIN("cli", bad_usage_of_a_study, bad_usage_is_refused_by_name,
     the_paper_stands_beside_its_own_gains_alone, no_line_is_no_number,
     medians_are_of_runs_with_a_line, a_row_that_was_not_seen_is_blank,
     the_interval_of_a_median_is_the_binomial_one, the_wall_is_drawn_or_fixed,
-    the_judge_observes_as_long_as_the_device, any_directory_name_will_do,
-    what_cannot_be_written_is_named, an_interruption_ends_all_runs, what_was_finished_is_kept,
-    a_job_that_dies_is_an_error, what_a_job_died_of_is_named);
+    the_judge_observes_as_long_as_the_device, a_script_of_pictures_asks_for_its_path,
+    any_directory_name_will_do, what_cannot_be_written_is_named, an_interruption_ends_all_runs,
+    what_was_finished_is_kept, a_job_that_dies_is_an_error, what_a_job_died_of_is_named);

@@ -154,6 +154,30 @@ TEST(a_rectangle_is_taken)
         "what is outside is inside");
 }
 
+/* Behind a row that ends early nothing stiffer is allowed, nor farther than three rows' mean. */
+TEST(luck_and_islands_are_left_out)
+{
+    static const struct {
+        double high[3], most[3]; /* of rows 19 .. 21; at them */
+    } row[] = {{{9000, 3000, 9000}, {7000, 3000, 3000}}, {{9000, 6000, 9000}, {8000, 6000, 6000}},
+        {{9000, 9000, 9000}, {9000, 9000, 9000}}, {{8000, 9000, 8500}, {8000, 8334, 8500}}};
+    for (size_t n = 0; n < sizeof row / sizeof row[0]; n++) {
+        struct region g;
+        struct exh_gains_par rule;
+        memset(&g, 0, sizeof g);
+        g.o.wall.T_s = 1.0 / 2000;
+        for (int j = 0; j <= REGION_ROWS; j++) {
+            const double high = j < 19 ? row[n].high[0] : row[n].high[j > 21 ? 2 : j - 19];
+            g.row[j] = (struct region_row){2.5 * j, 40, high};
+        }
+        CHECK(gains_rule(&rule, &g) == 0, "no rule");
+        for (int j = 19; j < REGION_ROWS; j++) {
+            const double k = gains_k_max(&rule, 2.5 * j), most = row[n].most[j > 21 ? 2 : j - 19];
+            CHECK(k <= most && k > 0.75 * most - 2, "rows %zu, %d: %g, at most %g", n, j, k, most);
+        }
+    }
+}
+
 /* Rows that are twice as long as what holds: what is tried along the rule's line cuts them. */
 TEST(what_does_not_hold_is_cut)
 {
@@ -384,6 +408,6 @@ TEST(a_map_is_judged)
 }
 
 TEST_MAIN("gains", the_papers_points, cases_fill_all_phases, the_rule_is_inside_everywhere,
-    a_rectangle_is_taken, what_does_not_hold_is_cut, the_scene_refuses_by_name, over_the_wire_too,
-    a_pair_is_judged, one_answer_by_every_path, a_run_is_refused_by_its_rule, bad_usage_is_named,
-    a_map_is_judged);
+    a_rectangle_is_taken, luck_and_islands_are_left_out, what_does_not_hold_is_cut,
+    the_scene_refuses_by_name, over_the_wire_too, a_pair_is_judged, one_answer_by_every_path,
+    a_run_is_refused_by_its_rule, bad_usage_is_named, a_map_is_judged);

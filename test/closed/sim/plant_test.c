@@ -626,6 +626,36 @@ TEST(pieces_on_the_grid_are_few_and_what_they_would_be)
     CHECK(sim_grid(1e6) == 1e6 && sim_grid_s(70000.1, 70000.2) == 70000.2 - 70000.1, "later");
 }
 
+/* Three plants with another number of sub-steps each, and one with none. */
+TEST(side_by_side_they_go_as_alone)
+{
+    struct sim_device d[4];
+    struct plant each[4], alone[4];
+    struct plant_piece piece[4];
+    double ref_A[4];
+    memset(each, 0, sizeof each);
+    memset(alone, 0, sizeof alone);
+    for (int k = 0; k < 4; k++) {
+        d[k] = sim_device_default();
+        d[k].rotor_kg *= 1 + 0.3 * k;
+        d[k].substep_s = 100e-6 / (k + 1);
+        piece[k] = plant_piece_of(&d[k], 200e-6 + 17e-6 * k);
+        each[k].x_m = alone[k].x_m = 1e-3 * k;
+    }
+    piece[3].n = 0;
+    for (int n = 0; n < 20000; n++) {
+        for (int k = 0; k < 4; k++) {
+            ref_A[k] = n / 500 % 2 ? 0.4 + 0.1 * k : 0.05;
+            if (piece[k].n) { plant_advance_piece(&alone[k], &d[k], &piece[k], ref_A[k]); }
+        }
+        plant_advance_each(each, d, piece, ref_A, 4);
+        for (int k = 0; k < 4; k++) {
+            CHECK(memcmp(&each[k], &alone[k], sizeof each[k]) == 0, "plant %d, step %d", k, n);
+        }
+    }
+    CHECK(each[3].x_m == 3e-3 && each[0].x_m != each[1].x_m, "%g m", each[3].x_m);
+}
+
 TEST_MAIN("plant", impact_speed_is_that_of_a_free_fall, a_rotor_slows_the_fall_by_its_share,
     what_is_held_does_not_move, stiction_holds_without_creep, stiction_lets_go_at_its_limit,
     friction_stops_in_closed_form, the_string_only_pulls_and_pulls_both_ends_alike,
@@ -634,4 +664,4 @@ TEST_MAIN("plant", impact_speed_is_that_of_a_free_fall, a_rotor_slows_the_fall_b
     energy_never_grows_with_the_motor_off, a_quarter_of_the_error_with_half_the_substep,
     friction_is_of_second_order, steps_that_will_do_are_stable,
     friction_beside_strong_damping_takes_what_it_takes, the_step_that_is_named_will_do,
-    pieces_on_the_grid_are_few_and_what_they_would_be);
+    pieces_on_the_grid_are_few_and_what_they_would_be, side_by_side_they_go_as_alone);

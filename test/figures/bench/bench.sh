@@ -8,7 +8,7 @@
 # test/figures/bench/baseline.csv. Instructions are printed, never fatal: they are the compiler's as
 # much as ours. --update makes this run the baseline.
 #
-# Environment: B (build).
+# Environment: B (build); SPEED=no: the simulation is left out.
 # Exit status: 0 ok, 1 an error above its documented bound, or a kernel of the baseline is gone,
 # 2 bad usage, 3 valgrind or a binary missing.
 set -eu
@@ -116,20 +116,24 @@ awk -F, '
 
 # --- simulation ---
 
-echo
-"$b/speed"
-for e in drop bilateral bilateral5; do
-    for fn in exh_loop tick advance_to; do # the scene is reached as a static function, tick
-        profile "$fn" "$b/speed" "$e" 4000 >/dev/null
-        echo "$fn,$(total "$tmp/cg")"
-    done | awk -F, -v e="$e" '{ n[$1] = $2 }
-        END { all = n["exh_loop"]
-              ticks = e == "drop" ? 4000 : 3 * 4000 # at each of three speeds
-              printf "  %s: %.0f instructions a tick (of the first 4000): device %.1f %%, scene" \
-                     " tick %.1f %%, board, glove, link and loop %.1f %%\n", e, all / ticks, \
-                     100 * n["advance_to"] / all, 100 * n["tick"] / all, \
-                     100 * (all - n["advance_to"] - n["tick"]) / all }'
-done
+simulated()
+{
+    echo
+    "$b/speed"
+    for e in drop bilateral bilateral5; do
+        for fn in exh_loop tick advance_to; do # the scene is reached as a static function, tick
+            profile "$fn" "$b/speed" "$e" 4000 >/dev/null
+            echo "$fn,$(total "$tmp/cg")"
+        done | awk -F, -v e="$e" '{ n[$1] = $2 }
+            END { all = n["exh_loop"]
+                  ticks = e == "drop" ? 4000 : 3 * 4000 # at each of three speeds
+                  printf "  %s: %.0f instructions a tick (of the first 4000): device %.1f %%," \
+                         " scene tick %.1f %%, board, glove, link and loop %.1f %%\n", \
+                         e, all / ticks, 100 * n["advance_to"] / all, 100 * n["tick"] / all, \
+                         100 * (all - n["advance_to"] - n["tick"]) / all }'
+    done
+}
+[ "${SPEED:-yes}" = no ] || simulated
 
 # --- baseline ---
 

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* The estimators of estimators.h in plain floating point, behind the same interface. */
+/* The estimators of estimators.h in plain floating point and in bare integers, behind the same
+ * interface; arg of the bare pole: its shift. */
 #ifndef BENCH_ESTIMATORS_PLAIN_H
 #define BENCH_ESTIMATORS_PLAIN_H
 
+#include "bare.h"
 #include "plain.h"
 
 #include "exhand/velocity.h"
@@ -71,5 +73,34 @@
 
 ESTIMATORS(double)
 ESTIMATORS(float)
+
+static struct bare_pole bare_pole_state;
+static struct bare_track bare_track_state;
+
+static inline struct bare_scale bare_scale(struct exh_velocity_scale s)
+{
+    const double one = s.step_m_q42 * 0x1p-42 * s.T.den / s.T.num * (1 << EXH_Q_VEL);
+    int bits;
+    (void)frexp(one, &bits);
+    return (struct bare_scale){(int32_t)ldexp(one, 30 - bits), (unsigned)(30 - bits)};
+}
+
+static inline int bare_pole_start(struct exh_velocity_scale s, int arg)
+{
+    bare_pole_state = (struct bare_pole){bare_scale(s), (unsigned)arg, 0, 0};
+    return 0;
+}
+
+static inline int32_t bare_pole_step(int32_t cnt) { return bare_pole(&bare_pole_state, cnt); }
+
+static inline int bare_track_start(struct exh_velocity_scale s, int tf_us)
+{
+    const double theta = tf_us / (tf_us + 1e6 * s.T.num / s.T.den), one = 1 - theta;
+    bare_track_state = (struct bare_track){bare_scale(s),
+        (int32_t)((1 - theta * theta) * 2147483647), (int32_t)(one * one * 2147483647), 0, 0};
+    return 0;
+}
+
+static inline int32_t bare_track_step(int32_t cnt) { return bare_track(&bare_track_state, cnt); }
 
 #endif

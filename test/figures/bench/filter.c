@@ -191,7 +191,7 @@ static const struct kernel kernels[] = {
         708, IDSP},
     {"filter_1_x22", "FS", 1 / 2147483648.0, 2.5, 1, first_setup, filter_op, first_error,
         "as above", 0, NULL},
-    {"filter_2_high_x22", "FS", 1 / 2147483648.0, 4, 1, high_setup, filter_op, high_error,
+    {"filter_2_high_x22", "FS", 1 / 2147483648.0, 6, 1, high_setup, filter_op, high_error,
         "coefficients rounded at 2^-32; as above at fc/fs 0.12, 0.25, 0.4, 0.45", 0, NULL},
     {"filter_cheap_x22", "FS", 1 / 2147483648.0, 633, 1, second_setup, cheap_op, cheap_error,
         "b, c rounded at 10^-4: 8 LSB + rate/(16 fc) LSB; as above, noise at 0.8 of full scale", 0,

@@ -5,6 +5,8 @@
 #include "law.h"
 #include "path.h"
 
+#include <math.h>
+
 #define CASES   300000
 #define FINGERS 5u
 #define HOUR    7200000u /* ticks at 2 kHz */
@@ -249,7 +251,16 @@ static long double peak_N_q20(void)
     return path_cfg.calib.force_to_cur[1].y == 0 ? 1 : path_cfg.calib.force_to_cur[1].x;
 }
 
-/* 3 s hot and 3 s cool in turn, so that the whole I2t budget is used and regained. */
+/* What the whole D/A codes within a limit stand for. */
+static long double whole_codes(long double limit_A_q26)
+{
+    const long double code = (long double)(INT64_C(1) << (EXH_Q_CUR + EXH_Q_DAC)) /
+                             (long double)path_par.drive.dac_rawpA_q16;
+    return floorl(limit_A_q26 / code) * code;
+}
+
+/* 3 s hot and 3 s cool in turn, so that the whole I2t budget is used and regained. The fold-back
+ * may be off by 2.5 LSB, which decides whether a code is still within it. */
 static void current_error(struct error *e)
 {
     const struct exh_drive_par *p = &path_par.drive;
@@ -261,11 +272,14 @@ static void current_error(struct error *e)
                                   (long double)path_cfg.drive.i2t_budget_q32;
         struct exh_force_ledger l = {.force_N_q20 = bench_in(0, (hot ? 40 : 8) << EXH_Q_FORCE)};
         struct exh_current_ledger c;
-        long double want = p->i_peak_A_q26 * bench_clamp(l.force_N_q20 / peak_N_q20(), 0, 1);
+        const long double want = p->i_peak_A_q26 * bench_clamp(l.force_N_q20 / peak_N_q20(), 0, 1);
+        long double limit, now, less, more;
         exh_drive_current_step(&drive[0], &path_cfg.drive, &l, &c);
-        want = bench_clamp(
-            want, 0, p->i_cont_A_q26 + bench_clamp(extra, 0, p->i_peak_A_q26 - p->i_cont_A_q26));
-        error_add(e, (long double)(c.table_A_q26 + c.peak_A_q26 + c.i2t_A_q26) - want);
+        limit = p->i_cont_A_q26 + bench_clamp(extra, 0, p->i_peak_A_q26 - p->i_cont_A_q26);
+        now = (long double)(c.table_A_q26 + c.peak_A_q26 + c.i2t_A_q26);
+        less = now - bench_clamp(want, 0, whole_codes(limit - 2.5L));
+        more = now - bench_clamp(want, 0, whole_codes(limit + 2.5L));
+        error_add(e, fabsl(less) < fabsl(more) ? less : more);
     }
 }
 
@@ -303,7 +317,10 @@ static void gate_op(uint32_t i)
 static void gate_error(struct error *e)
 {
     const struct exh_drive_par *p = &path_par.drive;
+    int64_t most;
     start();
+    most = (int64_t)p->i_peak_A_q26 * p->dac_rawpA_q16 >> (EXH_Q_CUR + EXH_Q_DAC);
+    if (most > p->dac_span_raw) { most = p->dac_span_raw; }
     for (int i = 0; i < CASES; i++) {
         struct exh_current_ledger c = {.table_A_q26 = i & 1 ? bench_i32() : bench_in(0, 1 << 29)};
         struct exh_drive_out out;
@@ -312,7 +329,7 @@ static void gate_error(struct error *e)
             bench_q((long double)(c.table_A_q26 * p->dac_rawpA_q16), EXH_Q_CUR + EXH_Q_DAC);
         exh_gate_step(&safety, &path_cfg.drive, 1, &c, &limits, &out);
         error_add(e, (long double)out.dac_raw[0] - p->dac_zero_raw -
-                         bench_clamp(want, -p->dac_span_raw, p->dac_span_raw));
+                         bench_clamp(want, (long double)-most, (long double)most));
     }
 }
 
@@ -364,7 +381,8 @@ static const struct kernel kernels[] = {
     {"drive_force", "N", NEWTON, 1, 1, force_setup, force_op, force_error,
         "one step; random slew limits, full-scale force", 0, NULL},
     {"drive_current", "A", AMPERE, 2.5, 1, force_setup, current_op, current_error,
-        "table 1 LSB, fold-back 2.5; the I2t budget used up and regained 25 times", 0, NULL},
+        "table 1 LSB, fold-back 2.5, in whole codes; the I2t budget used up and regained 25 times",
+        0, NULL},
     {"drive_monitor_N", "N", NEWTON, 1.04, 1, force_setup, monitor_op, monitor_error,
         "table 1 LSB + half an LSB of current; every code", 0, NULL},
     {"gate_1", "code", 1, 0.5, 1, force_setup, gate_op, gate_error,

@@ -1,13 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* peers errors | sines | count | time | ram: ours and others' low-passes and sines in one program,
- * on the same inputs; CSV for peers.sh.
+/* peers errors | sweep [few] | sines | count | time | ram | twins: ours and others' low-passes and
+ * sines in one program, on the same inputs; CSV for peers.sh.
  *
  * errors: peer, then for fc/fs 0.1, 0.01, 0.001, 0.0001 in ppm of full scale: worst error at
  * 0 Hz after 30 periods at +-0.37, +-0.01 and released; rms over a step of 0.37; rms of a
  * settled sine of 0.37 at fc; then 1 if a step to 0.98 at 0.01 stays wrong. Reference: the
  * same filter in long double, fed with the input as the peer could take it.
- * count: as kernels count does; each peer by 22 channels of one sample, then by one channel
- * of 64. time: peer, ns of one op by 22 channels or of one sine and cosine.
+ * sweep: peer, fc/fs 10^-5 to 0.45, input, largest and rms error in ppm of full scale: of a step
+ * to 0.37, of a square wave from end to end of full scale, of white noise of full scale. What is
+ * beyond full scale counts as full scale. few: four cut-offs.
+ * count: as kernels count does; each peer by 22 channels of one sample at fc/fs 0.01 and 0.4, then
+ * by one channel of 64. time: peer, ns of one op by 22 channels or of one sine and cosine.
  */
 #define _POSIX_C_SOURCE 200809L
 #include "peers.h"
@@ -34,9 +37,7 @@ static const struct peer_group *const groups[] = {
 #ifdef PEERS_FIXMATH
     &fixmath_peers,
 #endif
-#ifdef PEERS_RUST
-    &rust_peers,
-#endif
+    &idsp_peers,
 };
 #define GROUPS (sizeof groups / sizeof groups[0])
 
@@ -46,11 +47,11 @@ long double peer_round(long double x, unsigned q)
     return bench_clamp(rintl(x * one), -one, one - 1) / one;
 }
 
-static struct butterworth design(uint32_t ticks)
+static struct butterworth design(uint32_t fc, uint32_t fs)
 {
-    const long double g = tanl(PI / ticks), k = sqrtl(2), d = 1 + g * (g + k);
+    const long double g = tanl(PI * fc / fs), k = sqrtl(2), d = 1 + g * (g + k);
     const struct butterworth f = {
-        ticks, g * g / d, 2 * g * g / d, g * g / d, 2 * (g * g - 1) / d, (1 + g * (g - k)) / d};
+        fc, fs, g * g / d, 2 * g * g / d, g * g / d, 2 * (g * g - 1) / d, (1 + g * (g - k)) / d};
     return f;
 }
 
@@ -59,9 +60,9 @@ static struct {
     long double g, d, s1, s2;
 } ref;
 
-static void ref_start(uint32_t ticks)
+static void ref_start(const struct butterworth *f)
 {
-    ref.g = tanl(PI / ticks);
+    ref.g = tanl(PI * f->fc / f->fs);
     ref.d = 1 + ref.g * (ref.g + sqrtl(2));
     ref.s1 = ref.s2 = 0;
 }
@@ -75,11 +76,11 @@ static long double ref_step(long double x)
     return low;
 }
 
-static void start(const struct filter_peer *p, uint32_t ticks)
+static void start(const struct filter_peer *p, uint32_t fc, uint32_t fs)
 {
-    const struct butterworth f = design(ticks);
+    const struct butterworth f = design(fc, fs);
     p->setup(&f);
-    ref_start(ticks);
+    ref_start(&f);
 }
 
 /* ppm of full scale */
@@ -87,7 +88,7 @@ static double worst_at_rest(const struct filter_peer *p, uint32_t ticks)
 {
     static const long double level[] = {LEVEL, -LEVEL, 0.01L, -0.01L, 0};
     long double worst = 0;
-    start(p, ticks);
+    start(p, 1, ticks);
     for (size_t i = 0; i < sizeof level / sizeof level[0]; i++) {
         const long double x = p->native(level[i]);
         long double y = 0;
@@ -101,7 +102,7 @@ static double rms_of_step(const struct filter_peer *p, uint32_t ticks)
 {
     const long double x = p->native(LEVEL);
     struct error e = {0, 0, 0};
-    start(p, ticks);
+    start(p, 1, ticks);
     for (uint32_t t = 0; t < 30 * ticks; t++) { error_add(&e, p->step(x) - ref_step(x)); }
     return (double)(1e6L * sqrtl(e.sum_squares / (long double)e.n));
 }
@@ -109,7 +110,7 @@ static double rms_of_step(const struct filter_peer *p, uint32_t ticks)
 static double rms_of_sine(const struct filter_peer *p, uint32_t ticks)
 {
     struct error e = {0, 0, 0};
-    start(p, ticks);
+    start(p, 1, ticks);
     for (uint32_t t = 0; t < 40 * ticks; t++) {
         const long double x = p->native(LEVEL * sinl(2 * PI * (t % ticks) / ticks));
         const long double off = p->step(x) - ref_step(x);
@@ -123,7 +124,7 @@ static int latches(const struct filter_peer *p)
 {
     const long double x = p->native(0.98L);
     int wrong = 0;
-    start(p, 100);
+    start(p, 1, 100);
     for (int t = 0; t < 6000; t++) { wrong += fabsl(p->step(x) - x) > 0.5L && t >= 5000; }
     return wrong > 0;
 }
@@ -136,6 +137,62 @@ static void print_errors(const struct filter_peer *p)
             rms_of_sine(p, ticks));
     }
     printf(",%d\n", latches(p));
+}
+
+/* --- over fc/fs --- */
+
+static const struct {
+    uint32_t fc, fs;
+} sweep[] = {{1, 100000}, {1, 10000}, {1, 100}, {2, 5}, /* few end here */
+    {1, 50000}, {1, 20000}, {1, 5000}, {1, 2000}, {1, 1000}, {1, 500}, {1, 200}, {1, 50}, {1, 20},
+    {1, 10}, {3, 20}, {1, 5}, {3, 10}, {9, 20}};
+#define FEW 4u
+
+enum { STEP, SQUARE, NOISE };
+
+static long double input_of(int kind, uint32_t t, uint32_t half)
+{
+    if (kind == STEP) { return LEVEL; }
+    if (kind == SQUARE) { return t / half % 2 == 0 ? 1 : -1; }
+    return bench_i32() / 2147483648.0L;
+}
+
+/* Ten periods of the cut-off, a square wave's two halves; what goes on does so for 20000 ticks. */
+static void print_swept(const struct filter_peer *p, uint32_t fc, uint32_t fs)
+{
+    static const char *const name[] = {"step", "square", "noise"};
+    const uint32_t ten = 10 * fs / fc;
+    if (p->most > 0 && fc > p->most * fs) { return; }
+    for (int kind = STEP; kind <= NOISE; kind++) {
+        const uint32_t n = kind == STEP || ten > 20000 ? ten : 20000;
+        struct error e = {0, 0, 0};
+        start(p, fc, fs);
+        bench_seed();
+        for (uint32_t t = 0; t < n; t++) {
+            const long double x = p->native(input_of(kind, t, ten / 2));
+            error_add(&e, bench_clamp(p->step(x), -1, 1) - bench_clamp(ref_step(x), -1, 1));
+        }
+        printf("%s,%.6g,%s,%.3g,%.3g\n", p->name, fc / (double)fs, name[kind], 1e6 * (double)e.max,
+            (double)(1e6L * sqrtl(e.sum_squares / (long double)e.n)));
+    }
+}
+
+static size_t sweep_most = sizeof sweep / sizeof sweep[0];
+
+static void print_sweep(const struct filter_peer *p)
+{
+    for (size_t i = 0; i < sweep_most; i++) { print_swept(p, sweep[i].fc, sweep[i].fs); }
+}
+
+static int twins(void)
+{
+#ifdef PEERS_RUST
+    for (size_t i = 0; i < sizeof sweep / sizeof sweep[0]; i++) {
+        const struct butterworth f = design(sweep[i].fc, sweep[i].fs);
+        if (!idsp_twins_same(&f)) { return 1; }
+    }
+#endif
+    return 0;
 }
 
 /* peer, worst and rms error of sine and cosine in ppm, table bytes */
@@ -167,16 +224,17 @@ static void run(const char *name, void (*op)(uint32_t i), uint32_t per)
 
 static void count_filter(const struct filter_peer *p)
 {
-    const struct butterworth f = design(100);
-    p->setup(&f);
+    start(p, 1, 100);
     run(p->name, p->tick, 1);
+    if (p->most == 0) { start(p, 2, 5); }
+    run(p->name, p->tick, 1);
+    start(p, 1, 100);
     run(p->name, p->block, BLOCK);
 }
 
 static void time_filter(const struct filter_peer *p)
 {
-    const struct butterworth f = design(100);
-    p->setup(&f);
+    start(p, 1, 100);
     printf("%s,%.2f\n", p->name, bench_least_ns(p->tick) - bench_least_ns(empty));
 }
 
@@ -197,6 +255,13 @@ static void print_ram(const struct filter_peer *p)
     printf("%s,%u\n", p->name, (unsigned)p->ram_B);
 }
 
+static void each_sine(void (*visit)(const struct sine_peer *p))
+{
+    for (size_t g = 0; g < GROUPS; g++) {
+        for (size_t i = 0; i < groups[g]->sines; i++) { visit(&groups[g]->sine[i]); }
+    }
+}
+
 static void each_filter(void (*visit)(const struct filter_peer *p))
 {
     for (size_t g = 0; g < GROUPS; g++) {
@@ -204,37 +269,39 @@ static void each_filter(void (*visit)(const struct filter_peer *p))
     }
 }
 
+static void count_sine(const struct sine_peer *p) { run(p->name, p->op, 1); }
+
+static void time_sine(const struct sine_peer *p)
+{
+    printf("%s,%.2f\n", p->name, bench_least_ns(p->op) - bench_least_ns(empty));
+}
+
+static const struct {
+    const char *name;
+    void (*filter)(const struct filter_peer *p);
+    void (*sine)(const struct sine_peer *p);
+} modes[] = {
+    {"errors", print_errors, NULL},
+    {"sweep", print_sweep, NULL},
+    {"sines", NULL, print_sine},
+    {"count", count_filter, count_sine},
+    {"time", time_filter, time_sine},
+    {"ram", print_ram, NULL},
+};
+
 int main(int argc, char **argv)
 {
-    const char *mode = argc == 2 ? argv[1] : "";
+    const char *mode = argc >= 2 ? argv[1] : "";
     inputs();
-    if (strcmp(mode, "errors") == 0) {
-        each_filter(print_errors);
-    } else if (strcmp(mode, "ram") == 0) {
-        each_filter(print_ram);
-    } else if (strcmp(mode, "sines") == 0 || strcmp(mode, "count") == 0 ||
-               strcmp(mode, "time") == 0) {
-        if (mode[0] == 'c') {
-            run("empty", empty, 1);
-            each_filter(count_filter);
-        } else if (mode[0] == 't') {
-            each_filter(time_filter);
-        }
-        for (size_t g = 0; g < GROUPS; g++) {
-            for (size_t i = 0; i < groups[g]->sines; i++) {
-                const struct sine_peer *p = &groups[g]->sine[i];
-                if (mode[0] == 'c') {
-                    run(p->name, p->op, 1);
-                } else if (mode[0] == 't') {
-                    printf("%s,%.2f\n", p->name, bench_least_ns(p->op) - bench_least_ns(empty));
-                } else {
-                    print_sine(p);
-                }
-            }
-        }
-    } else {
-        fprintf(stderr, "usage: peers errors|sines|count|time|ram\n");
-        return 2;
+    if (argc == 3 && strcmp(argv[2], "few") == 0) { sweep_most = FEW; }
+    if (strcmp(mode, "twins") == 0) { return twins(); }
+    if (strcmp(mode, "count") == 0) { run("empty", empty, 1); }
+    for (size_t i = 0; i < sizeof modes / sizeof modes[0]; i++) {
+        if (strcmp(mode, modes[i].name) != 0) { continue; }
+        if (modes[i].filter != NULL) { each_filter(modes[i].filter); }
+        if (modes[i].sine != NULL) { each_sine(modes[i].sine); }
+        return 0;
     }
-    return 0;
+    fprintf(stderr, "usage: peers errors|sweep|sines|count|time|ram|twins\n");
+    return 2;
 }

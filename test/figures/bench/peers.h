@@ -11,7 +11,7 @@
 /* Second-order Butterworth by the bilinear transform, gain 1 at 0 Hz:
  * y = b0 x + b1 x1 + b2 x2 - a1 y1 - a2 y2. */
 struct butterworth {
-    uint32_t ticks; /* of one period of the cut-off: fs/fc */
+    uint32_t fc, fs; /* Hz */
     long double b0, b1, b2, a1, a2;
 };
 
@@ -23,6 +23,7 @@ struct filter_peer {
     void (*tick)(uint32_t i);                   /* all channels, one sample each */
     void (*block)(uint32_t i);                  /* channel 0, BLOCK samples */
     uint32_t ram_B;                             /* of a channel, here */
+    long double most;                           /* fc/fs it can be set up for; 0: any */
 };
 
 struct sine_peer {
@@ -38,7 +39,10 @@ struct peer_group {
     const struct sine_peer *sine;
     size_t sines;
 };
-extern const struct peer_group plain_peers, cmsis_peers, fixmath_peers, rust_peers;
+extern const struct peer_group plain_peers, cmsis_peers, fixmath_peers, idsp_peers;
+
+/* Does the crate idsp what its twins do? */
+int idsp_twins_same(const struct butterworth *f);
 
 /* Inputs of the ops: 0.37 of full scale, in every format. */
 extern int32_t peer_x_q31[BENCH_OPS + BLOCK];

@@ -7,14 +7,13 @@
 # fixmath: libfixmath's C sources, as Debian has them, by apt into $B/peers, checked likewise: the
 # library in its package is compiled without optimisation.
 # rust: builds the crate idsp, version and sums as peers_rust/Cargo.lock has them, into
-# $B/peers/rust. table: runs $B/bench/peers and, where built, peers-i686; prints both tables, what
-# is not run from peers.csv; both as CSV in $B/bench/filters.csv and sines.csv. Instructions above
-# the requirement are shown as "over", never fatal.
+# $B/peers/rust. table: runs $B/bench/peers and, where built, peers-i686; prints both tables; both
+# as CSV in $B/bench/filters.csv and sines.csv, errors over fc/fs in sweep.csv. Instructions above
+# the requirement are shown as "over", never fatal. SHORT: few cut-offs.
 #
 # Environment: B (build).
-# Exit status: 0 ok; table: 1 an error of ours above its bound; fetch, fixmath, rust: 1 not there; 2
-# bad
-# usage, 3 valgrind or a binary missing.
+# Exit status: 0 ok; table: 1 an error of ours above its bound, or a twin is none; fetch, fixmath,
+# rust: 1 not there; 2 bad usage, 3 valgrind or a binary missing.
 set -eu
 
 b=${B:-build}
@@ -26,7 +25,7 @@ export LC_ALL
 
 missing()
 {
-    echo "peers: $name: not fetched: $*; its rows are those measured elsewhere" >&2
+    echo "peers: $name: not fetched: $*; the tables do without" >&2
     exit 1
 }
 
@@ -89,10 +88,10 @@ rust()
 {
     [ ! -r "$b/peers/rust/release/libpeers.a" ] || exit 0
     [ "${DEPS:-yes}" != no ] ||
-        { echo "peers: idsp: not fetched: DEPS=no; its rows are those measured elsewhere" >&2
+        { echo "peers: idsp: not fetched: DEPS=no; the tables do without" >&2
         exit 1; }
     command -v cargo >/dev/null ||
-        { echo "peers: idsp: not fetched: cargo is missing; its rows are those measured elsewhere" \
+        { echo "peers: idsp: not fetched: cargo is missing; the tables do without" \
         >&2; exit 1; }
     mkdir -p "$b/peers"
     target=$(cd "$b/peers" && pwd)/rust
@@ -100,7 +99,7 @@ rust()
         -q --release --locked) >"$b/peers/cargo.log" 2>&1 ||
         {
             echo "peers: idsp: not built ($b/peers/cargo.log):" \
-                "$(tail -n 1 "$b/peers/cargo.log"); its rows are those measured elsewhere" >&2
+                "$(tail -n 1 "$b/peers/cargo.log"); the tables do without" >&2
             exit 1
         }
 }
@@ -122,14 +121,14 @@ trap 'rm -rf "$tmp"' EXIT
 trap 'exit 1' HUP INT TERM
 . "$here/callgrind.sh"
 
-# name,by 22,by 64 per sample: two lines a peer, one for a sine
+# name,by 22,by 22 at a high cut-off,by 64 per sample: three lines a peer, one for a sine
 instructions()
 {
     counts "$1" | awk -F, -v OFS=, '
         NR == 1 { empty = $3 / $2; next }
-        $1 == last { print $1, first, sprintf("%.1f", $3 / $2); last = ""; next }
-        { if (last != "") print last, first; last = $1; first = sprintf("%.0f", $3 / $2 - empty) }
-        END { if (last != "") print last, first }'
+        $1 != last { if (NR > 2) print row; row = last = $1 }
+        { row = row "," sprintf(++of[$1] == 3 ? "%.1f" : "%.0f", $3 / $2 - (of[$1] < 3) * empty) }
+        END { print row }'
 }
 
 instructions "$b/bench/peers" >"$tmp/x64"
@@ -142,6 +141,12 @@ if [ -x "$b/bench/peers-i686" ]; then
 fi
 "$b/bench/peers" errors >"$tmp/errors"
 "$b/bench/peers" sines >"$tmp/sines"
+{
+    echo "name,fc_fs,input,max_ppm,rms_ppm"
+    "$b/bench/peers" sweep ${SHORT:+few}
+} >"$b/bench/sweep.csv"
+"$b/bench/peers" twins ||
+    { echo "FAIL idsp: its twin in C does not do what the crate does"; status=1; }
 
 echo "low-pass, second order: 22 channels of one sample (x64, i686), and one channel of 64"
 echo "samples, each (b64); error in ppm of full scale, worst at rest; rms of a step;" \
@@ -149,41 +154,30 @@ echo "samples, each (b64); error in ppm of full scale, worst at rest; rms of a s
 awk -F, -v ram="$tmp/ram" -v csv="$b/bench/filters.csv" -v times="$tmp/ns" '
     function triple(k) { return sprintf("%s; %s; %s", $k, $(k + 1), $(k + 2)) }
     function line(a, b, c, d, e, f, g, h, i, j) {
-        printf "%-29s %6s %6s %6s %6s | %-25s %-25s %-25s %-25s | %-5s %5s\n", \
+        printf "%-22s %6s %6s %6s %6s | %-25s %-25s %-25s %-25s | %-5s %5s\n", \
                a, b, c, d, e, f, g, h, i, j, mem }
-    function field(a, b, c, d, e, k, last, row) {
-        row = a "," b "," c "," d "," e
-        for (; k <= last; k++) row = row "," $k
-        print row "," mem "," (a in ns ? ns[a] : "-") > csv }
+    function of(list) { return ($1 in list) ? list[$1] : "-" }
     FILENAME == ram { ram_B[$1] = $2; next }
     FILENAME == times { ns[$1] = $2; next }
-    FILENAME ~ /x64$/ { x64[$1] = $2; x64_b[$1] = $3; next }
-    FILENAME ~ /i686$/ { i686[$1] = $2; i686_b[$1] = $3; next }
+    FILENAME ~ /x64$/ { x64[$1] = $2; high[$1] = $3; x64_b[$1] = $4; next }
+    FILENAME ~ /i686$/ { i686[$1] = $2; i686_high[$1] = $3; i686_b[$1] = $4; next }
     !head++ { mem = "RAM B"
-              print "name,where,x64,x64_b64,i686,rest_1,step_1,sine_1,rest_2,step_2,sine_2," \
-                    "rest_3,step_3,sine_3," \
-                    "rest_4,step_4,sine_4,latches,ram_B,ns" > csv
+              print "name,x64,x64_high,x64_b64,i686,i686_high,rest_1,step_1,sine_1,rest_2,step_2," \
+                    "sine_2,rest_3,step_3,sine_3,rest_4,step_4,sine_4,latches,ram_B,ns" > csv
               line("", "x64", "b64", "i686", "b64", "fc/fs = 0.1", "0.01", "0.001", "0.0001",
                    "latch") }
-    FILENAME ~ /errors$/ {
-        ran[$1] = 1
-        mem = ram_B[$1]
-        line($1, x64[$1], x64_b[$1], $1 in i686 ? i686[$1] : "-", $1 in i686 ? i686_b[$1] : "-", \
-             triple(2), triple(5), triple(8), triple(11), $14 ? "yes" : "no")
-        field($1, "here", x64[$1], x64_b[$1], $1 in i686 ? i686[$1] : "-", 2, 14)
-        if (FNR == 1) for (k = 2; k <= 13; k++) {
-            bound = (k - 2) % 3 ? 0.002 : 1 / 2147.483648
-            if ($k + 0 > bound) wrong = wrong " " $k }
-        if (FNR == 1) { ours = $1; stuck = $14 }
-        next }
-    /^#/ { next }
-    ($1 in ran) {
-        if (!($1 in i686)) { mem = $17; field($1 " (in C)", "elsewhere", "-", "-", $3, 4, 16) }
-                  next }
-    { if (!elsewhere++) print "measured once elsewhere, NOT in this run:"
-      mem = $17
-      field($1, "elsewhere", $2, "-", $3, 4, 16)
-      line($1, $2, "-", $3, "-", triple(4), triple(7), triple(10), triple(13), $16 ? "yes" : "no") }
+    { mem = ram_B[$1]
+      line($1, x64[$1], x64_b[$1], of(i686), of(i686_b), triple(2), triple(5), triple(8),
+           triple(11), $14 ? "yes" : "no")
+      row = $1 "," x64[$1] "," high[$1] "," x64_b[$1] "," of(i686) "," of(i686_high)
+      for (k = 2; k <= 14; k++) row = row "," $k
+      print row "," mem "," of(ns) > csv
+      if (FNR == 1) {
+          ours = $1
+          stuck = $14
+          for (k = 2; k <= 13; k++) {
+              bound = (k - 2) % 3 ? 0.002 : 1 / 2147.483648
+              if ($k + 0 > bound) wrong = wrong " " $k } } }
     END {
         a = x64[ours] > 760 ? "over" : x64[ours] > 708 ? "ok" : "goal"
         b = !(ours in i686) ? "not counted" : i686[ours] > 1498 ? "over" : \
@@ -196,7 +190,7 @@ awk -F, -v ram="$tmp/ram" -v csv="$b/bench/filters.csv" -v times="$tmp/ns" '
                            bad = 1 }
         if (stuck) { printf "FAIL %s: latches\n", ours; bad = 1 }
         exit bad }
-' "$tmp/ram" "$tmp/ns" "$tmp/x64" "$tmp/i686" "$tmp/errors" "$here/peers.csv" || status=1
+' "$tmp/ram" "$tmp/ns" "$tmp/x64" "$tmp/i686" "$tmp/errors" || status=1
 
 echo
 echo "sine and cosine of one angle, both: 2^20 angles"

@@ -88,8 +88,8 @@ SINE(parabola, fix16_sin_parabola, parabola_cos)
 SINE(table, fixmath_lut_sin, fixmath_lut_cos)
 
 static const struct filter_peer filters[] = {
-    {"libfixmath fix16 DF1", setup, native, step, tick, block, sizeof biquad[0]},
-    {"libfixmath b1 adj.", adjusted, native, step, tick, block, sizeof biquad[0]},
+    {"libfixmath fix16 DF1", setup, native, step, tick, block, sizeof biquad[0], 0},
+    {"libfixmath b1 adj.", adjusted, native, step, tick, block, sizeof biquad[0], 0},
 };
 static const struct sine_peer sines[] = {
     {"libfixmath sin + cos", series, series_op, 0},

@@ -16,9 +16,9 @@ static int32_t y_q31[BLOCK];
 
 static void ours_setup(const struct butterworth *f)
 {
-    const struct exh_filter_par par = {2, 1 << 16};
+    const struct exh_filter_par par = {2, (int32_t)(f->fc << 16)};
     const int32_t zero[CHANNELS] = {0};
-    EXH_ASSERT(exh_filter_setup(&cfg, &par, (struct exh_period){1, f->ticks}) == 0);
+    EXH_ASSERT(exh_filter_setup(&cfg, &par, (struct exh_period){1, f->fs}) == 0);
     exh_filter_reset(state, zero, CHANNELS);
 }
 
@@ -156,12 +156,13 @@ PLAIN(float, peer_x_f32)
 PLAIN(double, peer_x_f64)
 
 static const struct filter_peer filters[] = {
-    {"exhand", ours_setup, native_q31, ours_step, ours_tick, ours_block, sizeof state[0]},
-    {"exhand-cheap", cheap_setup, native_q31, cheap_step, cheap_tick, cheap_block, sizeof cheap[0]},
+    {"exhand", ours_setup, native_q31, ours_step, ours_tick, ours_block, sizeof state[0], 0},
+    {"exhand-cheap", cheap_setup, native_q31, cheap_step, cheap_tick, cheap_block, sizeof cheap[0],
+        0},
     {"plain double DF2T", double_setup, double_native, double_step, double_tick, double_block,
-        sizeof double_biquad[0]},
+        sizeof double_biquad[0], 0},
     {"plain float DF2T", float_setup, float_native, float_step, float_tick, float_block,
-        sizeof float_biquad[0]},
+        sizeof float_biquad[0], 0},
 };
 static const struct sine_peer sines[] = {{"exhand sincos", ours_sine, ours_sine_op, 0},
     {"libm double sin + cos", double_sine, double_sine_op, 0},

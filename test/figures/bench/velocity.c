@@ -35,7 +35,7 @@ struct estimator {
     struct figures theory; /* simulated apart from this library, D = 15.7 um, floats */
 };
 
-/* pole_100: the pole of exp(-2 pi 100 Hz T). track_0.9: theta = 0.9. */
+/* pole_100: the pole of exp(-2 pi 100 Hz T); pole_91: of 3/4. track_0.9: theta = 0.9. */
 static const struct estimator estimators[] = {
     {"difference", "velocity_window_1", window_start, window_step, 0, 1,
         {{5.5, 14.6, 12.2, 11.3}, {30, 21, 26, 27}, 0.25, 13.1}},
@@ -50,6 +50,9 @@ static const struct estimator estimators[] = {
         {{1.1, 0.38, 0.28, 0.21}, {1.8, 0.62, 0.72, 0.49}, 1.97, 11.7}},
     {"track_0.9", "velocity_track", track_start, track_step, 4500, 1,
         {{0.33, 0.11, 0.10, 0.11}, {0.59, 0.25, 0.23, 0.27}, 9.25, 63}},
+    {"bare_difference", "bare difference", bare_pole_start, bare_pole_step, 0, 0, {{0}, {0}, 0, 0}},
+    {"bare_pole_91", "bare pole", bare_pole_start, bare_pole_step, 2, 0, {{0}, {0}, 0, 0}},
+    {"bare_track_0.9", "bare track", bare_track_start, bare_track_step, 4500, 0, {{0}, {0}, 0, 0}},
     {"double_window_4", "plain double window", double_window_start, double_window_step, 4, 0,
         {{0}, {0}, 0, 0}},
     {"float_window_4", "plain float window", float_window_start, float_window_step, 4, 0,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The contact law: an hour inside a wall. Others than ours have no contact test and no pull-back
+/* The contact law: an hour inside a wall. CMSIS's controllers have no contact test and no pull-back
  * force. */
+#include "bare.h"
 #include "law.h"
 #include "work.h"
 
@@ -81,6 +82,23 @@ static long double ours_off(uint32_t i)
     return bench_q((long double)(ledger.spring_N_q20 + ledger.damper_N_q20), EXH_Q_FORCE) - want;
 }
 
+/* --- bare --- */
+
+static struct bare_law bare; /* no constant that the compiler could see through */
+
+static void bare_setup(void)
+{
+    bare = (struct bare_law){par.k_Npm_q10, par.b_Nspm_q20, 0, 0, 100 << EXH_Q_FORCE};
+    setup();
+}
+
+static void bare_op(uint32_t i)
+{
+    for (uint32_t f = 0; f < WORK_FINGERS; f++) {
+        bench_sink = bare_law(&bare, op_pos[i][f], op_vel[i][f]);
+    }
+}
+
 /* --- plain --- */
 
 static const struct law_double in_double = {WALL_K_NPM, WALL_B_NSPM, 0, 0, 100};
@@ -123,8 +141,18 @@ static long double float_off(uint32_t i)
     return law_float(&in_float, (float)pos, (float)((pos - last) / WALL_T_S)) - clamped(pos, last);
 }
 
+static long double bare_off(uint32_t i)
+{
+    const int32_t n = wall_cnt(), last = (int32_t)(last_m / WALL_STEP_M + 0.5);
+    const long double want = clamped(n * WALL_STEP_M, last_m);
+    (void)i;
+    last_m = n * WALL_STEP_M;
+    return bench_q(bare_law(&bare, n * 71213, (n - last) * 71213 * 250), EXH_Q_FORCE) - want;
+}
+
 static const struct work works[] = {
     {"law", "exhand contact law", "ours", "N", WORK_HOUR, setup, ours_op, ours_off},
+    {"law", "bare integer law", "integer", "N", WORK_HOUR, bare_setup, bare_op, bare_off},
     {"law", "plain double law", "float", "N", WORK_HOUR, setup, double_op, double_off},
     {"law", "plain float law", "float", "N", WORK_HOUR, setup, float_op, float_off},
 };

@@ -3,6 +3,7 @@
 """Kernels: error over cost, from what `make bench` has left in B/bench; CSV and panels into OUT."""
 
 import csv
+import math
 import os
 import sys
 
@@ -10,8 +11,8 @@ import work
 
 BENCH = os.path.join(os.environ.get("B", "build"), "bench")
 OUT = os.environ.get("OUT", "build/report")
-RATIOS = ("0.1", "0.01", "0.001", "0.0001")
-LEVEL_PPM = 370000  # of the input: what an output that stands still is wrong by
+RATIOS = ("0.0001", "0.01", "0.4")
+STEEP = 0.105  # of the rate: above it ours is of another kind
 
 
 def rows_of(name):
@@ -32,22 +33,19 @@ def kind_of(name):
     return "float" if any(w in name for w in ("double", "float", "f32", "f64")) else "integer"
 
 
-def ppm(text):
-    return LEVEL_PPM if text == "dead" else float(text)
-
-
-def judged(points):
-    """Our points must be on the front of every panel; whose else are?"""
+def judged(points, where=""):
+    """In which panels is one of ours on the front, alone or beside others?"""
     on = work.on_front(points)
     off = [k for k, v in on.items() if not v]
     alone = [k for k in on
              if all(p.kind == "ours" for p in work.front([q for q in points if q.panel == k]))]
-    print("note: Ours is on the front of integer code in %d of %d panels, alone on it in %d%s." % (
-        len(on) - len(off), len(on), len(alone), "; not in: " + "; ".join(off) if off else ""))
+    print("note: %sOurs is on the front of integer code in %d of %d panels, alone on it in %d%s." %
+          (where, len(on) - len(off), len(on), len(alone),
+           "; not in: " + "; ".join(off) if off else ""))
 
 
 COSTS = (("x64", "x86-64", "instructions"), ("i686", "i686", "instructions"),
-         ("ns", "x86-64, this machine", "ns"))
+         ("ns", "x86-64 here", "ns"))
 
 
 def counted(row, cost):
@@ -55,21 +53,43 @@ def counted(row, cost):
 
 
 def filters():
-    rows, points, labels = rows_of("filters.csv"), [], []
-    for cost, title, unit in COSTS:
-        for k, ratio in enumerate(RATIOS):
-            mine = [r for r in rows if counted(r, cost)]
-            for r in mine:
-                worst = max(ppm(r["%s_%d" % (w, k + 1)]) for w in ("rest", "step", "sine")
-                            if r["%s_%d" % (w, k + 1)] != "-")
-                points.append(work.Point("%s, fc/fs = %s" %
-                                         (title.split(",")[0] + (", ns" if cost == "ns" else ""),
-                                          ratio), r["name"],
-                                         kind_of(r["name"]), r[cost], worst, r["where"] == "here"))
+    """rms of a step at three cut-offs; times are of one of the cheap kind."""
+    costs, points, labels = {r["name"]: r for r in rows_of("filters.csv")}, [], []
+    swept = [r for r in rows_of("sweep.csv") if r["input"] == "step"]
+    for cost, title, unit in COSTS[:2]:
+        for ratio in RATIOS:
+            key = cost + ("_high" if float(ratio) > STEEP else "")
+            mine = [r for r in swept if r["fc_fs"] == ratio and counted(costs[r["name"]], key)]
+            points += [work.Point("%s, fc/fs = %s" % (title, ratio), r["name"], kind_of(r["name"]),
+                                  costs[r["name"]][key], r["rms_ppm"]) for r in mine]
             labels += [unit + ", 22 channels"] if mine else []
-    save("filter", rows[0].keys(), [r.values() for r in rows])
-    work.draw(OUT, "filter", points, 1e-10, labels, "largest error, ppm", len(RATIOS))
+    save("filter", next(iter(costs.values())).keys(), [r.values() for r in costs.values()])
+    work.draw(OUT, "filter", points, 1e-10, labels, "rms error of a step, ppm")
     judged(points)
+
+
+def filter_range():
+    """rms and peak over fc/fs, of three inputs; a table of the worst over the range."""
+    rows = rows_of("sweep.csv")
+    names = list(dict.fromkeys(r["name"] for r in rows))
+    at = {(r["name"], r["fc_fs"], r["input"], m): r[m + "_ppm"] for r in rows
+          for m in ("rms", "max")}
+    ratios = sorted({r["fc_fs"] for r in rows}, key=float)
+    inputs = ("step", "square", "noise")
+    save("filter_range", ["fc_fs", "input", "measure"] + names,
+         [[f, i, m] + [at.get((n, f, i, m), "nan") for n in names]
+          for m in ("rms", "max") for i in inputs for f in ratios])
+    with open(os.path.join(OUT, "filter_range.md"), "w", encoding="utf-8") as f:
+        f.write("Worst over fc/fs %s to %s, ppm of full scale: rms; peak:\n\n| | %s |\n%s|\n" % (
+            ratios[0], ratios[-1], " | ".join(inputs), "|--" * 4))
+        for n in names:
+            worst = [[max((float(r[m + "_ppm"]) for r in rows
+                           if r["name"] == n and r["input"] == i),
+                          key=lambda e: math.inf if math.isnan(e) else e)
+                      for m in ("rms", "max")] for i in inputs]
+            f.write("| %s | %s |\n" % (n, " | ".join(
+                "unstable" if math.isnan(rms) else "%.2g; %.2g" % (rms, peak)
+                for rms, peak in worst)))
 
 
 def sines():
@@ -79,7 +99,7 @@ def sines():
                    for r in rows if counted(r, cost)]
     save("sine", rows[0].keys(), [r.values() for r in rows])
     work.draw(OUT, "sine", points, 1e-10,
-              [u for c, _, u in COSTS if any(counted(r, c) for r in rows)], "largest error, ppm")
+              [u for c, _, u in COSTS if any(counted(r, c) for r in rows)], "peak error, ppm")
     judged(points)
 
 
@@ -94,7 +114,7 @@ def kernel(name, of, unit, floor, scale=1, when=(("all", ""),)):
                                   scale * float(r["max"])) for r in mine]
             labels += [label] if mine else []
     save(name, rows[0].keys(), [r.values() for r in rows])
-    work.draw(OUT, name, points, floor, labels, "largest error, " + unit, len(labels) // len(when))
+    work.draw(OUT, name, points, floor, labels, "peak error, " + unit, len(labels) // len(when))
     judged(points)
 
 
@@ -112,69 +132,77 @@ def drift(name, of, floor):
             f.write("name_%d = '%s'; kind_%d = %d\n" % (k + 1, n, k + 1, work.KINDS.index(kind)))
 
 
+def estimates():
+    """Velocities of an encoder of 15.7 um."""
+    return [r for r in rows_of("velocity.csv") if r["source"] == "measured" and
+            r["step_um"] == "15.7"]
+
+
+def label_of(row):
+    return ("exhand " if row["kernel"].startswith("velocity_") else "") + row["estimator"].replace(
+        "_", " ")
+
+
 def velocity():
     """Noise and lag over cost, and over each other."""
     cost_of = {r["name"]: r for r in rows_of("work.csv") +
                [dict(r, x64=r["instructions"], i686=r["instructions_i686"])
                 for r in rows_of("bench.csv")]}
-    rows = [r for r in rows_of("velocity.csv") if r["source"] == "measured" and
-            r["step_um"] == "15.7"]
-    points, labels = [], []
-    for title, key, unit in (("noise at 10 mm/s", "rms_10mmps", "mm/s"), ("lag", "lag_ms", "ms"),
-                             ("error on a sine", "sine_rms_mmps", "mm/s")):
-        for cost, cpu in (("x64", "x86-64"), ("i686", "i686")):
+    rows, points, labels = estimates(), [], []
+    for cost, cpu in (("x64", "x86-64"), ("i686", "i686")):
+        for title, key in (("rms noise at 10 mm/s, mm/s", "rms_10mmps"), ("lag, ms", "lag_ms"),
+                           ("rms on a sine, mm/s", "sine_rms_mmps")):
             mine = [r for r in rows if counted(cost_of[r["kernel"]], cost)]
-            points += [work.Point(title + ", " + unit + (" " if cost == "i686" else ""),
-                                  label_of(r), kind_of(label_of(r)), cost_of[r["kernel"]][cost],
-                                  r[key])
+            points += [work.Point(title + (" " if cost == "i686" else ""), label_of(r),
+                                  kind_of(label_of(r)), cost_of[r["kernel"]][cost], r[key])
                        for r in mine]
             labels += ["instructions, " + cpu] if mine else []
-    points += [work.Point("noise (mm/s) over lag", label_of(r), kind_of(label_of(r)), r["lag_ms"],
-                          r["rms_10mmps"]) for r in rows]
+    points += [work.Point("rms noise (mm/s) over lag", label_of(r), kind_of(label_of(r)),
+                          r["lag_ms"], r["rms_10mmps"]) for r in rows]
     labels.append("lag, ms")
     save("velocity", rows[0].keys(), [r.values() for r in rows])
-    work.draw(OUT, "velocity", points, 1e-3, labels, "error", 4, False)
+    work.draw(OUT, "velocity", points, 1e-3, labels, "error", 3, False)
     judged(points)
 
 
-def soft():
-    """Where floating point is software: errors are those of this machine, which has the same
-    formats."""
-    names = {"fixed": ("exhand", "ours"), "cheap": ("exhand-cheap", "ours"),
-             "double": ("plain double, by software", "float"),
-             "float": ("plain float, by software", "float")}
-    of = {"fixed": "exhand", "cheap": "exhand-cheap", "double": "plain double",
-          "float": "plain float"}
-    wrong = {("filter", w): max(ppm(r["%s_2" % k]) for k in ("rest", "step", "sine"))
-             for r in rows_of("filters.csv")
-             for w, n in of.items() if (r["name"] + " ").startswith(n + " ")}
-    wrong.update({(r["kernel"], w): float(r["max"]) for r in rows_of("work.csv")
-                  for w, n in of.items()
-                  if r["name"].startswith(n) and
-                  r["when"] == ("3600" if r["kernel"] == "law" else "all")})
-    title = {"filter": "22 low-passes (ppm)", "law": "5 laws, after 1 h (N)",
-             "table": "table (ppm)", "precontact": "5 distances, freeze (m)"}
-    rows = [dict(r, error=wrong.get((r["kernel"], r["way"]), "-")) for r in rows_of("soft.csv")]
-    points = [work.Point(title[r["kernel"]], *names[r["way"]], r["instructions"], r["error"])
-              for r in rows if r["kernel"] in title]
-    save("soft", rows[0].keys(), [r.values() for r in rows])
-    work.draw(OUT, "soft", points, 1e-17, "instructions, Cortex-M3", "largest error", 4, False)
-    cost = {(r["kernel"], r["way"]): float(r["instructions"]) for r in rows}
-    print("note: What double and float cost against ours: " + "; ".join("%s %.1f, %.1f" % (
-        k, cost[k, "double"] / cost[k, "fixed"], cost[k, "float"] / cost[k, "fixed"])
-                                                                        for k in title) + " times.")
-    print("note: All integer kernels of a tick in one (22 low-passes, five fingertips, distances "
-          "with the freeze rule, laws): "
-          "%.0f instructions." % cost["tick", "fixed"])
-
-
-def label_of(row):
-    return (row["estimator"] if row["estimator"].split("_")[0] in ("double", "float")
-            else "exhand " + row["estimator"])
+def cortex(cpu):
+    """Errors are those of this machine, which has the same formats."""
+    wrong = {("filter", r["name"]): r["rms_ppm"] for r in rows_of("sweep.csv")
+             if (r["fc_fs"], r["input"]) == ("0.01", "step")}
+    wrong["filter_high", "exhand"] = next(r["rms_ppm"] for r in rows_of("sweep.csv") if (
+        r["name"], r["fc_fs"], r["input"]) == ("exhand", "0.4", "step"))
+    wrong.update((("sine", r["name"]), r["worst_ppm"]) for r in rows_of("sines.csv"))
+    wrong.update((("velocity", r["kernel"]), r["rms_10mmps"]) for r in estimates())
+    wrong.update(((r["kernel"], r["name"]), r["max"]) for r in rows_of("work.csv")
+                 if r["when"] == ("3600" if r["kernel"] == "law" else "all"))
+    title = {"filter": "22 low-passes, 0.01 (rms, ppm)", "sine": "sine and cosine (peak, ppm)",
+             "law": "5 laws, after 1 h (peak, N)", "table": "table (peak, ppm)",
+             "velocity": "velocity (rms noise, mm/s)",
+             "precontact": "5 distances, freeze (peak, m)"}
+    rows = [dict(r, error=wrong.get((r["kernel"], r["name"]), "-")) for r in rows_of("soft.csv")
+            if r["cpu"] == cpu]
+    named = {r["kernel"]: label_of(r) for r in estimates()}
+    points = [work.Point(title[k], n, kind_of(n), r["instructions"], r["error"])
+              for k in title for r in rows if r["kernel"] == k
+              for n in [named.get(r["name"], r["name"])]]
+    save("cortex_" + cpu, rows[0].keys(), [r.values() for r in rows])
+    work.draw(OUT, "cortex_" + cpu, points, 1e-17, "instructions", "error", 3, False)
+    where = "On a Cortex-%s: " % cpu.upper()
+    judged(points, where)
+    cost = {(r["kernel"], r["name"]): float(r["instructions"]) for r in rows}
+    ours = {k: v for (k, n), v in cost.items() if n.startswith("exhand") and n != "exhand-cheap"}
+    times = {k: ["%.1f" % (v / ours[k]) for (j, n), v in cost.items()
+                 if j == k and n.startswith("plain")] for k in ours}
+    print("note: %splain double and float cost so many times ours: %s." % (where, "; ".join(
+        "%s %s" % (k, " and ".join(v)) for k, v in times.items() if v)))
+    print("note: %sabove fc/fs = %s the 22 low-passes take %.0f instructions. All integer kernels "
+          "of a tick in one (22 low-passes, fingertips, distances, laws of five fingers): %.0f."
+          % (where, STEEP, cost["filter_high", "exhand"], cost["tick", "exhand"]))
 
 
 SECTIONS = {
     "filter": filters,
+    "filter_range": filter_range,
     "sine": sines,
     "law": lambda: kernel("law", "law", "N", 1e-17, 1,
                           (("1", ", after 1 s"), ("3600", ", after 1 h"))),
@@ -186,30 +214,29 @@ SECTIONS = {
                                 (("1", ", after 1 s"), ("3600", ", after 1 h"))),
     "passivity_drift": lambda: drift("passivity_drift", "passivity", 1e-17),
     "velocity": velocity,
-    "soft": soft,
+    "cortex_m3": lambda: cortex("m3"),
+    "cortex_m4": lambda: cortex("m4"),
 }
 
 
 # Others' code: the sections that draw it, the file that says it is there, what is said if not.
 PEERS = (
-    (("filter", "sine", "law", "law_drift", "table", "hand"), "cmsisdsp-1.10.3/.complete",
-     "CMSIS-DSP, which could not be fetched"),
-    (("filter", "sine", "law", "law_drift", "table", "hand", "precontact", "passivity",
-      "passivity_drift"),
+    ("filter filter_range sine law law_drift table hand cortex_m3 cortex_m4",
+     "cmsisdsp-1.10.3/.complete", "CMSIS-DSP, which could not be fetched"),
+    ("filter filter_range sine law law_drift table hand precontact passivity passivity_drift",
      "libfixmath-20220222/.complete", "libfixmath, which could not be fetched"),
-    (("filter", "sine"), "rust/release/libpeers.a", "idsp, which could not be built"),
-    (("filter", "sine"), None, "fpm (C++), which no package registry in use here offers"),
+    ("sine", "rust/release/libpeers.a", "idsp's sine, which could not be built"),
 )
 
 
 def main():
     os.makedirs(OUT, exist_ok=True)
-    SECTIONS[sys.argv[1]]()
-    for sections, there, name in PEERS:
-        if (sys.argv[1] in sections and
-            not (there and
-                 os.path.exists(os.path.join(os.environ.get("B", "build"), "peers", there)))):
-            print("skipped: %s; of its points those measured once elsewhere stand, if any" % name)
+    for name in sys.argv[1:]:
+        SECTIONS[name]()
+        for sections, there, what in PEERS:
+            if name in sections.split() and not os.path.exists(
+                    os.path.join(os.environ.get("B", "build"), "peers", there)):
+                print("skipped: " + what)
     return 0
 
 

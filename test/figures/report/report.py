@@ -37,6 +37,10 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.normpath(os.path.join(HERE, "..", "..", ".."))
 TABLE_LINES = 40
 MISSING = 3
+VERDICT = ("**Take exhand where the CPU has no FPU for double, where a log of one machine must "
+           "replay to the bit on another, or where sums may never drift; take plain double where "
+           "there is such an FPU and none of these is asked for: it is more exact there and, but "
+           "for sines and fingertips, cheaper.**")
 
 
 class Section:
@@ -45,8 +49,11 @@ class Section:
     def __init__(self, row):
         self.name, self.make, self.command, seconds, self.title, self.says = row
         self.seconds = float(seconds)
-        self.state, self.why, self.took_s = "not run", "", 0.0
+        self.state, self.why, self.took_s, self.cpu_s = "not run", "", 0.0, None
         self.lines = []  # of its command's output
+
+    def fail(self, why):
+        self.state, self.why = "failed", why
 
     def said(self, what):
         return [line[len(what):].strip() for line in self.lines if line.startswith(what)]
@@ -66,15 +73,18 @@ def read_sections(path):
 
 
 def run(command, env, limit_s):
-    """Its exit status and all it said."""
-    p = subprocess.Popen(command, shell=True, cwd=ROOT, env=env, text=True, errors="replace",
+    """Its exit status, all it said, and the seconds of CPU that it took (None: not known)."""
+    timed = "(%s\n); s=$?; times; exit $s" % command
+    p = subprocess.Popen(timed, shell=True, cwd=ROOT, env=env, text=True, errors="replace",
                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)
     try:
         text = p.communicate(timeout=limit_s)[0]
-        return p.returncode, text
     except subprocess.TimeoutExpired:
         os.killpg(p.pid, 15)
-        return 1, p.communicate()[0] + "\nstopped: longer than %d s" % limit_s
+        return 1, p.communicate()[0] + "\nstopped: longer than %d s" % limit_s, None
+    said, cpu = re.match(r"(.*?)((?:\d+m[\d.]+s ?\n?){4})?$", text, re.S).groups()
+    took = re.findall(r"(\d+)m([\d.]+)s", cpu or "")
+    return p.returncode, said, sum(60 * int(m) + float(x) for m, x in took) if cpu else None
 
 
 class Report:
@@ -89,6 +99,7 @@ class Report:
         self.env.pop("MFLAGS", None)
         self.gnuplot = shutil.which("gnuplot")
         self.began = time.time()
+        self.made = []  # what make built, and its seconds of CPU
         os.makedirs(self.out, exist_ok=True)
 
     def say(self, text):
@@ -101,27 +112,34 @@ class Report:
         for s in self.sections:
             if s.make != "-" and s.make not in done:
                 self.say("make " + s.make)
-                status, text = run("make --no-print-directory -s B='%s' %s" %
-                                   (self.args.build, s.make), self.env, 900)
+                status, text, cpu = run("make --no-print-directory -s B='%s' %s" %
+                                        (self.args.build, s.make), self.env, 1800)
                 done[s.make] = made(s.make, status, text)
+                self.made.append((s.make, cpu))
                 if status:
                     sys.stdout.write(text)
             if s.make in done and done[s.make][0] != "ok":
                 s.state, s.why = done[s.make]
 
     def measure(self, sections):
-        """One command, for all sections that have it."""
+        """One command, for all sections that have it. Whatever goes wrong is theirs alone."""
         first, begin = sections[0], time.time()
         self.say("%s: %s (%.0f s)" %
                  (", ".join(s.name for s in sections), first.command, first.seconds))
-        status, text = run(first.command, self.env, 4 * first.seconds + 120)
-        with open(os.path.join(self.out, first.name + ".log"), "w", encoding="utf-8") as f:
-            f.write(text)
+        try:
+            status, text, cpu = run(first.command, self.env, 4 * first.seconds + 120)
+        except OSError as e:
+            status, text, cpu = 1, str(e), None
         for s in sections:
-            s.lines, s.took_s = text.splitlines(), time.time() - begin
+            s.lines, s.took_s, s.cpu_s = text.splitlines(), time.time() - begin, cpu
             s.state = "ok" if status == 0 else "skipped" if status == MISSING else "failed"
             s.why = "" if status == 0 else last_line(text)
-            self.draw(s)
+            try:
+                with open(os.path.join(self.out, s.name + ".log"), "w", encoding="utf-8") as f:
+                    f.write(text)
+                self.draw(s)
+            except OSError as e:
+                s.fail(str(e))
             self.say("%s: %s%s" % (s.name, s.state, ": " + s.why if s.why else ""))
 
     def draw(self, s):
@@ -138,20 +156,30 @@ class Report:
                            stderr=subprocess.STDOUT, check=False)
         s.lines += p.stdout.splitlines()
         if p.returncode or not os.path.exists(os.path.join(self.out, s.name + ".png")):
-            s.state, s.why = "failed", "gnuplot: " + last_line(p.stdout)
+            s.fail("gnuplot: " + last_line(p.stdout))
 
-    def run_all(self):
-        self.build()
+    def commands(self):
+        """The sections by command, the longest first; of each no old file is left."""
         by_command = {}
         for s in self.sections:
-            if s.state == "not run":
-                for kind in ("png", "md", "csv"):
-                    path = os.path.join(self.out, "%s.%s" % (s.name, kind))
-                    if os.path.exists(path):
-                        os.remove(path)
-                by_command.setdefault(s.command, []).append(s)
+            for kind in ("png", "md", "csv"):
+                path = os.path.join(self.out, "%s.%s" % (s.name, kind))
+                if os.path.isfile(path):
+                    os.remove(path)
+            by_command.setdefault(s.command, []).append(s)
+        return sorted(by_command.values(), key=lambda some: -some[0].seconds)
+
+    def run_all(self):
+        """What needs nothing made runs beside the making, the longest first."""
         with ThreadPoolExecutor(self.args.jobs) as pool:
-            list(pool.map(self.measure, by_command.values()))
+            commands = self.commands()
+            running = [pool.submit(self.measure, c) for c in commands if c[0].make == "-"]
+            self.build()
+            for c in commands:
+                made = [s for s in c if s.state == "not run"] if c[0].make != "-" else []
+                running += [pool.submit(self.measure, made)] if made else []
+            for r in running:
+                r.result()
 
     # --- the page ---
 
@@ -181,16 +209,29 @@ class Report:
         text += (["Without %s.\n" % w for w in s.said("skipped:")] +
                  [n + "\n" for n in s.said("note:")])
         made = "make %s, then " % s.make if s.make != "-" else ""
-        text.append("Command: %s`%s` (%.0f s)\n" % (made, s.command, s.took_s))
+        text.append("Command: %s`%s` (%.0f s%s)\n" % (
+            made, s.command, s.took_s, "" if s.cpu_s is None else ", %.0f of CPU" % s.cpu_s))
         return "\n".join(text + [self.table(s) + "\n"])
 
+    def cpu_s(self):
+        """Of all that ran, each command once."""
+        of = {s.command: s.cpu_s for s in self.sections}
+        return sum(cpu or 0 for cpu in list(of.values()) + [cpu for _, cpu in self.made])
+
     def write(self):
-        head = "# exhand: the report\n\n%s\n\n" % "; ".join(machine(self.args))
-        with open(os.path.join(self.out, "REPORT.md"), "w", encoding="utf-8") as f:
-            page = head + "\n".join(self.part(s) for s in self.sections)
-            f.write(page)
-        with open(os.path.join(self.out, "REPORT.html"), "w", encoding="utf-8") as f:
-            f.write(page_of(page))
+        """The page: a part that cannot be written is a failure of its section."""
+        parts = []
+        for s in self.sections:
+            try:
+                parts.append(self.part(s))
+            except (OSError, ValueError, csv.Error) as e:
+                s.fail(str(e))
+                parts.append(self.part(s))
+        page = "# exhand: the report\n\n%s\n\n%s; %.0f s of CPU\n\n%s" % (
+            VERDICT, "; ".join(machine(self.args)), self.cpu_s(), "\n".join(parts))
+        for name, text in (("REPORT.md", page), ("REPORT.html", page_of(page))):
+            with open(os.path.join(self.out, name), "w", encoding="utf-8") as f:
+                f.write(text)
 
 
 def made(target, status, text):
@@ -283,11 +324,15 @@ def main():
         return 2
     r = Report(args, [s for s in sections if not only or s.name in only])
     r.run_all()
-    r.write()
+    try:
+        r.write()
+    except OSError as e:
+        print("report: the page: %s" % e, file=sys.stderr)
+        return 1
     bad = [s.name for s in r.sections if s.state == "failed"]
-    r.say("%s; %d sections%s%s" %
-          (os.path.join(os.path.relpath(r.out, ROOT), "REPORT.md"), len(r.sections), "".join(
-              ", skipped: " + s.name for s in r.sections if s.state == "skipped"),
+    r.say("%s; %d sections, %.0f s of CPU%s%s" %
+          (os.path.join(os.path.relpath(r.out, ROOT), "REPORT.md"), len(r.sections), r.cpu_s(),
+           "".join(", skipped: " + s.name for s in r.sections if s.state == "skipped"),
            ", FAILED: " + ", ".join(bad) if bad else ""))
     return 1 if bad else 0
 

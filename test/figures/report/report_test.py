@@ -4,6 +4,7 @@
 share a run; pages and statuses? Exit status: 0 ok, 1 not."""
 
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -19,6 +20,9 @@ twin\t-\techo once >> "$OUT/runs"; printf 'a,b\\n1,2\\n' > "$OUT/good.csv"; \
 echo "skipped: some peer"; echo "note: a < b"\t1\tTwin\tThe same run.
 lacks\t-\techo "no such tool" >&2; exit 3\t1\tLacks\tNever.
 bad\t-\techo broken; exit 1\t1\tBad\tNever.
+busy\t-\techo said; i=0; while [ $i -lt 300000 ]; do i=$((i + 1)); done\t1\tBusy\tCounts.
+drawn\t-\tmkdir "$OUT/drawn.log"\t1\tDrawn\tIts log cannot be written.
+spoilt\t-\tmkdir "$OUT/spoilt.csv"\t1\tSpoilt\tIts table cannot be read.
 unmade\tno-such-target-of-ours\ttrue\t1\tUnmade\tNever.
 """
 wrong = []
@@ -38,16 +42,20 @@ def run(out, *args):
     return p.returncode, p.stdout
 
 
-def page(out):
-    with open(os.path.join(out, "REPORT.md"), encoding="utf-8") as f:
+def read(out, name):
+    with open(os.path.join(out, name), encoding="utf-8") as f:
         return f.read()
+
+
+def page(out):
+    return read(out, "REPORT.md")
 
 
 def sections():
     with tempfile.TemporaryDirectory() as out:
         with open(os.path.join(out, "s.tsv"), "w", encoding="utf-8") as f:
             f.write(SECTIONS)
-        expect("listed", run(out, "--list")[1].count("\n"), 5)
+        expect("listed", run(out, "--list")[1].count("\n"), 8)
         expect("unknown section", run(out, "--only", "nope")[0], 2)
         expect("jobs", run(out, "--jobs", "0")[0], 2)
         status, said = run(out, "--only", "good,twin,lacks")
@@ -65,6 +73,15 @@ def sections():
         status, said = run(out, "--only", "good,bad")
         expect("a failure", (status, "FAILED: bad" in said), (1, True))
         expect("why", "**failed**: broken" in page(out), True)
+        expect("the sentence on top", page(out).splitlines()[2].startswith("**Take exhand"), True)
+        status, said = run(out, "--only", "drawn,spoilt,good")
+        expect("failures of files", (status, "FAILED: drawn, spoilt" in said), (1, True))
+        expect("what is left of the page", ("Fine." in page(out), page(out).count("**failed**")),
+               (True, 2))
+        status, said = run(out, "--only", "busy")
+        took = re.search(r"(\d+) s of CPU", said)
+        expect("seconds of CPU", (status, int(took[1]) in range(61) if took else None), (0, True))
+        expect("what a command said", read(out, "busy.log"), "said\n")
         status, said = run(out, "--only", "unmade")
         expect("what cannot be made", (status, "FAILED: unmade" in said), (1, True))
 
@@ -80,7 +97,8 @@ def diagrams():
     expect("ours is off it", work.on_front(p), {"p": False})
     for k, q in enumerate(p):
         q.label = str(k)
-    at = work.place(p, (0.5, 40), (1e-10, 10), 400, 400, 18)
+    at = [near for near, _ in work.place(p, (0.5, 40), (1e-10, 10), 400, 400, 18)]
+    expect("one point is no front", work.stairs(p[:1], (1, 100), (1e-9, 1)), [])
     expect("labels are inside", all(0 <= x <= 1 and 0 <= y <= 1 for x, y in at), True)
     near = [(a, b) for i, a in enumerate(at) for b in at[:i] if abs(a[0] - b[0]) * 400 < 8 and
             abs(a[1] - b[1]) * 400 < 10]

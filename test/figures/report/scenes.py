@@ -11,8 +11,7 @@ import work
 
 BENCH = os.path.join(os.environ.get("B", "build"), "bench")
 OUT = os.environ.get("OUT", "build/report")
-NAMES = {"fixed": "exhand, the whole scene", "double": "its computing in plain double",
-         "float": "its computing in plain float"}
+NAMES = {"fixed": "exhand", "double": "plain double", "float": "plain float"}
 FLOOR = {"N": 1e-17, "m": 1e-18, "rad": 1e-17, "J": 1e-20}
 
 
@@ -63,19 +62,16 @@ def ticks():
     costs = rows_of("scenes_cost.csv")
     errors = {(r["scene"], r["quantity"], r["way"]): r for r in rows_of("scenes.csv")
               if r["rate_hz"] == "2000"}
-    points, labels = [], []
-    for cost, cpu in (("x64", "x86-64"), ("i686", "i686")):
-        for scene, quantity in (("minimal", "force"), ("drop", "force"), ("guarded", "force"),
-                                ("glove", "fingertips"), ("bilateral", "force")):
-            mine = [r for r in costs if r["scene"] == scene and r[cost] != "-"]
-            for r in mine:
-                e = errors[scene, quantity, r["way"]]
-                points.append(work.Point("%s, %s: %s (%s)" % (cpu, scene, quantity, e["unit"]),
-                                         NAMES[r["way"]], "ours" if r["way"] == "fixed"
-                                         else "float", r[cost], e["max"]))
-            labels += ["instructions of a tick"] if mine else []
+    points = []
+    for scene, quantity in (("minimal", "force"), ("drop", "force"), ("guarded", "force"),
+                            ("glove", "fingertips"), ("bilateral", "force")):
+        for r in (r for r in costs if r["scene"] == scene and r["x64"] != "-"):
+            e = errors[scene, quantity, r["way"]]
+            points.append(work.Point("%s: %s (peak, %s)" % (scene, quantity, e["unit"]),
+                                     NAMES[r["way"]], "ours" if r["way"] == "fixed" else "float",
+                                     r["x64"], e["max"]))
     save("scene_ticks", costs)
-    work.draw(OUT, "scene_ticks", points, 1e-20, labels, "largest error", 5, False)
+    work.draw(OUT, "scene_ticks", points, 1e-20, "instructions of a tick", "error", 3, False)
     goals()
 
 

@@ -102,11 +102,14 @@ class Drive:
     def current(self):
         """(limits, table, peak, i2t)"""
         i0 = self.to_cur.at(self.force)
-        i1 = min(i0, self.peak)
         left = max(0, self.budget - self.heat) >> self.sh
-        i2 = min(i1, self.cont + min(self.peak - self.cont, times(self.fold, left)))
+        hot = self.cont + min(self.peak - self.cont, times(self.fold, left))
+        whole = min(hot, (hot * self.dac >> 42) * self.amp[0] >> self.amp[1])
+        i1 = min(i0, whole if hot == self.peak else self.peak)
+        i2 = min(i1, whole)
+        coded = sat32(times(self.amp, shr(i2 * self.dac, 42)))
         limits = (PEAK if i1 != i0 else 0) | (I2T if i2 != i1 else 0)
-        self.heat = max(0, self.heat + (i2 >> 10) ** 2 - self.cont2)
+        self.heat = max(0, self.heat + (coded >> 10) ** 2 - self.cont2)
         return limits, i0, i1 - i0, i2 - i1
 
     def monitor(self, raw):

@@ -4,7 +4,7 @@
 from struct import Struct
 
 from .num import (AGAIN, CUTOFF, MAX32, MIN32, RANGE, TICKS, Refused, Rng, clamp, period, sat32,
-                  shr, wave)
+                  shr, wave, wrap64)
 
 P = 256  # fraction bits of what the document calls real numbers
 ONE = 1 << P
@@ -57,7 +57,7 @@ LOW2, LOW1, HIGH2, HIGH1 = range(4)
 
 
 class Config:
-    """Kind, shift and a, b, c, d; 0 what its kind has not."""
+    """Kind, shift and a, b, c; 0 what its kind has not."""
 
     def __init__(self, order, fc, T):
         num, den = T
@@ -71,7 +71,7 @@ class Config:
         k = g * (g + SQRT2) >> P
         high = (2 * (g << 32) + ONE) // (2 * ONE) > 11 << 27
         self.kind = (HIGH2 if high else LOW2) if order == 2 else (HIGH1 if high else LOW1)
-        self.a = self.b = self.c = self.d = self.shift = 0
+        self.a = self.b = self.c = self.shift = 0
         if self.kind == LOW2:
             self.c = rounded(23 * g << 31, 16 * ONE)
             alpha = (g * g << 31) // ((ONE + k) * self.c)
@@ -87,15 +87,13 @@ class Config:
                 n += 1
             self.a, self.shift = rounded(scaled(gamma, n)), n - 31
         elif self.kind == HIGH2:
-            self.a = rounded(ONE << 31, ONE + k)
-            self.b = rounded(16 * g << 31, 23 * (ONE + k))
-            self.c = rounded(23 * g << 31, 16 * (ONE + k))
-            self.d = rounded((g * g >> P) << 31, ONE + k)
+            self.a = rounded((g * g >> P) << 31, ONE + k)
+            self.b = rounded(ONE << 31, ONE + k)
         else:
             self.a = rounded(g << 31, ONE + g)
 
     def row(self):
-        return self.kind, self.a, self.b, self.c, self.d, self.shift
+        return self.kind, self.a, self.b, self.c, self.shift
 
 
 class Channel:
@@ -119,26 +117,24 @@ class Channel:
             self.pos = l + m
             return sat32(l >> 31)
         if not self.wide:
-            pos, vel, self.wide = pos >> 5, vel >> 32 << 26, 1
-        pos, vel = clamp(pos, -(1 << 62), 1 << 62), clamp(vel, -(1 << 62), 1 << 62)
-        e = (x << 26) + (1 << 25) - pos
+            self.pos, self.wide = pos >> 9, 1
+        pos = self.pos
+        e = wrap64((x << 22) + (1 << 21) - pos)
+        move = 4 * (e * f.a + (self.vel * f.b if f.kind == HIGH2 else 0) >> 32)
+        self.pos = wrap64(pos + move)
         if f.kind == HIGH2:
-            h = shr(vel * f.a, 31) + shr(e * f.b, 31)
-            m = shr(vel * f.c, 31) + shr(e * f.d, 31)
-            vel = 2 * h - vel
-        else:
-            m = shr(e * f.a, 31)
-        l = pos + m
-        self.pos, self.vel = l + m, vel
-        return sat32(l >> 26)
+            self.vel = wrap64(move - self.vel)
+        twice = wrap64(pos + self.pos)
+        y = sat32(twice >> 23)
+        if abs(twice) > 1 << 56:
+            self.__init__(y)
+        return y
 
     def retune(self, before, f):
-        if before.kind & 1 != f.kind & 1:
+        if before.kind != f.kind or f.kind & 1 or (f.kind == HIGH2 and f.a < before.a):
             self.vel = 0
         if f.kind in (LOW2, LOW1) and self.wide:
-            self.pos = clamp(self.pos, -(1 << 57), 1 << 57) << 5
-            self.vel = clamp(self.vel, -(1 << 56), 1 << 56) << 6
-            self.wide = 0
+            self.pos, self.wide = clamp(self.pos, -(1 << 53), 1 << 53) << 9, 0
 
     def state(self):
         return self.pack(self.pos, self.vel, self.wide)
@@ -176,7 +172,7 @@ def filter_(rate):
                b"".join(c.state() for c in s))
 
 
-FILTER = "x0 x1 x2 | err kind a b c d shift y0 y1 y2"
+FILTER = "x0 x1 x2 | err kind a b c shift y0 y1 y2"
 
 
 class Quantizer:

@@ -135,6 +135,7 @@ class Safety:
         out, enable = [], 0
         for i, (par, cur, told) in enumerate(zip(pars, currents, limits)):
             zero, span, scale = par[6:9]
+            span = min(span, par[3] * scale >> 42)
             code = zero
             if self.open():
                 enable |= 1 << i

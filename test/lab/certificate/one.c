@@ -72,7 +72,7 @@ static int tell(struct one *r, const struct one_opt *o, const struct sim_device 
     err = err || !r->fits || identify_resample(&e, &data, 1);
     if (!err) {
         const struct model truth = model_of(d, data.T_s);
-        result_take(file, &e.fit, data.T_s, data.mass_kg);
+        result_take(file, &e, data.T_s, data.mass_kg);
         keep(r, &truth, file);
     }
     identify_data_free(&data);
@@ -209,6 +209,7 @@ void one_run(struct one *r, const struct one_opt *o, int i)
         file.rate_Hz = (double)o->rate_Hz;
         file.value = file.low = file.high = model_of(&d, 1 / file.rate_Hz);
         file.mu_low = file.mu_high = model_mu(&file.value);
+        file.monitor_lag_s = d.mon_lag_s;
         advise(r, o, &d, &file, seed);
     } else if (tell(r, o, &d, seed, &file) == 0 && o->grid > 0) {
         advise(r, o, &d, &file, seed);

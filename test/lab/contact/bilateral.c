@@ -43,6 +43,11 @@ static int refuse(struct bilateral_options *o, double rate_Hz)
                      "time");
         return 2;
     }
+    if (err == 0 && is.networks && (!is.contacts || !*is.networks)) {
+        cli_complain(
+            "--networks: %s: give --contacts SEEDS and one recorded network at least", is.networks);
+        return 2;
+    }
     return err;
 }
 

@@ -268,6 +268,8 @@ static int take_links(const struct bilateral_options *o, const char *networks)
 {
     static char names[LINKS_MAX][300];
     if (strcmp(o->link, "none") != 0) { /* this one alone */
+        if (networks) { cli_complain("--networks: %s: not beside --link %s", networks, o->link); }
+        if (networks) { return 2; }
         is.o[0] = *o;
         is.name[0] = o->link;
         is.links = 1;
@@ -279,10 +281,16 @@ static int take_links(const struct bilateral_options *o, const char *networks)
         if (bilateral_take_link(&is.o[l], link[l].spec)) { return 2; }
     }
     is.links = LINKS;
-    while (networks && *networks && is.links < LINKS_MAX) {
+    while (networks && *networks) {
         const char *comma = strchr(networks, ','), *slash;
         const int len = comma ? (int)(comma - networks) : (int)strlen(networks);
-        char *name = names[is.links];
+        char *name;
+        if (is.links == LINKS_MAX) {
+            cli_complain("--networks: %s: only %d beside the %d known links", networks,
+                LINKS_MAX - LINKS, LINKS);
+            return 2;
+        }
+        name = names[is.links];
         snprintf(name, sizeof names[0], "trace=%.*s", len, networks);
         is.o[is.links] = *o;
         if (bilateral_take_link(&is.o[is.links], name)) { return 2; }

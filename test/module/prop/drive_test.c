@@ -227,6 +227,23 @@ TEST(force_above_a_lowered_limit_comes_down)
     }
 }
 
+/* The largest whole number of D/A codes within a limit, as a current. */
+static int32_t whole(const struct axis *a, int32_t limit_A_q26)
+{
+    const struct wide codes =
+        wide_shr_floor(wide_mul(limit_A_q26, a->par.dac_rawpA_q16), EXH_Q_CUR + EXH_Q_DAC);
+    const int64_t cur = exh_gain_floor(a->cfg.dac_A_q26, wide_sat32(codes));
+    return cur < limit_A_q26 ? (int32_t)cur : limit_A_q26;
+}
+
+/* The current that the gate codes for one that is asked. */
+static int64_t coded(const struct axis *a, int64_t cur_A_q26)
+{
+    const struct wide code =
+        wide_shr_half_up(wide_mul(cur_A_q26, a->par.dac_rawpA_q16), EXH_Q_CUR + EXH_Q_DAC);
+    return exh_gain_mul(a->cfg.dac_A_q26, wide_sat32(code));
+}
+
 /* What is allowed by I2t: all of the peak below 3/4 of the budget, never more than
  * the peak, never less than continuous, and falling as the heat rises. */
 TEST(current_ledger_sums_and_limits_hold)
@@ -237,6 +254,7 @@ TEST(current_ledger_sums_and_limits_hold)
         struct exh_force_ledger f = {0};
         struct exh_current_ledger i = {7, 7, 7, 7, 7, 7}, hotter;
         int64_t sum, heat, peaked;
+        int32_t top;
         uint32_t bits;
         if (!any_axis(&a)) { continue; }
         s.force_N_q20 = 0;
@@ -246,9 +264,16 @@ TEST(current_ledger_sums_and_limits_hold)
         sum = i.table_A_q26 + i.peak_A_q26 + i.i2t_A_q26;
         peaked = i.table_A_q26 + i.peak_A_q26;
         CHECK(on_table(a.knot, 4, f.force_N_q20, (int32_t)i.table_A_q26), "table");
-        CHECK(peaked == exh_clamp(i.table_A_q26, -a.par.i_peak_A_q26, a.par.i_peak_A_q26), "peak");
-        CHECK(sum >= -a.par.i_peak_A_q26 && sum <= a.par.i_peak_A_q26, "beyond the peak");
-        CHECK(i.i2t_A_q26 == 0 || sum >= a.par.i_cont_A_q26 || sum <= -a.par.i_cont_A_q26,
+        top = whole(&a, a.par.i_peak_A_q26);
+        CHECK(peaked == exh_clamp(i.table_A_q26, -top, top) ||
+                  (i.i2t_A_q26 != 0 &&
+                      peaked == exh_clamp(i.table_A_q26, -a.par.i_peak_A_q26, a.par.i_peak_A_q26)),
+            "peak");
+        CHECK(sum >= -top && sum <= top, "beyond the peak");
+        CHECK(coded(&a, sum) <= a.par.i_peak_A_q26 && coded(&a, sum) >= -a.par.i_peak_A_q26,
+            "coded beyond the peak: %" PRId64, coded(&a, sum));
+        CHECK(i.i2t_A_q26 == 0 || sum >= whole(&a, a.par.i_cont_A_q26) ||
+                  sum <= -whole(&a, a.par.i_cont_A_q26),
             "below continuous: %" PRId64, sum);
         CHECK((sum ^ peaked) >= 0 || sum == 0, "I2t turned the sign");
         CHECK(i.i2t_A_q26 == 0 || heat >= a.cfg.i2t_budget_q32 / 4 * 3,
@@ -283,7 +308,7 @@ TEST(heat_is_what_was_spent)
         s.i2t_q32 = a.cfg.i2t_budget_q32 / 2;
         f.force_N_q20 = check_i32();
         (void)exh_drive_current_step(&s, &a.cfg, &f, &i);
-        spent = i.table_A_q26 + i.peak_A_q26 + i.i2t_A_q26;
+        spent = coded(&a, i.table_A_q26 + i.peak_A_q26 + i.i2t_A_q26);
         cont2 = wide_mul(a.par.i_cont_A_q26, a.par.i_cont_A_q26);
         spent = wide_sat64(wide_shr_floor(wide_sub(wide_mul(spent, spent), cont2), 20));
         gained = s.i2t_q32 - a.cfg.i2t_budget_q32 / 2;

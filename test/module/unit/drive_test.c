@@ -356,6 +356,12 @@ static int64_t allowed_A_q26(const struct exh_current_ledger *i)
     return i->table_A_q26 + i->peak_A_q26 + i->i2t_A_q26;
 }
 
+/* What so many D/A codes stand for, as the set-up has them. */
+static int64_t whole(const struct axis *a, int32_t codes)
+{
+    return exh_gain_floor(a->cfg.dac_A_q26, codes);
+}
+
 TEST(peak_limit)
 {
     struct axis a;
@@ -364,10 +370,11 @@ TEST(peak_limit)
     CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
     CHECK_EQ_I64(current(&a, EXH_Q(80, 1, EXH_Q_FORCE), &i), EXH_LIMIT_PEAK);
     CHECK_EQ_I64(i.table_A_q26, EXH_Q(8, 1, EXH_Q_CUR));
-    CHECK_EQ_I64(i.peak_A_q26, EXH_Q(66, 10, EXH_Q_CUR) - EXH_Q(8, 1, EXH_Q_CUR));
+    /* 6.6 A are 12183.7 codes, and 12183 are what there is. */
+    CHECK_EQ_I64(i.peak_A_q26, whole(&a, 12183) - EXH_Q(8, 1, EXH_Q_CUR));
     CHECK(i.i2t_A_q26 == 0 && i.gate_A_q26 == 0 && i.dac_A_q26 == 0, "rest of the ledger");
     CHECK_EQ_I64(i.coded_A_q26, 0);
-    CHECK_EQ_I64(current(&a, EXH_Q(66, 1, EXH_Q_FORCE) - 1, &i), 0);
+    CHECK_EQ_I64(current(&a, EXH_Q(65995, 1000, EXH_Q_FORCE), &i), 0);
 }
 
 /* 6.6 A: untouched for at least 3/4 of 2.7 s and for less than 2.7 s; then down to
@@ -375,22 +382,26 @@ TEST(peak_limit)
 TEST(i2t_holds_folds_back_and_recovers)
 {
     static const uint32_t rate[] = {10, 90, 100, 200, 500, 1000, 2000, 20000};
-    const int32_t peak = EXH_Q(66, 10, EXH_Q_CUR), cont = EXH_Q(33, 10, EXH_Q_CUR);
     for (size_t r = 0; r < LEN(rate); r++) {
         const int64_t hz = rate[r];
-        const int64_t step_max = 4 * (int64_t)(peak - cont) * 10 / (27 * hz) + 1024;
         struct axis a;
         struct exh_current_ledger i;
-        int64_t held = 0, before = peak;
+        int64_t held = 0, before, peak, cont, step_max;
         axis_par(&a.par);
         CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, rate[r]}), 0);
+        before = peak = whole(&a, 12183);
+        cont = whole(&a, 6091);
+        step_max = 4 * (peak - cont) * 10 / (27 * hz) + whole(&a, 1) + 1024;
         for (int64_t k = 0; k < 12 * hz; k++) {
             const uint32_t limits = current(&a, EXH_Q(80, 1, EXH_Q_FORCE), &i);
             const int64_t now = allowed_A_q26(&i);
             held += now == peak;
-            CHECK(now <= before, "%" PRId64 " Hz tick %" PRId64 ": rises under load", hz, k);
+            CHECK(now <= before + whole(&a, 1) + 1,
+                "%" PRId64 " Hz tick %" PRId64 ": rises under load", hz, k);
             CHECK(before - now <= step_max, "%" PRId64 " Hz tick %" PRId64 ": step", hz, k);
-            CHECK(((limits & EXH_LIMIT_I2T) != 0) == (now != peak), "limit bit");
+            CHECK((limits & EXH_LIMIT_I2T) != 0 || now == peak, "limit bit");
+            CHECK((limits & EXH_LIMIT_I2T) == 0 || a.s.i2t_q32 * 4 > 3 * a.cfg.i2t_budget_q32,
+                "limit bit while cold");
             CHECK(now >= cont, "below continuous: %" PRId64, now);
             before = now;
         }
@@ -411,9 +422,39 @@ TEST(continuous_current_is_for_ever)
     axis_par(&a.par);
     CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 1000}), 0);
     for (int k = 0; k < 60000; k++) {
-        CHECK(current(&a, EXH_Q(33, 1, EXH_Q_FORCE), &i) == 0, "limited at tick %d", k);
+        CHECK(current(&a, EXH_Q(32995, 1000, EXH_Q_FORCE), &i) == 0, "limited at tick %d", k);
     }
     CHECK_EQ_I64(a.s.i2t_q32, 0);
+}
+
+/* Four codes an ampere: what is coded is within both limits, and its mean square within i_cont. */
+TEST(coarse_codes_stay_within_the_limits)
+{
+    static const int32_t cont_dA[] = {12, 33, 1}, peak_dA[] = {12, 66, 66};
+    static const int32_t force_dN[] = {800, 329, 121, 13};
+    for (size_t c = 0; c < LEN(cont_dA); c++) {
+        for (size_t f = 0; f < LEN(force_dN); f++) {
+            struct axis a;
+            struct exh_current_ledger i;
+            int64_t square_q20 = 0, cont_q10 = cont_dA[c] * 1024 / 10;
+            axis_par(&a.par);
+            a.par.dac_rawpA_q16 = EXH_Q(4, 1, EXH_Q_DAC);
+            a.par.i_cont_A_q26 = EXH_Q(cont_dA[c], 10, EXH_Q_CUR);
+            a.par.i_peak_A_q26 = EXH_Q(peak_dA[c], 10, EXH_Q_CUR);
+            CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 100}), 0);
+            for (int k = 0; k < 30000; k++) {
+                int64_t code;
+                (void)current(&a, EXH_Q(force_dN[f], 10, EXH_Q_FORCE), &i);
+                code = (allowed_A_q26(&i) * 4 + (1 << 25)) >> 26;
+                CHECK(code * 10 <= 4 * peak_dA[c], "%d dA, %d dN: code %d", peak_dA[c], force_dN[f],
+                    (int)code);
+                square_q20 += k >= 20000 ? code * code << 16 : 0; /* the peak is over by then */
+            }
+            CHECK(square_q20 / 10000 <= cont_q10 * cont_q10 + (1 << 16),
+                "%d dA, %d dN: mean square %d q20", cont_dA[c], force_dN[f],
+                (int)(square_q20 / 10000));
+        }
+    }
 }
 
 /* Bursts that spend no more than 3/4 of the budget leave the peak untouched; the
@@ -587,6 +628,6 @@ TEST_MAIN("unit/drive", setup_rejections, setup_refuses_tables_that_pull_at_no_f
     setup_takes_every_documented_period, force_limit_and_pull_only, release_is_bounded_and_ends,
     release_begins_anew, ramp_limits_the_force, small_force_is_told, slew_both_ways,
     hostile_bytes_come_into_range, slowest_slew_still_moves, peak_limit,
-    i2t_holds_folds_back_and_recovers, continuous_current_is_for_ever, bursts_add_up,
-    peak_equal_to_continuous, monitor_by_hand, frames_round_trip, state_round_trip,
-    no_peak_no_budget, the_greatest_budget);
+    i2t_holds_folds_back_and_recovers, continuous_current_is_for_ever,
+    coarse_codes_stay_within_the_limits, bursts_add_up, peak_equal_to_continuous, monitor_by_hand,
+    frames_round_trip, state_round_trip, no_peak_no_budget, the_greatest_budget);

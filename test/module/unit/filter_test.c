@@ -91,41 +91,40 @@ TEST(coefficients_by_hand)
         struct exh_period T;
         struct exh_filter_cfg want;
     } row[] = {
-        {{2, 65536}, {1, 10}, {620285858, 1550717162, 1003029618, 0, 0, 0}},
-        {{2, 65536}, {1, 100}, {718520852, 1493163400, 97013127, 0, 3, 0}},
-        {{2, 65536}, {1, 1000}, {598072389, 1218541453, 9698153, 0, 6, 0}},
-        {{2, 65536}, {1, 10000}, {960746812, 1953566575, 969812, 0, 10, 0}},
-        {{2, 655}, {1, 20000}, {614862168, 1249872031, 4846, 0, 17, 0}},
-        {{1, 655}, {1, 20000}, {883792582, 0, 0, 0, 18, 1}},
-        {{2, 327680}, {1, 2000}, {742637699, 1518116586, 24245801, 0, 5, 0}},
-        {{2, 1310720}, {597, 1193182}, {718991869, 1494164500, 97079679, 0, 3, 0}},
-        {{1, 1310720}, {1, 1000}, {1016888549, 0, 0, 0, 3, 1}},
-        {{1, 65536}, {1, 4}, {1073741824, 0, 0, 0, 0, 3}},
-        {{2, 65536}, {1, 4}, {628983398, 437553668, 904163635, 628983398, 0, 2}},
-        {{2, 2949120}, {1, 100}, {43128699, 189428793, 391436841, 1719259095, 0, 2}},
-        {{2, 7470900}, {1, 1000}, {1286396810, 334929803, 692101038, 180197325, 0, 2}},
-        {{2, 32767}, {1, 1}, {5, 71608, 147972, 2147338069, 0, 2}},
-        {{1, 32767}, {1, 1}, {2147380709, 0, 0, 0, 0, 3}},
-        {{1, 16384000}, {1, 20000}, {649480731, 0, 0, 0, 3, 1}},
+        {{2, 65536}, {1, 10}, {620285858, 1550717162, 1003029618, 0, 0}},
+        {{2, 65536}, {1, 100}, {718520852, 1493163400, 97013127, 3, 0}},
+        {{2, 65536}, {1, 1000}, {598072389, 1218541453, 9698153, 6, 0}},
+        {{2, 65536}, {1, 10000}, {960746812, 1953566575, 969812, 10, 0}},
+        {{2, 655}, {1, 20000}, {614862168, 1249872031, 4846, 17, 0}},
+        {{1, 655}, {1, 20000}, {883792582, 0, 0, 18, 1}},
+        {{2, 327680}, {1, 2000}, {742637699, 1518116586, 24245801, 5, 0}},
+        {{2, 1310720}, {597, 1193182}, {718991869, 1494164500, 97079679, 3, 0}},
+        {{1, 1310720}, {1, 1000}, {1016888549, 0, 0, 3, 1}},
+        {{1, 65536}, {1, 4}, {1073741824, 0, 0, 0, 3}},
+        {{2, 65536}, {1, 4}, {628983398, 628983398, 0, 0, 2}},
+        {{2, 2949120}, {1, 100}, {1719259095, 43128699, 0, 0, 2}},
+        {{2, 7470900}, {1, 1000}, {180197325, 1286396810, 0, 0, 2}},
+        {{2, 32767}, {1, 1}, {2147338069, 5, 0, 0, 2}},
+        {{1, 32767}, {1, 1}, {2147380709, 0, 0, 0, 3}},
+        {{1, 16384000}, {1, 20000}, {649480731, 0, 0, 3, 1}},
         /* A hair below half the rate g/(1 + g) is nearer to 1 than to any coefficient. */
-        {{1, (1 << 23) - 1}, {(1 << 23) + 1, UINT32_C(1) << 31}, {INT32_MAX, 0, 0, 0, 0, 3}},
-        {{2, (1 << 23) - 1}, {(1 << 23) + 1, UINT32_C(1) << 31}, {0, 0, 0, INT32_MAX, 0, 2}},
+        {{1, (1 << 23) - 1}, {(1 << 23) + 1, UINT32_C(1) << 31}, {INT32_MAX, 0, 0, 0, 3}},
+        {{2, (1 << 23) - 1}, {(1 << 23) + 1, UINT32_C(1) << 31}, {INT32_MAX, 0, 0, 0, 2}},
         /* 0.05 and 0.0002 below a power of two, which is one more than fits. */
-        {{1, 65536}, {30648, 299249}, {(1 << 30) - 1, 0, 0, 0, 1, 1}},
-        {{2, 65536}, {127646, 1976091}, {922174212, INT32_MAX, 635195518, 0, 1, 0}},
+        {{1, 65536}, {30648, 299249}, {(1 << 30) - 1, 0, 0, 1, 1}},
+        {{2, 65536}, {127646, 1976091}, {922174212, INT32_MAX, 635195518, 1, 0}},
         /* tan(pi fc T) times 2^32 is 11 * 2^27 - 0.004, + 0.1 and + 2.1. */
-        {{2, 65536}, {48190, 457249}, {640190372, 1617807560, 1061158912, 0, 0, 0}},
-        {{1, 65536}, {33759, 320321}, {549356282, 0, 0, 0, 0, 1}},
-        {{2, 65536}, {4897, 46465}, {1338579867, 320095186, 661446693, 158172036, 0, 2}},
+        {{2, 65536}, {48190, 457249}, {640190372, 1617807560, 1061158912, 0, 0}},
+        {{1, 65536}, {33759, 320321}, {549356282, 0, 0, 0, 1}},
+        {{2, 65536}, {4897, 46465}, {158172036, 1338579867, 0, 0, 2}},
     };
     for (size_t i = 0; i < LEN(row); i++) {
         const struct exh_filter_cfg *w = &row[i].want;
         struct exh_filter_cfg c;
         CHECK_EQ_I64(exh_filter_setup(&c, &row[i].par, row[i].T), 0);
-        CHECK(c.a == w->a && c.b == w->b && c.c == w->c && c.d == w->d && c.shift == w->shift &&
-                  c.kind == w->kind,
-            "row %zu: %" PRId32 " %" PRId32 " %" PRId32 " %" PRId32 " %d %d", i, c.a, c.b, c.c, c.d,
-            c.shift, c.kind);
+        CHECK(c.a == w->a && c.b == w->b && c.c == w->c && c.shift == w->shift && c.kind == w->kind,
+            "row %zu: %" PRId32 " %" PRId32 " %" PRId32 " %d %d", i, c.a, c.b, c.c, c.shift,
+            c.kind);
     }
 }
 
@@ -373,44 +372,9 @@ TEST(recovers_from_any_state)
     }
 }
 
-/* A state of a high kind may swing to 32 times full scale: up to there each has its own way. */
-TEST(a_high_state_swings_to_32_times)
-{
-    static const struct exh_filter_cfg *cfg;
-    for (int32_t order = 1; order <= 2; order++) {
-        const int64_t full = INT64_C(1) << (31 + 26);
-        struct exh_filter near = {20 * full, 0, 1}, far = {32 * full - 1, 0, 1},
-                          end = {32 * full, 0, 1}, beyond = {40 * full, 0, 1};
-        cfg = tuned(order, 400 << 16, 1000);
-        (void)one(&near, cfg, 0);
-        (void)one(&far, cfg, 0);
-        (void)one(&end, cfg, 0);
-        (void)one(&beyond, cfg, 0);
-        CHECK(near.wide && far.pos != near.pos && far.pos - near.pos != end.pos - near.pos,
-            "order %d", (int)order);
-        CHECK(beyond.pos == end.pos && beyond.vel == end.vel, "order %d: beyond", (int)order);
-    }
-}
-
-/* 5/4 of full scale is the last a state may be at without starting anew. */
-TEST(the_last_state_that_goes_on)
-{
-    const struct exh_filter_cfg *cfg = tuned(1, 1 << 16, 1000);
-    const int64_t last = INT64_C(5) << 60;
-    struct exh_filter s = {last, 0, 0}, more = {last + (INT64_C(1) << 55), 0, 0}, fresh;
-    const int32_t rail = INT32_MAX;
-    exh_filter_reset(&fresh, &rail, 1);
-    CHECK_EQ_I64(one(&s, cfg, rail), rail);
-    CHECK_EQ_I64(one(&more, cfg, rail), rail);
-    CHECK(s.pos != fresh.pos, "started anew");
-    CHECK(more.pos == fresh.pos, "went on");
-}
-
 /* Where nothing moves: the output's ends, what is told of them, and the last state that stays. */
-TEST(limits_to_the_bit)
+static void limits(const struct exh_filter_cfg *still, int64_t full, int64_t last, uint8_t wide)
 {
-    static const struct exh_filter_cfg still = {0, 0, 0, 0, 0, EXH_FILTER_LOW1};
-    const int64_t full = INT64_C(1) << 62, last = INT64_C(5) << 60;
     const struct {
         int64_t pos;
         int32_t y;
@@ -427,27 +391,74 @@ TEST(limits_to_the_bit)
     };
     for (size_t i = 0; i < LEN(row); i++) {
         const uint32_t before = check_saturations;
-        struct exh_filter s = {row[i].pos, 0, 0}, fresh;
+        struct exh_filter s = {row[i].pos, 0, wide}, fresh;
         exh_filter_reset(&fresh, &row[i].y, 1);
-        CHECK_EQ_I64(one(&s, &still, 0), row[i].y);
+        CHECK_EQ_I64(one(&s, still, 0), row[i].y);
         CHECK((check_saturations != before) == row[i].clips, "row %zu: told %d", i, !row[i].clips);
         CHECK_EQ_I64(s.pos, row[i].anew ? fresh.pos : row[i].pos);
+        CHECK_EQ_I64(s.wide, wide && !row[i].anew);
     }
 }
 
-/* What a low kind takes over of a high one's states: full scale of either sign at most. */
-TEST(retune_to_low_limits_both_states)
+/* A high kind has no limit but the output's: up to four times full scale each state goes on, an
+ * output beyond starts anew. */
+TEST(a_high_output_beyond_4_times_starts_anew)
+{
+    static const struct exh_filter_cfg still[] = {
+        {0, 0, 0, 0, EXH_FILTER_HIGH1}, {0, INT32_MAX, 0, 0, EXH_FILTER_HIGH2}};
+    const int64_t full = INT64_C(1) << (31 + 22);
+    for (size_t i = 0; i < LEN(still); i++) { limits(&still[i], full, 4 * full, 1); }
+}
+
+/* 5/4 of full scale is the last a state may be at without starting anew. */
+TEST(the_last_state_that_goes_on)
+{
+    const struct exh_filter_cfg *cfg = tuned(1, 1 << 16, 1000);
+    const int64_t last = INT64_C(5) << 60;
+    struct exh_filter s = {last, 0, 0}, more = {last + (INT64_C(1) << 55), 0, 0}, fresh;
+    const int32_t rail = INT32_MAX;
+    exh_filter_reset(&fresh, &rail, 1);
+    CHECK_EQ_I64(one(&s, cfg, rail), rail);
+    CHECK_EQ_I64(one(&more, cfg, rail), rail);
+    CHECK(s.pos != fresh.pos, "started anew");
+    CHECK(more.pos == fresh.pos, "went on");
+}
+
+TEST(limits_to_the_bit)
+{
+    static const struct exh_filter_cfg still = {0, 0, 0, 0, EXH_FILTER_LOW1};
+    limits(&still, INT64_C(1) << 62, INT64_C(5) << 60, 0);
+}
+
+/* What a low kind takes over of a high one's state: full scale of either sign at most. */
+TEST(retune_to_low_limits_the_state)
 {
     const struct exh_filter_cfg high = *tuned(2, 400 << 16, 1000), low = *tuned(2, 1 << 16, 1000);
-    const int64_t pos = INT64_C(1) << 57, vel = INT64_C(1) << 56;
+    const int64_t pos = INT64_C(1) << 53;
     static const int32_t more[] = {-1000, -1, 0, 1, 1000};
     for (size_t i = 0; i < 2 * LEN(more); i++) {
         const int64_t by = more[i / 2], sign = i & 1 ? -1 : 1;
-        struct exh_filter s = {sign * (pos + by), sign * (vel + by), 1};
+        struct exh_filter s = {sign * (pos + by), sign * pos, 1};
         exh_filter_retune(&s, &high, &low, 1);
-        CHECK_EQ_I64(s.pos, sign * (pos + (by < 0 ? by : 0)) * 32);
-        CHECK_EQ_I64(s.vel, sign * (vel + (by < 0 ? by : 0)) * 64);
+        CHECK_EQ_I64(s.pos, sign * (pos + (by < 0 ? by : 0)) * 512);
+        CHECK_EQ_I64(s.vel, 0);
         CHECK_EQ_I64(s.wide, 0);
+    }
+}
+
+/* A speed is of its kind's unit, and a slower filter of a high kind could not brake it. */
+TEST(a_speed_stays_where_it_means_the_same)
+{
+    static const int32_t fc[] = {1, 100, 110, 400}; /* two of each kind, Hz at 1 kHz */
+    for (int from = 0; from < 4; from++) {
+        for (int to = 0; to < 4; to++) {
+            const struct exh_filter_cfg a = *tuned(2, fc[from] << 16, 1000);
+            const struct exh_filter_cfg b = *tuned(2, fc[to] << 16, 1000);
+            struct exh_filter s = {0, 12345, from >= 2};
+            const int stays = from < 2 ? to < 2 : to >= from;
+            exh_filter_retune(&s, &a, &b, 1);
+            CHECK_EQ_I64(s.vel, stays ? 12345 : 0);
+        }
     }
 }
 
@@ -473,5 +484,5 @@ TEST_MAIN("unit/filter", refusals_by_name, coefficients_by_hand, half_the_power_
     full_scale_does_not_latch, channels_do_not_touch, retune_keeps_what_is_settled,
     retune_keeps_every_settled_state, a_change_of_order_drops_the_speed,
     a_state_beyond_any_input_starts_anew, state_round_trip, recovers_from_any_state,
-    a_high_state_swings_to_32_times, the_last_state_that_goes_on, limits_to_the_bit,
-    retune_to_low_limits_both_states, the_lowest_cut_off);
+    a_high_output_beyond_4_times_starts_anew, the_last_state_that_goes_on, limits_to_the_bit,
+    retune_to_low_limits_the_state, a_speed_stays_where_it_means_the_same, the_lowest_cut_off);

@@ -131,6 +131,29 @@ TEST(span_is_never_exceeded)
     }
 }
 
+/* A ledger beyond the peak: with four codes an ampere 1.2 A are four codes, not five, and 0.1 A
+ * none. */
+TEST(no_code_is_beyond_the_peak)
+{
+    static const struct {
+        int32_t dA, codes;
+    } peak[] = {{12, 4}, {1, 0}};
+    static const int32_t amp[] = {1, 2, 6, 31, -1, -2, -32};
+    for (size_t k = 0; k < LEN(peak) * LEN(amp); k++) {
+        const int32_t A = amp[k / LEN(peak)], sign = A > 0 ? 1 : -1;
+        const int32_t codes = sign * peak[k % LEN(peak)].codes;
+        struct box b;
+        box_setup(&b);
+        b.s.state = EXH_STATE_RUN;
+        b.par[0].i_peak_A_q26 = EXH_Q(peak[k % LEN(peak)].dA, 10, EXH_Q_CUR);
+        b.par[0].dac_rawpA_q16 = EXH_Q(4, 1, EXH_Q_DAC);
+        b.i[0].table_A_q26 = A * (INT64_C(1) << 26);
+        exh_gate_step(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
+        CHECK_EQ_I64(b.out.dac_raw[0], 32768 + codes);
+        CHECK(((b.limits[0] & EXH_LIMIT_DAC) != 0) == (4 * A != codes), "%d A", (int)A);
+    }
+}
+
 /* Zero near an end of the D/A: the converter itself clips, and that is a limit. */
 TEST(converter_end_is_reported)
 {
@@ -176,5 +199,6 @@ TEST(alive_changes_at_every_tick_in_every_state)
 }
 
 TEST_MAIN("unit/gate", gate_in_every_state, a_shut_gate_makes_a_frame_that_drives_nothing,
-    a_release_never_rises, span_is_never_exceeded, converter_end_is_reported,
-    fingers_not_in_use_get_zero, alive_changes_at_every_tick_in_every_state);
+    a_release_never_rises, span_is_never_exceeded, no_code_is_beyond_the_peak,
+    converter_end_is_reported, fingers_not_in_use_get_zero,
+    alive_changes_at_every_tick_in_every_state);

@@ -74,6 +74,14 @@ def share_of_limit():
                          z3.And(p / (1 << 30) >= 0, p / (1 << 30) <= top)))
 
 
+def whole_codes_are_no_more():
+    """Whole D/A codes of a current 0..6.6 A are not negative and stand for no more than it."""
+    cur, scale, p = z3.Ints("cur scale p")
+    box = z3.And(cur >= 0, cur <= 442918502, scale >= 0, scale < 1 << 31)
+    return holds(z3.Implies(box, cur * scale >= 0)) and \
+        holds(z3.Implies(p >= 0, z3.And(p / (1 << 42) >= 0, p / (1 << 42) * (1 << 42) <= p)))
+
+
 def gain_of(ticks):
     """What exh_gain_set(1 / ticks) leaves: 31 bits, rounded to nearest."""
     shift = 30
@@ -162,9 +170,9 @@ def line_is_below_32():
 
 
 LEMMAS = [shr_is_floor, from_u64_keeps_bits, wrapped_sum_is_the_sum, gain_floor_is_no_more,
-          share_of_limit, release_ends, release_step_is_bounded, unit_has_components_of_one,
-          toward_stays_between, mean_is_within_32_bits, excess_is_a_square_at_most,
-          line_is_below_32] + smt_passivity.LEMMAS + smt_hand.LEMMAS
+          share_of_limit, whole_codes_are_no_more, release_ends, release_step_is_bounded,
+          unit_has_components_of_one, toward_stays_between, mean_is_within_32_bits,
+          excess_is_a_square_at_most, line_is_below_32] + smt_passivity.LEMMAS + smt_hand.LEMMAS
 
 if __name__ == "__main__":
     sys.exit(0 if {f.__name__: f for f in LEMMAS}[sys.argv[1]]() else 1)

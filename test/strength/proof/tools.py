@@ -32,7 +32,7 @@ WP = {
     "safety": ("lib/src/safe/safety_open.c", ["exh_safety_is_open"]),
     "drive": ("lib/src/act/drive.c",
               ["no_force", "release", "exh_drive_force_within", "i2t_limit",
-               "exh_drive_current_step"]),
+               "whole_codes", "coded", "exh_drive_current_step"]),
     "tracking": ("lib/src/act/tracking.c", ["exh_tracking_step", "exh_tracking_update"]),
 }
 
@@ -46,6 +46,8 @@ WP_PLANTS = [
      "exh_clamp(asked, INT32_MIN, INT32_MAX)"),
     ("gate", "code_of", "lib/src/act/gate.c", "exh_clamp32(asked, -span, span)",
      "exh_clamp(asked, -span - 1, span)"),
+    ("gate", "code_of", "lib/src/act/gate.c", "exh_clamp(peak, 0, most)",
+     "exh_clamp(peak + 1, 0, most)"),
     ("gate", "code_of", "lib/src/act/gate.c", "dac_zero_raw + spanned, 0, UINT16_MAX)",
      "dac_zero_raw + spanned, 0, 2 * UINT16_MAX)"),
     ("gate", "any_gate@falls", "lib/src/act/gate.c", "falls ? s->off_raw[k] : UINT16_MAX",

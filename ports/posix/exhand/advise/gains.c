@@ -65,7 +65,7 @@ void gains_defaults(struct gains_options *a)
     a->window = INT64_C(1) << (int)of_scene("vel_p");
     a->cases = 32;
     a->k_Npm = a->b_Nspm = a->phase = -1;
-    a->margin_percent = 3;
+    a->margin_percent = -1;
     a->rate_Hz[0] = 2000;
     a->rates = 1;
     a->jobs = jobs_cores();
@@ -111,6 +111,8 @@ int gains_refuse(struct gains_options *a)
         return 2;
     }
     if (a->off_percent > 0) { around(&a->o, a->off_percent / 100); }
+    /* A device that nobody measured has a margin; one with a file has its intervals. */
+    if (a->margin_percent < 0) { a->margin_percent = a->has_file ? 0 : 3; }
     a->o.margin = a->margin_percent / 100;
     a->o.cases = (int)a->cases;
     a->o.at_phase = a->phase >= 0;
@@ -307,7 +309,7 @@ int gains_command(int argc, char **argv, const struct gains_study *study)
         {"off", CLI_REAL, &a.off_percent, 0, 50, "PERCENT",
             "also with masses so much more and less, and friction so much less (0)"},
         {"margin", CLI_REAL, &a.margin_percent, 0, 50, "PERCENT",
-            "every second fall with so much less friction (3)"},
+            "every second fall with so much less friction (3; with a file 0)"},
         {"cases", CLI_INT, &a.cases, 2, 1000, "N", "falls of each pair; more allow less (32)"},
         {"rule", CLI_FLAG, &a.rule, 0, 0, NULL, "print only the rule, as --set takes it and as C"},
         {"jobs", CLI_INT, &a.jobs, 1, 1024, "N", "processes at a time (one a core)"},

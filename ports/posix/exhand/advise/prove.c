@@ -4,13 +4,21 @@
 
 #include "posix.h"
 
-#define PAIRS  64   /* every second one on the line */
+#define PAIRS  96
 #define PASSES 40   /* far more than any device took */
 #define LESS   0.99 /* of a k that does not hold: a row's new end */
+#define NEAR   0.8  /* of the line's k: what is far below holds more easily */
 
 struct pair {
     double b, share, proved_k; /* share: of the line's k */
 };
+
+/* Every second pair is on the line, the others are near it. */
+static double share_of(int i)
+{
+    const double u = i * 0.61803398874989485, part = u - (double)(int)u;
+    return i % 2 ? NEAR + (1 - NEAR) * part : 1;
+}
 
 static double b_of(const struct exh_gains_par *rule, double u)
 {
@@ -31,14 +39,15 @@ static void cut(struct region *r, double k, double b)
     }
 }
 
-/* Number of pairs that do not hold. A pair that was proved is not tried again. */
+/* Number of pairs that do not hold. A pair that was proved is not tried again; one below it is: an
+ * island may be there. */
 static int pass(struct gains_rate *x, struct pair *pair)
 {
     int failed = 0;
     for (int i = 0; i < PAIRS && !posix_interrupted(); i++) {
         const double b = pair[i].b, k = pair[i].share * gains_k_max(&x->rule, b);
         if (!gains_allows(&x->rule, k, b) || k == pair[i].proved_k) { continue; }
-        if (region_holds(&x->region.o, k, b, i + 1)) {
+        if (region_holds(&x->region.o, k, b, REGION_ROWS + 1 + i)) {
             pair[i].proved_k = k;
         } else {
             cut(&x->region, LESS * k, b);
@@ -53,9 +62,8 @@ int gains_proved(struct gains_rate *x)
     struct pair pair[PAIRS];
     int err = gains_rule(&x->rule, &x->region), failed = 1;
     for (int i = 0; i < PAIRS; i++) {
-        const double u = i * 0.61803398874989485;
         pair[i].b = b_of(&x->rule, (i + 0.5) / PAIRS);
-        pair[i].share = i % 2 ? u - (double)(int)u : 1;
+        pair[i].share = share_of(i);
         pair[i].proved_k = -1;
     }
     for (int n = 0; n < PASSES && err == 0 && failed && !posix_interrupted(); n++) {

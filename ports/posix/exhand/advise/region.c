@@ -20,9 +20,16 @@
 
 /* --- one pair of gains --- */
 
-static int all_cases(const struct region_opt *o)
+/* The cases of one row, of which the next row has others: what neither's cases would show does
+ * not hide in both. */
+struct draw {
+    int first; /* even: with and without the margin in turn */
+    int hint;  /* the one that failed last: where one pair fails its neighbour does */
+};
+
+static struct draw draw_of(const struct region_opt *o, int n)
 {
-    return o->devices > 1 ? 3 * o->cases / 2 : o->cases;
+    return (struct draw){n * (o->cases + o->cases % 2), 0};
 }
 
 /* Devices in turn, every second time with a margin of friction less. Not always with it: what
@@ -53,16 +60,15 @@ static int rests(const struct region_opt *o, double k_Npm, double b_Nspm, int c)
     return settle_run(&d, &w, case_of(o, c)) == SETTLE_REST;
 }
 
-/* n of the cases, spread over all of them, from the one that failed last: where one pair fails its
- * neighbour does. */
-static int holds(const struct region_opt *o, double k_Npm, double b_Nspm, int n, int *hint)
+/* n of the cases, spread over all of them, from the one that failed last. */
+static int holds(const struct region_opt *o, double k_Npm, double b_Nspm, int n, struct draw *draw)
 {
-    const int all = all_cases(o), stride = all / n | 1; /* odd: with and without the margin */
+    const int stride = o->cases / n | 1; /* odd: with and without the margin */
     for (int i = 0; i < n; i++) {
-        const int c = (*hint + i * stride) % all;
+        const int c = (draw->hint + i * stride) % o->cases;
         if (posix_interrupted()) { return 0; }
-        if (!rests(o, k_Npm, b_Nspm, c)) {
-            *hint = c;
+        if (!rests(o, k_Npm, b_Nspm, draw->first + c)) {
+            draw->hint = c;
             return 0;
         }
     }
@@ -71,19 +77,15 @@ static int holds(const struct region_opt *o, double k_Npm, double b_Nspm, int n,
 
 int region_holds(const struct region_opt *o, double k_Npm, double b_Nspm, int draw)
 {
-    const int n = all_cases(o), first = draw * (n + n % 2);
-    int failed = 0;
-    for (int c = first; c < first + n && failed <= 1; c++) {
-        failed += !rests(o, k_Npm, b_Nspm, c);
-    }
-    return failed <= 1;
+    struct draw all = draw_of(o, draw);
+    return holds(o, k_Npm, b_Nspm, o->cases, &all);
 }
 
 struct region_pair region_try(const struct region_opt *o, double k_Npm, double b_Nspm)
 {
     struct region_pair p;
     memset(&p, 0, sizeof p);
-    for (; p.falls < all_cases(o); p.falls++) {
+    for (; p.falls < o->cases; p.falls++) {
         const int ok = rests(o, k_Npm, b_Nspm, p.falls);
         if (!ok && p.rest == p.falls) {
             p.at = case_of(o, p.falls);
@@ -104,45 +106,55 @@ static double first_k(double T_s)
     return k;
 }
 
-static int is_few(const struct region_opt *o) { return all_cases(o) < FEW ? all_cases(o) : FEW; }
+static int is_few(const struct region_opt *o) { return o->cases < FEW ? o->cases : FEW; }
 
-static int is_half(const struct region_opt *o) { return (all_cases(o) + 1) / 2; }
+static int is_half(const struct region_opt *o) { return (o->cases + 1) / 2; }
 
-/* The weakest wall that holds the mass at this b; 0: none. */
-static double weakest(const struct region_opt *o, double b, int *hint)
+/* The weakest wall not below k that holds the mass at this b; 0: none. */
+static double weakest(const struct region_opt *o, double k, double b, struct draw *draw)
 {
-    double k = first_k(o->wall.T_s);
     for (int i = 0; i < 2 * SEARCH && k < K_MAX_NPM; i++, k *= COARSE * COARSE) {
-        if (holds(o, k, b, is_few(o), hint) && holds(o, k, b, is_half(o), hint)) { return k; }
+        if (holds(o, k, b, is_few(o), draw) && holds(o, k, b, is_half(o), draw)) { return k; }
     }
     return 0;
 }
 
 /* The stiffest pair not above k that does not hold, of those looked at: k and, against islands,
  * some way below it by half of the cases. 0: all hold. */
-static double failing(const struct region_opt *o, double low, double k, double b, int *hint)
+static double failing(const struct region_opt *o, double low, double k, double b, struct draw *draw)
 {
     static const double down[] = {1, 1.05, 1.15, 1.35};
     for (size_t i = 0; i < sizeof down / sizeof down[0] && k / down[i] >= low; i++) {
-        if (!holds(o, k / down[i], b, i ? is_half(o) : all_cases(o), hint)) { return k / down[i]; }
+        if (!holds(o, k / down[i], b, i ? is_half(o) : o->cases, draw)) { return k / down[i]; }
     }
     return 0;
 }
 
-static struct region_row row_at(const struct region_opt *o, double b)
+/* All that hangs together from the weakest wall not below k on. */
+static struct region_row span(const struct region_opt *o, double k, double b, struct draw *draw)
 {
-    struct region_row row = {b, 0, 0};
-    int hint = 0;
-    double k, fails;
-    row.low_Npm = weakest(o, b, &hint);
+    struct region_row row = {b, weakest(o, k, b, draw), 0};
+    double fails;
     if (row.low_Npm <= 0) { return row; }
     k = COARSE * row.low_Npm;
-    while (k < K_MAX_NPM && holds(o, k, b, is_few(o), &hint)) { k *= COARSE; }
-    while (k > row.low_Npm && (fails = failing(o, row.low_Npm, k, b, &hint)) > 0) {
+    while (k < K_MAX_NPM && holds(o, k, b, is_few(o), draw)) { k *= COARSE; }
+    while (k > row.low_Npm && (fails = failing(o, row.low_Npm, k, b, draw)) > 0) {
         k = fails / FINE;
     }
     row.high_Npm = k > row.low_Npm ? k : row.low_Npm;
     return row;
+}
+
+/* Where next to nothing hangs together, what begins behind it counts. */
+static struct region_row row_at(const struct region *r, int j)
+{
+    const double b = r->row[j].b_Nspm;
+    struct draw draw = draw_of(&r->o, j);
+    const struct region_row first = span(&r->o, first_k(r->o.wall.T_s), b, &draw);
+    struct region_row next;
+    if (first.high_Npm > COARSE * COARSE * first.low_Npm || first.low_Npm <= 0) { return first; }
+    next = span(&r->o, COARSE * COARSE * first.high_Npm, b, &draw);
+    return next.high_Npm - next.low_Npm > first.high_Npm - first.low_Npm ? next : first;
 }
 
 /* --- all of them --- */
@@ -150,11 +162,13 @@ static struct region_row row_at(const struct region_opt *o, double b)
 /* The largest b at which something holds, to a hundredth. */
 static double top_b(const struct region_opt *o)
 {
+    const double k = first_k(o->wall.T_s);
     double low = -1, high = 1;
-    int hint = 0, vain = 0;
-    if (weakest(o, 0, &hint) > 0) { low = 0; }
+    struct draw draw = draw_of(o, 0);
+    int vain = 0;
+    if (weakest(o, k, 0, &draw) > 0) { low = 0; }
     for (; high < B_MAX_NSPM && (low < 0 || vain < 2) && !posix_interrupted(); high *= 1.5) {
-        if (weakest(o, high, &hint) > 0) {
+        if (weakest(o, k, high, &draw) > 0) {
             low = high;
             vain = 0;
         } else if (low >= 0) {
@@ -165,7 +179,7 @@ static double top_b(const struct region_opt *o)
     high = low > 0 ? 1.5 * low : 1;
     while (high - low > 0.01 * high && !posix_interrupted()) {
         const double mid = (low + high) / 2;
-        if (weakest(o, mid, &hint) > 0) {
+        if (weakest(o, k, mid, &draw) > 0) {
             low = mid;
         } else {
             high = mid;
@@ -180,14 +194,14 @@ static int row_of(int n, int coarse) { return coarse ? 4 * n : n / 3 * 4 + n % 3
 static void coarse_row(const void *ctx, int n, void *result)
 {
     const struct region *r = ctx;
-    const struct region_row row = row_at(&r->o, r->row[row_of(n, 1)].b_Nspm);
+    const struct region_row row = row_at(r, row_of(n, 1));
     memcpy(result, &row, sizeof row);
 }
 
 static void fine_row(const void *ctx, int n, void *result)
 {
     const struct region *r = ctx;
-    const struct region_row row = row_at(&r->o, r->row[row_of(n, 0)].b_Nspm);
+    const struct region_row row = row_at(r, row_of(n, 0));
     memcpy(result, &row, sizeof row);
 }
 

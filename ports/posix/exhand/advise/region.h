@@ -16,7 +16,7 @@ struct region_opt {
     struct sim_device device[REGION_DEVICES]; /* the first is the one as told */
     int devices;
     struct settle_wall wall; /* k and b are not looked at */
-    int cases;               /* a pair; half as many again of several devices */
+    int cases;               /* a pair */
     double margin;           /* every second case with so much (a share) less friction */
     int at_phase;            /* 1: the wall lies `phase` counts above a count; 0: anywhere */
     double phase;
@@ -43,7 +43,7 @@ struct region_pair {
 };
 struct region_pair region_try(const struct region_opt *o, double k_Npm, double b_Nspm);
 
-/* Whether a pair holds in as many cases but one, of another draw than the rows' (draw > 0). */
+/* Whether a pair holds in as many cases, of another draw than the rows' (draw > REGION_ROWS). */
 int region_holds(const struct region_opt *o, double k_Npm, double b_Nspm, int draw);
 
 /* mu > (pi/2) w (T/2 + delay + lag - (b + c)/k), w = sqrt(k / (mass + rotor)): what friction in

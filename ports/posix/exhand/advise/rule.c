@@ -26,6 +26,29 @@ static void cut_spikes(struct profile *p)
     }
 }
 
+static double lower(double a, double b) { return a < b ? a : b; }
+
+/* From the stiffest row on k only falls, both ways: what fails at some b is not believed to hold
+ * again at more. */
+static void one_peak(struct profile *p)
+{
+    int top = 0;
+    for (int j = 0; j <= p->last; j++) { top = p->k[j] > p->k[top] ? j : top; }
+    for (int j = top + 1; j <= p->last; j++) { p->k[j] = lower(p->k[j], p->k[j - 1]); }
+    for (int j = top - 1; j >= 0; j--) { p->k[j] = lower(p->k[j], p->k[j + 1]); }
+}
+
+/* A row that had luck with its cases ends no farther than those beside it let expect. */
+static void smooth(struct profile *p)
+{
+    double before = p->k[0];
+    for (int j = 1; j < p->last; j++) {
+        const double mean = (before + p->k[j] + p->k[j + 1]) / 3;
+        before = p->k[j];
+        p->k[j] = lower(p->k[j], mean);
+    }
+}
+
 /* With all k from low_Npm on. */
 static void profile_of(struct profile *p, const struct region *r, double low_Npm)
 {
@@ -43,6 +66,8 @@ static void profile_of(struct profile *p, const struct region *r, double low_Npm
         p->k[p->last] = k;
     }
     cut_spikes(p);
+    one_peak(p);
+    smooth(p);
 }
 
 /* --- the knots: of all lines through a few heights at each node, those of the largest area --- */

@@ -23,8 +23,8 @@ static void keep_sum(struct model *m, const struct result_file *f)
     }
 }
 
-/* The delay holds the lag. A run tells their sum alone, so the lag is anything within it: in turn
- * none, all and the half. */
+/* In turn the shortest, the longest and the middle, which may be none, all and half of the delay.
+ */
 static double lag(const struct result_file *f, int turn)
 {
     static const double share[] = {0, 1, 0.5};
@@ -81,6 +81,7 @@ int gains_told(struct region_opt *o, const struct result_file *f, double rate_Hz
     for (int i = 0; i < TOLD; i++) {
         const struct model m = told(f, i);
         struct sim_device d = model_device(&m, 1 / rate_Hz, sim_device_default().servo_hz);
+        d.mon_lag_s = f->monitor_lag_s;
         if (assign_step(&d, 0, 0)) { return 2; }
         if (far && (is_corner(i) ? more > 1 : (i / 4 + i) % 2)) { d.delay_s *= more; }
         o->device[o->devices++] = d;

@@ -166,11 +166,10 @@ static void write_table(FILE *f, const void *ctx)
 static void write_pictures(FILE *f, const void *ctx)
 {
     const struct results *r = ctx;
+    outfile_pictures(f, "calibrate");
     fprintf(f,
-        "# Made by exhand calibrate. In this directory: gnuplot -c pictures.gp PLOTS, where\n"
-        "# PLOTS is the path of ports/posix/plot.\n"
         "out='calibration.png'; points='calibration.csv'; table='table.csv'\n"
-        "kf=%.9g; kf_mon=%.9g\nload ARG1.'/calibration.gp'\n",
+        "kf=%.9g; kf_mon=%.9g\nload plots.'/calibration.gp'\n",
         (double)r->l->cur.kf_NpA_q20 / (1 << EXH_Q_FORCE),
         (double)r->l->mon.kf_NpA_q20 / (1 << EXH_Q_FORCE));
 }

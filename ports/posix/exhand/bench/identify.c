@@ -81,9 +81,8 @@ static void write_trace(FILE *f, const void *ctx)
 static void write_pictures(FILE *f, const void *ctx)
 {
     (void)ctx;
-    fprintf(f, "# Made by exhand identify. In this directory: gnuplot -c pictures.gp PLOTS, where\n"
-               "# PLOTS is the path of ports/posix/plot.\n"
-               "out='identify.png'; trace='trace.csv'\nload ARG1.'/identify.gp'\n");
+    outfile_pictures(f, "identify");
+    fprintf(f, "out='identify.png'; trace='trace.csv'\nload plots.'/identify.gp'\n");
 }
 
 static int write_files(const char *dir, const struct found *x)
@@ -111,7 +110,7 @@ static int tell(const struct options *o, const struct identify_data *data)
         cli_complain(err < 0 ? "out of memory" : "the run has too little to fit");
         return 1;
     }
-    result_take(&x.r, &e.fit, data->T_s, data->mass_kg);
+    result_take(&x.r, &e, data->T_s, data->mass_kg);
     print(&e, &x.r, o->log ? NULL : &truth);
     if (o->out && write_files(o->out, &x)) { return 1; }
     return x.r.residual > RESULT_RESIDUAL_MAX;

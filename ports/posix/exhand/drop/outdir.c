@@ -115,10 +115,8 @@ int outdir_pictures(
 {
     FILE *f = outfile_in(dir, "pictures.gp");
     if (f == NULL) { return 1; }
-    fprintf(f, "# Made by exhand drop. Inside this directory, PLOTS the way to ports/posix/plot:\n"
-               "#   gnuplot -c pictures.gp PLOTS\n"
-               "plots=ARG1\n"
-               "out='force_position.png'; fit='linear fit, position over force'\n");
+    outfile_pictures(f, "drop");
+    fprintf(f, "out='force_position.png'; fit='linear fit, position over force'\n");
     panel(f, "a", &r[0]);
     panel(f, "b", &r[rows - 1]);
     fprintf(f,

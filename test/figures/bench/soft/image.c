@@ -1,23 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 /* main() of an image that counts kernels: one line each, kernel,name,cycles of 1024 ops, an empty
- * op subtracted. Where virtual time is instructions, so are these. No sines: they would need a C
- * library. */
+ * op subtracted. Where virtual time is instructions, so are these. No sines in floating point:
+ * they would need a C library. */
 #include "law.h"
 #include "plain.h"
+#include "soft.h"
 #include "tick.h"
 
 #include "exhand/board.h"
 #include "exhand/error.h"
 #include "exhand/exhand.h"
 
-#define OPS      1024u
-#define CHANNELS 22u
-#define FINGERS  5u
-
 void mps2_say(const char *s);
 
 static uint32_t seed = 1;
-static volatile int64_t sink;
+volatile int64_t soft_sink;
 static volatile double sink_double;
 static volatile float sink_float;
 
@@ -33,18 +30,39 @@ static struct exh_filter_cfg filter_cfg;
 static struct exh_filter filter[CHANNELS];
 static struct exh_filter_cheap_cfg cheap_cfg;
 static struct exh_filter_cheap cheap[CHANNELS];
-static int32_t x[OPS + CHANNELS], y[CHANNELS];
+int32_t soft_x[OPS + CHANNELS], soft_y[CHANNELS];
 static double b_double[5], s_double[CHANNELS][2];
 static float b_float[5], s_float[CHANNELS][2];
 
-static void filter_op(uint32_t i) { exh_filter_step(filter, &filter_cfg, &x[i], y, CHANNELS); }
-static void cheap_op(uint32_t i) { exh_filter_cheap_step(cheap, &cheap_cfg, &x[i], y, CHANNELS); }
+static void filter_start(struct exh_period T)
+{
+    static const int32_t zero[CHANNELS];
+    static const struct exh_filter_par par = {2, EXH_Q(20, 1, 16)};
+    EXH_ASSERT(exh_filter_setup(&filter_cfg, &par, T) == 0);
+    exh_filter_reset(filter, zero, CHANNELS);
+    EXH_ASSERT(exh_filter_cheap_setup(&cheap_cfg, &par, T) == 0);
+    exh_filter_cheap_reset(cheap, &cheap_cfg, zero, CHANNELS);
+}
+
+/* fc/fs = 0.01 and 0.4 */
+static void low_start(void) { filter_start((struct exh_period){1, 2000}); }
+static void high_start(void) { filter_start((struct exh_period){1, 50}); }
+
+static void filter_op(uint32_t i)
+{
+    exh_filter_step(filter, &filter_cfg, &soft_x[i], soft_y, CHANNELS);
+}
+
+static void cheap_op(uint32_t i)
+{
+    exh_filter_cheap_step(cheap, &cheap_cfg, &soft_x[i], soft_y, CHANNELS);
+}
 
 #define FILTER(T) \
     static void filter_##T##_op(uint32_t i) \
     { \
         for (uint32_t k = 0; k < CHANNELS; k++) { \
-            const T in = (T)x[i + k], out = b_##T[0] * in + s_##T[k][0]; \
+            const T in = (T)soft_x[i + k], out = b_##T[0] * in + s_##T[k][0]; \
             s_##T[k][0] = b_##T[1] * in - b_##T[3] * out + s_##T[k][1]; \
             s_##T[k][1] = b_##T[2] * in - b_##T[4] * out; \
             sink_##T = out; \
@@ -53,16 +71,68 @@ static void cheap_op(uint32_t i) { exh_filter_cheap_step(cheap, &cheap_cfg, &x[i
 FILTER(double)
 FILTER(float)
 
-static void filter_start(void)
+static void inputs(void)
 {
     /* fc/fs = 0.01 */
     static const double b[5] = {0.000944691843840, 0.00188938368768, 0.000944691843840,
         -1.911197067426073, 0.914975834801433};
-    static const struct exh_filter_par par = {2, EXH_Q(20, 1, 16)};
-    EXH_ASSERT(exh_filter_setup(&filter_cfg, &par, (struct exh_period){1, 2000}) == 0);
-    EXH_ASSERT(exh_filter_cheap_setup(&cheap_cfg, &par, (struct exh_period){1, 2000}) == 0);
-    for (uint32_t i = 0; i < OPS + CHANNELS; i++) { x[i] = any(); }
+    for (uint32_t i = 0; i < OPS + CHANNELS; i++) { soft_x[i] = any(); }
     for (int k = 0; k < 5; k++) { b_float[k] = (float)(b_double[k] = b[k]); }
+}
+
+/* --- sine and cosine --- */
+
+static void sine_op(uint32_t i)
+{
+    struct exh_sincos both;
+    exh_sincos(soft_x[i], &both);
+    soft_sink = both.sin_q30 + (int64_t)both.cos_q30;
+}
+
+/* --- velocity --- */
+
+static struct exh_velocity_window_cfg window_cfg;
+static struct exh_velocity_window window;
+static struct exh_velocity_pole_cfg pole_cfg;
+static struct exh_velocity_pole pole;
+static struct exh_velocity_track_cfg track_cfg;
+static struct exh_velocity_track track;
+static struct plain_window_double window_double;
+static struct plain_window_float window_float;
+
+static void velocity_start(void)
+{
+    static const struct exh_velocity_scale scale = {291689, {1, 2000}};
+    static const struct exh_velocity_par four = {2};
+    EXH_ASSERT(exh_velocity_window_setup(&window_cfg, scale, &four) == 0);
+    EXH_ASSERT(exh_velocity_pole_setup(&pole_cfg, scale, 1354) == 0);
+    EXH_ASSERT(exh_velocity_track_setup(&track_cfg, scale, 4500) == 0);
+    window_double = (struct plain_window_double){500, {0}, 0, 4};
+    window_float = (struct plain_window_float){500, {0}, 0, 4};
+}
+
+static int32_t cnt(uint32_t i) { return soft_x[i] >> 20; }
+
+static void window_op(uint32_t i)
+{
+    soft_sink = exh_velocity_window_step(&window, &window_cfg, cnt(i));
+}
+
+static void pole_op(uint32_t i) { soft_sink = exh_velocity_pole_step(&pole, &pole_cfg, cnt(i)); }
+
+static void track_op(uint32_t i)
+{
+    soft_sink = exh_velocity_track_step(&track, &track_cfg, cnt(i));
+}
+
+static void window_double_op(uint32_t i)
+{
+    sink_double = plain_window_double(&window_double, cnt(i) * 66.3e-6);
+}
+
+static void window_float_op(uint32_t i)
+{
+    sink_float = plain_window_float(&window_float, (float)cnt(i) * 66.3e-6f);
 }
 
 /* --- law --- */
@@ -77,9 +147,9 @@ static void law_op(uint32_t i)
 {
     for (uint32_t f = 0; f < FINGERS; f++) {
         struct exh_force_ledger l;
-        (void)exh_contact_step(
-            &contact[f], &wall, (struct exh_contact_in){x[i + f] >> 6, x[i + f + 1] >> 4, 0}, &l);
-        sink = l.spring_N_q20 + l.damper_N_q20;
+        (void)exh_contact_step(&contact[f], &wall,
+            (struct exh_contact_in){soft_x[i + f] >> 6, soft_x[i + f + 1] >> 4, 0}, &l);
+        soft_sink = l.spring_N_q20 + l.damper_N_q20;
     }
 }
 
@@ -117,7 +187,7 @@ static void table_start(void)
 
 static void table_op(uint32_t i)
 {
-    sink = exh_table_at((struct exh_table){knot, 16}, (int32_t)(i << 20));
+    soft_sink = exh_table_at((struct exh_table){knot, 16}, (int32_t)(i << 20));
 }
 
 static void table_double_op(uint32_t i)
@@ -159,8 +229,9 @@ static void plane_op(uint32_t i)
 {
     for (uint32_t f = 0; f < FINGERS; f++) {
         const struct exh_precontact_in in = {
-            {x[i] >> 2, x[i + 1] >> 2, x[i + 2] >> 2}, {0, 0, 0}, x[i + 3] >> 2, 0, 0, 1, 0};
-        sink = exh_precontact_step(&plane[f], &freeze_cfg, &in);
+            {soft_x[i] >> 2, soft_x[i + 1] >> 2, soft_x[i + 2] >> 2}, {0, 0, 0}, soft_x[i + 3] >> 2,
+            0, 0, 1, 0};
+        soft_sink = exh_precontact_step(&plane[f], &freeze_cfg, &in);
     }
 }
 
@@ -192,7 +263,7 @@ static void tick_start(void)
     for (uint32_t i = 0; i < OPS; i++) { tick_input(&box_in[i], i); }
 }
 
-static void tick_op(uint32_t i) { sink = tick_once(&box, &box_in[i]); }
+static void tick_op(uint32_t i) { soft_sink = tick_once(&box, &box_in[i]); }
 
 /* --- all --- */
 
@@ -217,25 +288,68 @@ static void say_number(uint32_t n)
     mps2_say(&text[at]);
 }
 
-static const struct {
-    const char *name;
-    void (*op)(uint32_t i);
-} ops[] = {
-    {"filter,fixed", filter_op},
-    {"filter,cheap", cheap_op},
-    {"filter,double", filter_double_op},
-    {"filter,float", filter_float_op},
-    {"law,fixed", law_op},
-    {"law,double", law_double_op},
-    {"law,float", law_float_op},
-    {"table,fixed", table_op},
-    {"table,double", table_double_op},
-    {"table,float", table_float_op},
-    {"precontact,fixed", plane_op},
-    {"precontact,double", plane_double_op},
-    {"precontact,float", plane_float_op},
-    {"tick,fixed", tick_op},
+static const struct soft_op low[] = {
+    {"filter,exhand", filter_op},
+    {"filter,exhand-cheap", cheap_op},
+    {"filter,plain double DF2T", filter_double_op},
+    {"filter,plain float DF2T", filter_float_op},
 };
+static const struct soft_op high[] = {
+    {"filter_high,exhand", filter_op}, {"filter_high,exhand-cheap", cheap_op}};
+static const struct soft_op others[] = {
+    {"sine,exhand sincos", sine_op},
+    {"law,exhand contact law", law_op},
+    {"law,plain double law", law_double_op},
+    {"law,plain float law", law_float_op},
+    {"table,exhand table", table_op},
+    {"table,plain double table", table_double_op},
+    {"table,plain float table", table_float_op},
+    {"precontact,exhand precontact", plane_op},
+    {"precontact,plain double freeze", plane_double_op},
+    {"precontact,plain float freeze", plane_float_op},
+    {"velocity,velocity_window_2", window_op},
+    {"velocity,velocity_pole", pole_op},
+    {"velocity,velocity_track", track_op},
+    {"velocity,plain double window", window_double_op},
+    {"velocity,plain float window", window_float_op},
+    {"tick,exhand", tick_op},
+};
+
+static void others_start(void)
+{
+    table_start();
+    plane_start();
+    tick_start();
+    velocity_start();
+}
+
+#define GROUP(ops, start) \
+    { \
+        ops, sizeof ops / sizeof ops[0], start \
+    }
+static const struct soft_group ours[] = {
+    GROUP(low, low_start), GROUP(high, high_start), GROUP(others, others_start)};
+
+static void count(const struct soft_group *g, uint32_t none)
+{
+    g->start();
+    for (unsigned k = 0; k < g->n; k++) {
+        mps2_say("soft,");
+        mps2_say(g->op[k].name);
+        mps2_say(",");
+        say_number(counted(g->op[k].op) - none);
+        mps2_say("\n");
+    }
+}
+
+/* The FPU, where the code uses one, is off after a reset. */
+static void fpu_on(void)
+{
+#ifdef __ARM_FP
+    *(volatile uint32_t *)0xE000ED88u |= 0xFu << 20;
+    __asm__ volatile("dsb\n isb" : : : "memory");
+#endif
+}
 
 void exh_assert_failed(const char *file, int line)
 {
@@ -247,19 +361,16 @@ int main(void)
 {
     struct exh_period T;
     uint32_t none;
+    fpu_on();
     (void)exh_board_init(1000, &T); /* starts the clock */
-    filter_start();
-    table_start();
-    plane_start();
-    tick_start();
+    inputs();
     none = counted(empty);
-    for (unsigned k = 0; k < sizeof ops / sizeof ops[0]; k++) {
-        mps2_say("soft,");
-        mps2_say(ops[k].name);
-        mps2_say(",");
-        say_number(counted(ops[k].op) - none);
-        mps2_say("\n");
-    }
+    for (unsigned k = 0; k < sizeof ours / sizeof ours[0]; k++) { count(&ours[k], none); }
+    count(&soft_twins, none);
+    count(&soft_bare, none);
+#ifdef PEERS_CMSIS
+    count(&soft_cmsis, none);
+#endif
     exh_board_halt("done");
     return 0;
 }

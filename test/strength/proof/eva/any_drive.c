@@ -46,6 +46,7 @@ static void any_cfg(void)
     par.i_peak_A_q26 = Frama_C_interval(I_CONT_MAX_A_Q26, I_PEAK_MAX_A_Q26);
     par.i_cont_A_q26 = Frama_C_interval(0, I_CONT_MAX_A_Q26);
     par.mon_zero_raw = Frama_C_interval(INT16_MIN, INT16_MAX);
+    par.dac_rawpA_q16 = Frama_C_interval(65536, INT32_MAX);
     cfg.f_top_N_q20 = Frama_C_interval(1, INT32_MAX);
     cfg.tick_N_q20.mant = Frama_C_interval(0, INT32_MAX);
     cfg.tick_N_q20.shift = (uint8_t)Frama_C_unsigned_int_interval(0, 62);
@@ -54,6 +55,8 @@ static void any_cfg(void)
     cfg.i2t_fold.mant = Frama_C_interval(0, INT32_MAX);
     cfg.i2t_fold.shift = (uint8_t)Frama_C_unsigned_int_interval(0, 62);
     cfg.i2t_shift = (uint8_t)Frama_C_unsigned_int_interval(0, 62);
+    cfg.dac_A_q26.mant = Frama_C_interval(0, INT32_MAX);
+    cfg.dac_A_q26.shift = (uint8_t)Frama_C_unsigned_int_interval(0, 62);
 }
 
 static void any_state(void)

@@ -5,9 +5,8 @@
  *
  * PLANT: lib/src/sense/filter_low.c: const int64_t p = exh_wrap_add64(s->vel, v); -> const int64_t p = s->vel + v;
  * PLANT: lib/src/sense/filter_low.c: (int64_t)high_word(p) * c -> p * c
- * PLANT: lib/src/sense/filter_high.c: exh_wrap_diff64(exh_wrap_add64(mid, mid), vel) -> exh_wrap_add64(mid, mid) - vel
- * PLANT: lib/src/sense/filter_high.c: vel = bounded(s->vel); -> vel = 2 * s->vel;
- * PLANT: lib/src/sense/filter.c: exh_clamp64(v, most) * (INT64_C(1) << n) -> v * (INT64_C(1) << n)
+ * PLANT: lib/src/sense/filter_high.c: return (uint64_t)((int64_t)word * c); -> return (uint64_t)(word * c);
+ * PLANT: lib/src/sense/filter.c: exh_clamp64(s[i].pos, full) * (INT64_C(1) << more) -> s[i].pos * (INT64_C(1) << more)
  */
 #include "num/bytes.c"
 #include "sense/filter.c"

@@ -3,7 +3,7 @@
  * The gate: any state of the box, any ledger, any output frame, every number of fingers; of the
  * parameters and constants those that exh_drive_setup() lets pass.
  *
- * WP: every code within `dac_zero` +- `dac_span` and within 16 bits; in RELEASE none further from `dac_zero` than in the tick
+ * WP: every code within `dac_zero` +- `dac_span`, within `i_peak` and within 16 bits; in RELEASE none further from `dac_zero` than in the tick
  * before; a gate that is shut codes `dac_zero` for each finger and enables none; codes of fingers not in use are `dac_zero`;
  * nothing else is written.
  *
@@ -37,6 +37,8 @@ int main(void)
     for (unsigned k = 0; k < EXH_FINGERS; k++) {
         par[k].dac_zero_raw = Frama_C_interval(0, UINT16_MAX);
         par[k].dac_span_raw = Frama_C_interval(0, INT16_MAX);
+        par[k].i_peak_A_q26 = Frama_C_interval(6710886, 442918502);
+        par[k].dac_rawpA_q16 = Frama_C_interval(65536, INT32_MAX);
         cfg[k].par = &par[k];
         cfg[k].dac_A_q26.mant = Frama_C_interval(0, INT32_MAX);
         cfg[k].dac_A_q26.shift = (uint8_t)Frama_C_unsigned_int_interval(0, 62);
