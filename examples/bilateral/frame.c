@@ -24,12 +24,12 @@ void bilateral_frame_setup(struct bilateral_cfg *cfg)
     cfg->parts = (uint8_t)parts;
 }
 
-static unsigned parts_of(const struct bilateral_cfg *cfg)
+/* Parts that are done. Of damaged memory a part is another, and none beyond an array. */
+static unsigned done(const struct bilateral *s, const struct bilateral_cfg *cfg)
 {
-    return cfg->parts < BILATERAL_PARTS ? cfg->parts : BILATERAL_PARTS;
+    return at_most((unsigned)cfg->parts - s->frame.left, BILATERAL_PARTS);
 }
 
-/* Of damaged memory a part is another, and none beyond an array. */
 static void compute(struct bilateral *s, const struct bilateral_cfg *cfg, unsigned part)
 {
     int32_t *angle_turn_q32 = s->frame.angle_turn_q32;
@@ -37,10 +37,8 @@ static void compute(struct bilateral *s, const struct bilateral_cfg *cfg, unsign
     const unsigned first = at_most(from->sensors, EXH_GLOVE_SENSORS);
     const unsigned end = at_most(to->sensors, EXH_GLOVE_SENSORS);
     const unsigned places = at_most(to->places, bilateral_n(cfg));
-    if (first < end) {
-        exh_glove_angles(&s->glove, &cfg->glove, first, end, angle_turn_q32);
-        if (end == EXH_GLOVE_SENSORS) { exh_glove_cross(&cfg->glove, angle_turn_q32); }
-    }
+    exh_glove_angles(&s->glove, &cfg->glove, first, end, angle_turn_q32);
+    if (first < end && end == EXH_GLOVE_SENSORS) { exh_glove_cross(&cfg->glove, angle_turn_q32); }
     for (unsigned k = from->places; k < places; k++) {
         const unsigned f = bilateral_at(cfg, k);
         bilateral_finger_see(&s->finger[f], cfg, f, angle_turn_q32);
@@ -49,7 +47,7 @@ static void compute(struct bilateral *s, const struct bilateral_cfg *cfg, unsign
 
 static void next(struct bilateral *s, const struct bilateral_cfg *cfg)
 {
-    const unsigned parts = parts_of(cfg), part = parts - at_most(s->frame.left, parts);
+    const unsigned part = at_most(done(s, cfg), BILATERAL_PARTS - 1);
     compute(s, cfg, part);
     s->frame.places = cfg->part[part + 1].places;
     s->frame.left--;
@@ -66,10 +64,9 @@ static void newest(struct bilateral *s, const struct exh_scene_in *in)
 void bilateral_age(
     struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_scene_in *in)
 {
-    const unsigned parts = parts_of(cfg);
     const uint32_t before_ticks = bilateral_later(s->frame.before_ticks, in->missed);
     newest(s, in);
-    s->frame.places = cfg->part[parts - at_most(s->frame.left, parts)].places;
+    s->frame.places = cfg->part[done(s, cfg)].places;
     if (!in->glove_new && s->frame.left == 0) {
         s->frame.before_ticks = s->glove_age_ticks;
     } else {
@@ -86,7 +83,7 @@ static void begin(
     s->frame.faults =
         exh_glove_believe(&s->glove, &cfg->glove, &in->glove, s->frame.angle_turn_q32);
     s->glove_faults |= s->frame.faults; /* what is well again, is so when all fingers are seen */
-    s->frame.left = (uint8_t)parts_of(cfg);
+    s->frame.left = (uint8_t)at_most(cfg->parts, BILATERAL_PARTS);
 }
 
 void bilateral_see(

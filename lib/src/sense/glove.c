@@ -178,7 +178,7 @@ void exh_glove_angles(struct exh_glove *s, const struct exh_glove_cfg *cfg, unsi
 {
     const struct exh_glove_sensor *cal = &cfg->cal->sensor[from];
     int32_t *const x = angle_turn_q32; /* codes q16 on their way to become angles */
-    if (cfg->order > 0) {
+    if (cfg->order > 0 && from < to) {
         exh_filter_step(&s->filter[from], &cfg->filter, &x[from], &x[from], to - from);
     }
     for (unsigned i = from; i < to; i++, cal++) {

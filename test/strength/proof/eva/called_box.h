@@ -55,7 +55,7 @@ uint32_t exh_glove_believe(struct exh_glove *s, const struct exh_glove_cfg *cfg,
 void exh_glove_angles(struct exh_glove *s, const struct exh_glove_cfg *cfg, unsigned from,
     unsigned to, int32_t *angle_turn_q32)
 {
-    /*@ assert glove_angles: glove_cfg(cfg) && from <= to <= 22 && \valid(angle_turn_q32 + (0 .. 21)); */
+    /*@ assert glove_angles: glove_cfg(cfg) && from <= 22 && to <= 22 && \valid(angle_turn_q32 + (0 .. 21)); */
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { angle_turn_q32[i] = any32(); }
     *s = any_glove();
 }
