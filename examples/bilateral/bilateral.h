@@ -266,13 +266,6 @@ static inline struct exh_axis bilateral_axis(
         &c->watch, &now->track, &c->track, &now->drive, &cfg->drive[k]};
 }
 
-/* Ticks since something, behind a tick and those missed before it; UINT32_MAX stays. */
-static inline uint32_t bilateral_later(uint32_t ticks, uint32_t missed)
-{
-    ticks += missed < UINT32_MAX - ticks ? missed : UINT32_MAX - ticks;
-    return ticks + (ticks < UINT32_MAX);
-}
-
 /* --- parts (finger.c, frame.c, wire.c, trace.c) --- */
 
 int bilateral_finger_setup(struct bilateral_cfg *cfg, unsigned place, struct exh_scene_board board,
@@ -295,6 +288,8 @@ void bilateral_trace_bytes(struct exh_bytes *c, struct bilateral_trace *t);
 void bilateral_finger_bytes(struct exh_bytes *c, struct bilateral_finger *s);
 
 void bilateral_frame_setup(struct bilateral_cfg *cfg);
+/* Ticks since something, behind a tick and those missed before it; UINT32_MAX stays. */
+uint32_t bilateral_later(uint32_t ticks, uint32_t missed);
 /* In every tick, before anybody asks for an age. */
 void bilateral_age(
     struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_scene_in *in);

@@ -8,7 +8,7 @@
 static const struct bilateral_part upto[BILATERAL_PARTS + 1] = {
     {0, 0}, {4, 0}, {10, 0}, {16, 0}, {22, 0}, {22, 2}, {22, 4}, {22, 5}};
 
-static unsigned at_most(unsigned v, unsigned most) { return v < most ? v : most; }
+static unsigned smaller(unsigned a, unsigned b) { return a < b ? a : b; }
 
 /* As many as there are, or as there are ticks to the next frame: all of a frame is done by then. */
 void bilateral_frame_setup(struct bilateral_cfg *cfg)
@@ -18,7 +18,7 @@ void bilateral_frame_setup(struct bilateral_cfg *cfg)
     const unsigned parts = every - 1u < all ? every : all; /* of 0, which is refused, too */
     cfg->part[0] = upto[0];
     for (unsigned p = 1; p <= parts; p++) {
-        cfg->part[p] = upto[at_most((p * all + parts - 1) / parts, BILATERAL_PARTS)];
+        cfg->part[p] = upto[smaller((p * all + parts - 1) / parts, BILATERAL_PARTS)];
         if (cfg->part[p].places > cfg->n) { cfg->part[p].places = cfg->n; }
     }
     cfg->parts = (uint8_t)parts;
@@ -27,16 +27,16 @@ void bilateral_frame_setup(struct bilateral_cfg *cfg)
 /* Parts that are done. Of damaged memory a part is another, and none beyond an array. */
 static unsigned done(const struct bilateral *s, const struct bilateral_cfg *cfg)
 {
-    return at_most((unsigned)cfg->parts - s->frame.left, BILATERAL_PARTS);
+    return smaller((unsigned)cfg->parts - s->frame.left, BILATERAL_PARTS);
 }
 
 static void compute(struct bilateral *s, const struct bilateral_cfg *cfg, unsigned part)
 {
     int32_t *angle_turn_q32 = s->frame.angle_turn_q32;
     const struct bilateral_part *from = &cfg->part[part], *to = &cfg->part[part + 1];
-    const unsigned first = at_most(from->sensors, EXH_GLOVE_SENSORS);
-    const unsigned end = at_most(to->sensors, EXH_GLOVE_SENSORS);
-    const unsigned places = at_most(to->places, bilateral_n(cfg));
+    const unsigned first = smaller(from->sensors, EXH_GLOVE_SENSORS);
+    const unsigned end = smaller(to->sensors, EXH_GLOVE_SENSORS);
+    const unsigned places = smaller(to->places, bilateral_n(cfg));
     exh_glove_angles(&s->glove, &cfg->glove, first, end, angle_turn_q32);
     if (first < end && end == EXH_GLOVE_SENSORS) { exh_glove_cross(&cfg->glove, angle_turn_q32); }
     for (unsigned k = from->places; k < places; k++) {
@@ -47,7 +47,7 @@ static void compute(struct bilateral *s, const struct bilateral_cfg *cfg, unsign
 
 static void next(struct bilateral *s, const struct bilateral_cfg *cfg)
 {
-    const unsigned part = at_most(done(s, cfg), BILATERAL_PARTS - 1);
+    const unsigned part = smaller(done(s, cfg), BILATERAL_PARTS - 1);
     compute(s, cfg, part);
     s->frame.places = cfg->part[part + 1].places;
     s->frame.left--;
@@ -58,6 +58,12 @@ static void newest(struct bilateral *s, const struct exh_scene_in *in)
 {
     s->glove_age_ticks =
         s->worn && in->glove.age_ticks < UINT16_MAX ? in->glove.age_ticks : UINT32_MAX;
+}
+
+uint32_t bilateral_later(uint32_t ticks, uint32_t missed)
+{
+    ticks += missed < UINT32_MAX - ticks ? missed : UINT32_MAX - ticks;
+    return ticks + (ticks < UINT32_MAX);
 }
 
 /* The age of the frame before is for those fingers that are still of it. */
@@ -74,7 +80,7 @@ void bilateral_age(
     }
 }
 
-static void begin(
+static void take(
     struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_scene_in *in)
 {
     while (s->frame.left > 0) { next(s, cfg); } /* before its time; no filter misses a frame */
@@ -83,13 +89,13 @@ static void begin(
     s->frame.faults =
         exh_glove_believe(&s->glove, &cfg->glove, &in->glove, s->frame.angle_turn_q32);
     s->glove_faults |= s->frame.faults; /* what is well again, is so when all fingers are seen */
-    s->frame.left = (uint8_t)at_most(cfg->parts, BILATERAL_PARTS);
+    s->frame.left = (uint8_t)smaller(cfg->parts, BILATERAL_PARTS);
 }
 
 void bilateral_see(
     struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_scene_in *in)
 {
-    if (in->glove_new) { begin(s, cfg, in); }
+    if (in->glove_new) { take(s, cfg, in); }
     if (s->frame.left > 0) { next(s, cfg); }
 }
 
