@@ -44,9 +44,9 @@ static struct exh_filter_cheap cheap[CHANNELS];
 
 static void cheap_setup(const struct butterworth *f)
 {
-    const struct exh_filter_par par = {2, 1 << 16};
+    const struct exh_filter_par par = {2, (int32_t)(f->fc << 16)};
     const int32_t zero[CHANNELS] = {0};
-    EXH_ASSERT(exh_filter_cheap_setup(&cheap_cfg, &par, (struct exh_period){1, f->ticks}) == 0);
+    EXH_ASSERT(exh_filter_cheap_setup(&cheap_cfg, &par, (struct exh_period){1, f->fs}) == 0);
     exh_filter_cheap_reset(cheap, &cheap_cfg, zero, CHANNELS);
 }
 
