@@ -13,7 +13,7 @@
 
 /* link.c: an option by cli_call, into both ways. */
 int bilateral_take_link(void *ctx, const char *text);
-/* Recorded round trips, for both ways. 2 with words that begin with the option by which they came. */
+/* Recorded round trips, for both ways. Else 2, and words that begin with the option. */
 int bilateral_take_trace(struct bilateral_options *o, const char *option, const char *path);
 
 /* experiment.c: exit status. */
