@@ -33,10 +33,14 @@ static int is_log(const char *path) { return strstr(path, ".csv") != NULL; }
 
 int bilateral_take_trace(struct bilateral_options *o, const char *option, const char *path)
 {
-    char why[256] = "a FIFO: give a file";
-    if (fifo_is(path) || sim_trace_read(&o->trace, path,
-                             is_log(path) ? SIM_TRACE_ROUND : SIM_TRACE_MS, why, sizeof why) < 0) {
-        cli_complain("%s: %s: %s", option, path, why);
+    const enum sim_trace_kind kind = is_log(path) ? SIM_TRACE_ROUND : SIM_TRACE_MS;
+    char why[256];
+    if (fifo_is(path)) {
+        cli_complain("%s: %s: a FIFO: give a file", option, path);
+        return 2;
+    }
+    if (sim_trace_read(&o->trace, path, kind, why, sizeof why) < 0) {
+        cli_complain("%s: %s", option, why);
         return 2;
     }
     for (int w = 0; w < SIM_LINK_WAYS; w++) {
