@@ -75,7 +75,7 @@ TEST(step_is_its_definition)
 {
     while (check_case(20)) {
         struct exh_filter_cheap_cfg cfg;
-        struct exh_filter_cheap s, want;
+        struct exh_filter_cheap s = {0, 0, 0, 0}, want = s;
         tune(&cfg, check_i32_in(1, PER / 2 - 1));
         for (int t = 0; t < 60; t++) {
             const int32_t x = check_i32();

@@ -191,9 +191,8 @@ TEST(a_rail_is_the_end_of_a_move)
     const struct exh_filter_cheap_cfg *cfg = tuned(20 << 16, 1000);
     for (int sign = -1; sign <= 1; sign += 2) {
         const int64_t full = INT64_C(1) << 32;
-        struct exh_filter_cheap s = {sign * (INT32_MAX - 5) * full, sign * (full << 24), 0, 0};
-        const int32_t rail = sign < 0 ? INT32_MIN : INT32_MAX;
-        s.in1 = s.in2 = sign * (INT32_MAX - 5);
+        const int32_t rail = sign < 0 ? INT32_MIN : INT32_MAX, near = rail - 5 * sign;
+        struct exh_filter_cheap s = {near * full, sign * (full << 24), near, near};
         CHECK_EQ_I64(one(&s, cfg, s.in1), rail);
         CHECK_EQ_I64(s.vel, 0);
         CHECK_EQ_I64(s.pos, (int64_t)rail * full + full / 2);
