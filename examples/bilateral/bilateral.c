@@ -63,6 +63,7 @@ int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct
         cfg->vouches &= cfg->finger[cfg->at[k]].calib.vouches;
     }
     like_the_first(cfg);
+    bilateral_frame_setup(cfg);
     bilateral_wire_setup(&cfg->wire, &s->wire, (uint32_t)par->own.session, board.T);
     tell_pulls(cfg);
     if (err == 0) { err = exh_safety_setup(&cfg->safety, &par->safety, board.T); }
@@ -71,26 +72,6 @@ int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct
 }
 
 /* --- the tick --- */
-
-static void age_glove(struct bilateral *s, const struct exh_scene_in *in)
-{
-    s->glove_age_ticks =
-        s->worn && in->glove.age_ticks < UINT16_MAX ? in->glove.age_ticks : UINT32_MAX;
-}
-
-static void see(struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_scene_in *in)
-{
-    const unsigned n = bilateral_n(cfg);
-    int32_t angle_turn_q32[EXH_GLOVE_SENSORS];
-    if (!in->glove_new) { return; }
-    s->worn = 1;
-    age_glove(s, in);
-    s->glove_faults = exh_glove_step(&s->glove, &cfg->glove, &in->glove, angle_turn_q32);
-    for (unsigned k = 0; k < n; k++) {
-        const unsigned f = bilateral_at(cfg, k);
-        bilateral_finger_see(&s->finger[f], cfg, f, angle_turn_q32);
-    }
-}
 
 /* Position and velocity of all fingers in use, by place. Returns the drives' inputs by place. */
 static uint32_t sense(struct bilateral *s, const struct bilateral_cfg *cfg,
@@ -188,9 +169,9 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
     struct exh_drive_out placed;
 
     box.din = sense(s, cfg, in, sig->paper, now);
-    age_glove(s, in);
+    bilateral_age(s, cfg, in);
     bilateral_wire_take(s, cfg, mail, in->missed, params);
-    see(s, cfg, in);
+    bilateral_see(s, cfg, in);
     box.raised = bilateral_causes(s, cfg, in);
     permit = exh_axis_permit(&s->safety, &cfg->safety, now, n, box);
     for (unsigned k = 0; k < n; k++) {
@@ -226,6 +207,7 @@ void bilateral_bytes(struct exh_bytes *c, struct bilateral *s)
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) { bilateral_finger_bytes(c, &s->finger[f]); }
     exh_safety_serialize(c, &s->safety);
     exh_glove_serialize(c, &s->glove);
+    bilateral_frame_bytes(c, &s->frame);
     bilateral_wire_bytes(c, &s->wire);
     exh_bytes_u8(c, &s->worn);
     exh_bytes_u32(c, &s->glove_faults);

@@ -121,6 +121,24 @@ struct bilateral_finger {
     uint8_t clamped;
 };
 
+/* --- a glove frame --- */
+
+#define BILATERAL_PARTS 7
+
+/* A part of a frame is sensors and places of fingers up to these, from those of the one before. */
+struct bilateral_part {
+    uint8_t sensors, places;
+};
+
+/* The newest, on its way through the ticks until the next. */
+struct bilateral_frame {
+    int32_t angle_turn_q32[EXH_GLOVE_SENSORS]; /* codes q16, until they are angles */
+    uint32_t faults;                           /* sensors that it does not believe */
+    uint32_t before_ticks; /* how old the frame before is; UINT32_MAX: there is none */
+    uint8_t left;          /* parts still to be computed */
+    uint8_t places;        /* made anew in every tick: fingers at these places are of it */
+};
+
 /* --- the link --- */
 
 struct bilateral_wire_cfg {
@@ -143,6 +161,9 @@ struct bilateral_trace {
     uint8_t answer;       /* 1: it is still to be told */
 };
 
+#define BILATERAL_HELLO 1u
+#define BILATERAL_STATE 2u
+
 struct bilateral_wire {
     struct exh_wire_tx tx;
     struct exh_wire_rx rx;
@@ -154,6 +175,8 @@ struct bilateral_wire {
     uint32_t wait_ticks; /* to the next exchange */
     uint32_t differs;    /* enum exh_wire_difference, of the newest HELLO */
     uint32_t odd;        /* HELLOs that differed */
+    uint8_t due;         /* still to be sent: BILATERAL_HELLO, BILATERAL_STATE */
+    uint8_t heard;       /* 1: packets came in this tick */
     uint8_t acks;        /* answers to be given at the end of this tick */
     struct exh_wire_ack ack[EXH_SCENE_PACKETS];
     struct bilateral_trace trace;
@@ -170,11 +193,13 @@ struct bilateral_cfg {
     struct exh_drive_cfg drive[BILATERAL_FINGERS];
     struct exh_safety_cfg safety;
     struct exh_supply_cfg supply;
-    uint32_t glove_ticks, link_ticks; /* glove_ms, link_ms; 0: never */
-    uint8_t at[BILATERAL_FINGERS];    /* which finger is at this place */
-    uint8_t n;                        /* in use */
-    uint32_t rest_ticks;              /* f0_rest */
-    uint8_t tested;                   /* 1: known answers came out at set-up */
+    uint32_t glove_ticks, link_ticks;                /* glove_ms, link_ms; 0: never */
+    uint8_t at[BILATERAL_FINGERS];                   /* which finger is at this place */
+    uint8_t n;                                       /* in use */
+    uint8_t parts;                                   /* of a frame */
+    struct bilateral_part part[BILATERAL_PARTS + 1]; /* from part[p] to part[p + 1] */
+    uint32_t rest_ticks;                             /* f0_rest */
+    uint8_t tested;                                  /* 1: known answers came out at set-up */
     uint8_t vouches; /* enum exh_arm: by calibrations of all fingers in use, or waived */
     struct bilateral_wire_cfg wire;
 };
@@ -183,9 +208,10 @@ struct bilateral {
     struct bilateral_finger finger[BILATERAL_FINGERS];
     struct exh_safety safety;
     struct exh_glove glove;
+    struct bilateral_frame frame;
     struct bilateral_wire wire;
     uint8_t worn;          /* a glove frame has come */
-    uint32_t glove_faults; /* in the newest */
+    uint32_t glove_faults; /* in the newest, or in one that fingers are still of */
     struct exh_supply supply;
     uint32_t unsure_ticks; /* nothing new known of a finger in use since */
     uint8_t broken;        /* 1: configuration or parameters changed (guard.h); of whoever looks */
@@ -240,7 +266,7 @@ static inline struct exh_axis bilateral_axis(
         &c->watch, &now->track, &c->track, &now->drive, &cfg->drive[k]};
 }
 
-/* --- parts (finger.c, wire.c, trace.c) --- */
+/* --- parts (finger.c, frame.c, wire.c, trace.c) --- */
 
 int bilateral_finger_setup(struct bilateral_cfg *cfg, unsigned place, struct exh_scene_board board,
     struct exh_scene_calib *calib);
@@ -261,10 +287,21 @@ void bilateral_trace_write(struct bilateral *s, const struct bilateral_cfg *cfg,
 void bilateral_trace_bytes(struct exh_bytes *c, struct bilateral_trace *t);
 void bilateral_finger_bytes(struct exh_bytes *c, struct bilateral_finger *s);
 
-/* The age of what is known of where it is; UINT32_MAX: nothing, as one of its sensors is not
- * believed: held angles make a distance that is not. */
+void bilateral_frame_setup(struct bilateral_cfg *cfg);
+/* Ticks since something, behind a tick and those missed before it; UINT32_MAX stays. */
+uint32_t bilateral_later(uint32_t ticks, uint32_t missed);
+/* In every tick, before anybody asks for an age. */
+void bilateral_age(
+    struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_scene_in *in);
+/* In every tick: takes a frame that is new, and computes a part of the newest. */
+void bilateral_see(
+    struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_scene_in *in);
+void bilateral_frame_bytes(struct exh_bytes *c, struct bilateral_frame *s);
+
+/* The age of what is known of where the finger at a place is; UINT32_MAX: nothing, as one of its
+ * sensors is not believed: held angles make a distance that is not. */
 uint32_t bilateral_finger_age(
-    const struct bilateral *s, const struct bilateral_cfg *cfg, unsigned f);
+    const struct bilateral *s, const struct bilateral_cfg *cfg, unsigned place);
 /* Of the box, behind link and glove: enum exh_fault. */
 int bilateral_cause_setup(struct bilateral_cfg *cfg, struct exh_period T);
 uint32_t bilateral_causes(

@@ -15,12 +15,6 @@ int bilateral_cause_setup(struct bilateral_cfg *cfg, struct exh_period T)
     return exh_supply_setup(&cfg->supply, &cfg->par->supply, T);
 }
 
-static uint32_t later(uint32_t ticks, uint32_t missed)
-{
-    ticks += missed < UINT32_MAX - ticks ? missed : UINT32_MAX - ticks;
-    return ticks + (ticks < UINT32_MAX);
-}
-
 /* Of no finger in use the glove may have known nothing for so long: a sensor that is not believed,
  * no frame, or an old one. Where an age ends, be it that its 16 bits do, time goes on from it. What
  * its finger does until then is precontact's: it is let go alone. */
@@ -29,14 +23,14 @@ static int glove_lost(struct bilateral *s, const struct bilateral_cfg *cfg, uint
     uint32_t oldest = 0;
     int unsure = 0;
     for (unsigned k = 0; k < bilateral_n(cfg); k++) {
-        const uint32_t age_ticks = bilateral_finger_age(s, cfg, bilateral_at(cfg, k));
+        const uint32_t age_ticks = bilateral_finger_age(s, cfg, k);
         if (age_ticks == UINT32_MAX) {
             unsure = 1;
         } else if (age_ticks > oldest) {
             oldest = age_ticks;
         }
     }
-    s->unsure_ticks = unsure ? later(s->unsure_ticks, missed) : 0;
+    s->unsure_ticks = unsure ? bilateral_later(s->unsure_ticks, missed) : 0;
     if (s->unsure_ticks < oldest) { s->unsure_ticks = oldest; }
     return cfg->glove_ticks != 0 && s->unsure_ticks >= cfg->glove_ticks;
 }

@@ -13,12 +13,6 @@ static uint32_t sensors_of(const struct exh_hand_map *map, unsigned f)
     return mask;
 }
 
-uint32_t bilateral_finger_age(
-    const struct bilateral *s, const struct bilateral_cfg *cfg, unsigned f)
-{
-    return s->glove_faults & cfg->finger[f].sensors ? UINT32_MAX : s->glove_age_ticks;
-}
-
 int bilateral_finger_setup(struct bilateral_cfg *cfg, unsigned place, struct exh_scene_board board,
     struct exh_scene_calib *calib)
 {
@@ -106,7 +100,7 @@ uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *
     const unsigned f = bilateral_at(cfg, place);
     struct bilateral_finger *now = &s->finger[f];
     const struct exh_precontact_in where = {now->tip_m_q30, now->slope_q24, p->q_m_q30,
-        bilateral_finger_age(s, cfg, f), now->contact.touching, permit->mode == EXH_PERMIT_OPEN,
+        bilateral_finger_age(s, cfg, place), now->contact.touching, permit->mode == EXH_PERMIT_OPEN,
         p->qd_mps_q27};
     struct exh_contact_in q = {p->q_m_q30, p->qd_mps_q27, 0};
     struct exh_contact_par law;

@@ -40,7 +40,7 @@ static void take_planes(
     for (unsigned k = 0; k < bilateral_n(cfg); k++) {
         const unsigned f = bilateral_at(cfg, k);
         const struct exh_plane plane = exh_wire_plane_of(planes, f);
-        if (bilateral_finger_age(s, cfg, f) == UINT32_MAX) { continue; }
+        if (bilateral_finger_age(s, cfg, k) == UINT32_MAX) { continue; }
         (void)exh_precontact_update(&s->finger[f].precontact, &cfg->finger[f].precontact, &plane,
             age_ticks); /* a refused one it counts itself */
     }
@@ -68,9 +68,9 @@ void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
     if (exh_wire_poll(&w->rx, now_us(w) - before_us, 1000u * (uint32_t)cfg->par->own.quiet_ms)) {
         w->exchanges = 0; /* perhaps it does not know us any more */
     }
-    w->age_ticks += missed < UINT32_MAX - w->age_ticks ? missed : UINT32_MAX - w->age_ticks;
-    w->age_ticks += w->age_ticks < UINT32_MAX;
+    w->age_ticks = bilateral_later(w->age_ticks, missed);
     w->acks = 0;
+    w->heard = in->packets > 0;
     for (unsigned i = 0; i < in->packets; i++) {
         struct exh_wire_packet p;
         const uint32_t session = w->rx.session;
@@ -158,6 +158,23 @@ static void put_state(struct bilateral *s, const struct bilateral_cfg *cfg,
     bilateral_wire_put(&s->wire, out, &p);
 }
 
+/* One of the two in a tick, and none in a tick that has to read packets, so that no tick pays for
+ * both: they wait, but not beyond the last tick before a state is due again. */
+static void put_due(struct bilateral *s, const struct bilateral_cfg *cfg,
+    const struct bilateral_signals *sig, struct exh_scene_mail *out)
+{
+    struct bilateral_wire *w = &s->wire;
+    const int last = w->wait_ticks == 1;
+    if (w->heard && !last && w->tx.seq > 0) { return; } /* a hello comes before all else */
+    if (w->due & BILATERAL_HELLO) {
+        put_hello(w, &cfg->wire, out);
+        w->due &= (uint8_t)~BILATERAL_HELLO;
+        if (!last) { return; }
+    }
+    put_state(s, cfg, sig, out);
+    w->due = 0;
+}
+
 void bilateral_write(struct bilateral *s, const struct bilateral_cfg *cfg,
     struct bilateral_signals *sig, struct exh_scene_mail *out)
 {
@@ -168,9 +185,10 @@ void bilateral_write(struct bilateral *s, const struct bilateral_cfg *cfg,
         const int alone = w->age_ticks == UINT32_MAX || w->rx.open;
         const uint32_t every = alone ? HELLO_AT_FIRST : HELLO_THEN;
         w->wait_ticks = state_every;
-        if ((w->exchanges++ & (every - 1)) == 0) { put_hello(w, &cfg->wire, out); }
-        put_state(s, cfg, sig, out);
+        w->due |= BILATERAL_STATE;
+        if ((w->exchanges++ & (every - 1)) == 0) { w->due |= BILATERAL_HELLO; }
     }
+    if (w->due) { put_due(s, cfg, sig, out); }
     w->wait_ticks--;
     for (unsigned i = 0; i < w->acks; i++) { /* what has no room is asked for again */
         struct exh_wire_packet p = {.type = EXH_WIRE_ACK};
@@ -198,6 +216,8 @@ void bilateral_wire_bytes(struct exh_bytes *c, struct bilateral_wire *s)
     exh_bytes_u32(c, &s->differs);
     s->differs &= EXH_WIRE_ROLE | EXH_WIRE_LIB | EXH_WIRE_TABLE;
     exh_bytes_u32(c, &s->odd);
-    s->acks = 0; /* none between two ticks */
+    exh_bytes_u8(c, &s->due);
+    s->due &= BILATERAL_HELLO | BILATERAL_STATE;
+    s->acks = s->heard = 0; /* none between two ticks */
     bilateral_trace_bytes(c, &s->trace);
 }

@@ -201,13 +201,18 @@ static int unlike(struct exh_mm32xat *m, unsigned want_empty, struct exh_card_fa
  * overflowed, before the last there is one, after it there is none. */
 static int pop(struct exh_mm32xat *m, unsigned n, struct exh_card_fault *f)
 {
-    const unsigned last = m->par.channels - 1u;
-    int bad = m->taken == 0 ? unlike(m, 0, f) : 0;
-    for (; n > 0 && m->taken <= last && bad == 0; n--) {
-        if (m->taken == last && last > 0) { bad = unlike(m, 0, f); }
-        if (bad == 0) { m->part[m->taken++] = sample(m); }
+    const unsigned last = m->par.channels - 1u, end = m->taken + n;
+    unsigned k = m->taken;
+    int bad = k == 0 ? unlike(m, 0, f) : 0;
+    if (bad == 0) {
+        for (; k < end && k < last; k++) { m->part[k] = sample(m); }
+        if (k == last && k < end) {
+            if (last > 0) { bad = unlike(m, 0, f); }
+            if (bad == 0) { m->part[k++] = sample(m); }
+        }
     }
-    return bad == 0 && m->taken > last ? unlike(m, MM_EMPTY, f) : bad;
+    m->taken = (uint8_t)k;
+    return bad == 0 && k > last ? unlike(m, MM_EMPTY, f) : bad;
 }
 
 /* After as many samples as channels, or none that is worth having. */

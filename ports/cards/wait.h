@@ -19,15 +19,21 @@ static inline struct exh_wait exh_wait_us(uint32_t limit_us)
     return w;
 }
 
+/* Polls from one look at the time to the next, a power of two: a look costs three polls. */
+#define EXH_WAIT_LOOK 8u
+
 /* After a poll that found nothing: is there to be another? Between two looks at the time lies
  * a poll, so whoever was held up in between is not told that the card was. The first poll
  * costs no look at the time. */
 static inline int exh_wait_more(struct exh_wait *w)
 {
-    const uint32_t now_us = exh_io_time_us();
-    if (w->polls == 0) { w->start_us = now_us; }
-    if (w->polls++ >= w->limit_us * EXH_WAIT_POLLS_PER_US) { return 0; } /* or the limit is gone */
-    if (now_us - w->start_us > w->limit_us) { w->limit_us = 0; }         /* one more poll */
+    const uint32_t polls = w->polls++;
+    if (polls >= w->limit_us * EXH_WAIT_POLLS_PER_US) { return 0; } /* or the limit is gone */
+    if ((polls & (EXH_WAIT_LOOK - 1u)) == 0) {
+        const uint32_t now_us = exh_io_time_us();
+        if (polls == 0) { w->start_us = now_us; }
+        if (now_us - w->start_us > w->limit_us) { w->limit_us = 0; } /* one more poll */
+    }
     return 1;
 }
 

@@ -145,7 +145,8 @@ static void any_par(struct golden_rng *r, uint32_t rate_Hz, uint32_t k)
     p->own.glove_ms = golden_draw(r, 0, 15) ? any_ms(r, 4, 10, rate_Hz) : 0;
     p->own.link_ms = golden_draw(r, 0, 15) ? any_ms(r, 10, 14, rate_Hz) : 0;
     p->calib.uncalibrated = 1;
-    p->glove_own.every = (int32_t)golden_draw(r, 1, 4);
+    /* Below 0.25 Hz, no legal cutoff is left. */
+    p->glove_own.every = (int32_t)golden_draw(r, 1, T.num < T.den ? 8 : 4);
     p->glove_own.present = (INT32_C(1) << EXH_GLOVE_SENSORS) - 1;
     for (unsigned f = 0; f < FINGERS; f++) { any_finger(f, r, rate_Hz); }
     for (unsigned i = 0; i < BILATERAL_MATERIALS; i++) {
@@ -367,7 +368,8 @@ static void any_frame(struct golden_rng *r, const struct golden_wave *w, uint32_
         rig.wrong = 0;
     }
     if (away(k)) { rig.wrong = (UINT32_C(1) << EXH_GLOVE_SENSORS) - 1; }
-    if (k % (uint32_t)rig.par.glove_own.every != 0 || golden_draw(r, 0, 31) == 0) { return; }
+    /* Now and then one is missing, or early. */
+    if ((k % (uint32_t)rig.par.glove_own.every != 0) != (golden_draw(r, 0, 31) == 0)) { return; }
     rig.in.glove_new = 1;
     g->age_ticks = 0;
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {

@@ -190,6 +190,7 @@ MODULE(probe);
 MODULE(home);
 MODULE(weigh);
 MODULE(filter);
+MODULE(filter_cheap);
 MODULE(quantizer);
 MODULE(gains);
 MODULE(glove);
@@ -209,5 +210,5 @@ MODULE(bilateral);
 TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, record, ring, signal, slots, quad,
     quad_ab, velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table, drive,
     track, watch, guard, supply, passivity, safety, calibrate, probe, home, weigh, filter,
-    quantizer, gains, glove, glove_every, glove_cal, angle, hand, precontact, wire, mirror, modbus,
-    modbus_rtu, drop, guarded, bilateral);
+    filter_cheap, quantizer, gains, glove, glove_every, glove_cal, angle, hand, precontact, wire,
+    mirror, modbus, modbus_rtu, drop, guarded, bilateral);

@@ -36,6 +36,7 @@ GOLDEN_MODULE(probe);
 GOLDEN_MODULE(home);
 GOLDEN_MODULE(weigh);
 GOLDEN_MODULE(filter);
+GOLDEN_MODULE(filter_cheap);
 GOLDEN_MODULE(quantizer);
 GOLDEN_MODULE(gains);
 GOLDEN_MODULE(glove);

@@ -21,14 +21,13 @@ static const struct load {
     int parts;           /* ticks in which a glove scan is taken; 0: no glove */
     const char *counted;
 } load[] = {
-    {"drop", 20000, 14, 0, 3919, 2, 0, "make hil ARGS=rates, all in every tick"},
-    {"drop, in turn", 20000, 11, 0, 3794, 1, 0, "make hil ARGS=rates, turns=1"},
-    {"bilateral, a frame at once", 10000, 44, 49, 23782, 4, 1,
-        "accesses: test/device/cards; instructions as below"},
-    {"bilateral, in turn, frame", 10000, 30, 1, 23782, 1, 6,
-        "make hil ARGS=box, turns=1 scan_slice=4: frame and packet"},
-    {"bilateral, in turn, part", 10000, 30, 10, 17683, 1, 6,
-        "the same less a frame's 6099: packet, and 4 samples"},
+    {"drop", 20000, 14, 0, 3816, 2, 0, "make hil ARGS=rates, all in every tick"},
+    {"drop, in turn", 20000, 11, 0, 3785, 1, 0, "make hil ARGS=rates, turns=1"},
+    {"bilateral, a frame at once", 10000, 44, 49, 22190, 4, 1,
+        "accesses: test/device/cards; make hil ARGS=box, 2 kHz: a frame in every tick"},
+    {"bilateral, in turn, frame", 10000, 30, 1, 15737, 1, 11,
+        "make hil ARGS=box, 10 kHz, turns=1 scan_slice=2: packets and a part"},
+    {"bilateral, in turn, part", 10000, 30, 6, 15737, 1, 11, "the same, and 2 samples"},
 };
 #define LOADS       ((int)(sizeof load / sizeof load[0]))
 #define TIMER_READS 5 /* and one access to the interrupt controller, in every tick */

@@ -12,7 +12,9 @@
 #define EXHAND_CONTACT_H
 
 #include "exhand/bytes.h"
+#include "exhand/fix.h"
 #include "exhand/signal.h"
+#include "exhand/units.h"
 
 #include <stdint.h>
 
@@ -65,12 +67,65 @@ struct exh_force_ledger {
     int32_t force_N_q20;     /* the force commanded */
 };
 
+/* Where a distance may leave 32 bits, and of the first sample: the wall to go by, no farther than
+ * +-2 m. */
+int32_t exh_contact_wall(struct exh_contact *s, int32_t pos_m_q30, int32_t lim_m_q30);
+
+/* Two states: the farthest point since the last reversal moves along; a return of more than the
+ * band from it is the next reversal. The distance fits uint32_t in both directions. Returns F0. */
+static inline int32_t exh_contact_pullback(
+    struct exh_contact *s, const struct exh_contact_par *par, int32_t pos)
+{
+    const int32_t turn = s->turn_m_q30;
+    const uint32_t band = (uint32_t)par->f0_band_m_q30;
+    if (s->inward) {
+        if (pos < turn) {
+            s->turn_m_q30 = pos;
+        } else if ((uint32_t)pos - (uint32_t)turn > band) {
+            s->turn_m_q30 = pos;
+            s->inward = 0;
+            return 0;
+        }
+        return par->f0_N_q20;
+    }
+    if (pos > turn) {
+        s->turn_m_q30 = pos;
+    } else if ((uint32_t)turn - (uint32_t)pos > band) {
+        s->turn_m_q30 = pos;
+        s->inward = 1;
+        return par->f0_N_q20;
+    }
+    return 0;
+}
+
 /* One tick. Fills spring, damper and pullback, zeroes passivity; the rest is drive.h's. Each term
  * is rounded once: the sum is within 1 LSB (0.95 uN) of exact for every input; penetration q -
  * q_lim saturates at +-2 m. Returns `touching`: it sets at q >= q_lim and clears at q < q_lim -
- * hyst. */
-int exh_contact_step(struct exh_contact *s, const struct exh_contact_par *par,
-    struct exh_contact_in in, struct exh_force_ledger *out);
+ * hyst. Inline, as a scene has one law: a call with all that goes in costs half of it again. */
+static inline int exh_contact_step(struct exh_contact *s, const struct exh_contact_par *par,
+    struct exh_contact_in in, struct exh_force_ledger *out)
+{
+    /* Half of the format: of two positions within it no difference wraps. */
+    const uint32_t half = UINT32_C(1) << 30;
+    const uint32_t beyond =
+        (((uint32_t)in.pos_m_q30 + half) | ((uint32_t)in.lim_m_q30 + half)) >> 31;
+    const int32_t hyst = par->hyst_m_q30 & -(int32_t)s->touching;
+    int32_t pen, on;
+    if (beyond || !s->started) { in.lim_m_q30 = exh_contact_wall(s, in.pos_m_q30, in.lim_m_q30); }
+    pen = exh_wrap_diff(in.pos_m_q30, in.lim_m_q30);
+    /* All bits set unless below 0 and below -hyst; a hysteresis of damaged memory is none. */
+    on = ~((pen & (exh_wrap_add(pen, hyst) | hyst)) >> 31);
+    s->touching = (uint8_t)-on;
+
+    /* Both products in every tick: the cost must not depend on contact. Each is stored before the
+     * next begins: a small CPU has no registers for all. */
+    out->spring_N_q20 = exh_mul_shr(par->k_Npm_q10, pen & on, EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE);
+    out->damper_N_q20 =
+        exh_mul_shr(par->b_Nspm_q20, in.vel_mps_q27 & on, EXH_Q_B + EXH_Q_VEL - EXH_Q_FORCE);
+    out->passivity_N_q20 = 0;
+    out->pullback_N_q20 = exh_contact_pullback(s, par, in.pos_m_q30);
+    return -on;
+}
 
 /* The same where there is nothing to touch: no q_lim is far enough away for every position. The
  * pull-back force alone is left, and the contact has ended. */

@@ -45,6 +45,7 @@
 
 /* sensing */
 #include "exhand/filter.h"
+#include "exhand/filter_cheap.h"
 #include "exhand/frame.h"
 #include "exhand/glove.h"
 #include "exhand/hand.h"

@@ -36,14 +36,6 @@ static inline int32_t exh_from_u32(uint32_t u)
     return u <= INT32_MAX ? (int32_t)u : -(int32_t)(UINT32_MAX - u) - 1;
 }
 
-/* v limited to int32_t, not audited. Tests the low word only: after a 64-bit comparison, 32-bit
- * compilers keep the rest of the expression in 64 bits. */
-static inline int32_t exh_limit32(int64_t v)
-{
-    const int32_t low = exh_from_u32((uint32_t)((uint64_t)v & UINT32_MAX));
-    return low == v ? low : INT32_MAX ^ (int32_t)(v >> 32) >> 31;
-}
-
 /* v limited to int32_t; the sign is always kept. */
 static inline int32_t exh_sat32(int64_t v)
 {

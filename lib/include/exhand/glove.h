@@ -232,6 +232,16 @@ int exh_glove_setup(struct exh_glove_cfg *cfg, const struct exh_glove_par *par,
 uint32_t exh_glove_step(struct exh_glove *s, const struct exh_glove_cfg *cfg,
     const struct exh_glove_in *in, int32_t *angle_turn_q32);
 
+/* The same in parts, for a frame that is spread over ticks. The bits are the same. First: the codes
+ * that are believed; returns who is faulty. Then: the angles of sensors from .. to - 1, in any
+ * parts; both at most 22; none if from >= to. Last: the cross terms of all. One array of 22 goes
+ * through all: its codes become angles. */
+uint32_t exh_glove_believe(struct exh_glove *s, const struct exh_glove_cfg *cfg,
+    const struct exh_glove_in *in, int32_t *code_raw_q16);
+void exh_glove_angles(struct exh_glove *s, const struct exh_glove_cfg *cfg, unsigned from,
+    unsigned to, int32_t *angle_turn_q32);
+void exh_glove_cross(const struct exh_glove_cfg *cfg, int32_t *angle_turn_q32);
+
 /* State through a cursor (bytes.h). */
 void exh_glove_serialize(struct exh_bytes *c, struct exh_glove *s);
 

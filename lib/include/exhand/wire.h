@@ -202,13 +202,13 @@ struct exh_wire_rx {
  * forged one far ahead. 1 if it has become open now. */
 int exh_wire_poll(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us);
 
-/* One datagram. Its type, > 0, when it was accepted: only then *p is written, and more changes
- * than a counter (and, of a reordered one, that it came). Else -EXH_E_SHORT, -EXH_E_CRC (also
- * a value that cannot be), -EXH_E_VERSION, -EXH_E_UNKNOWN, -EXH_E_STATE (stranger),
- * -EXH_E_STALE (duplicate, reordered, old), -EXH_E_RANGE (far). A HELLO of a new session is taken
- * whatever its sequence number: the peer has started anew. A PARAM or ACK that came late, but not
- * before, is taken, too, once. So is, of an open receiver, any HELLO
- * but the newest packet itself once more. Reads len_B bytes at most. */
+/* One datagram. Its type, > 0, when it was accepted. Only then *p is written, and of its u what
+ * that type has; and more changes than a counter (and, of a reordered one, that it came). Else
+ * -EXH_E_SHORT, -EXH_E_CRC (also a value that cannot be), -EXH_E_VERSION, -EXH_E_UNKNOWN,
+ * -EXH_E_STATE (stranger), -EXH_E_STALE (duplicate, reordered, old), -EXH_E_RANGE (far). A HELLO of
+ * a new session is taken whatever its sequence number: the peer has started anew. A PARAM or ACK
+ * that came late, but not before, is taken, too, once. So is, of an open receiver, any HELLO but
+ * the newest packet itself once more. Reads len_B bytes at most. */
 int exh_wire_decode(
     struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf, size_t len_B);
 

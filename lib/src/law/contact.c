@@ -18,52 +18,24 @@ const struct exh_signal exh_contact_rows[EXH_CONTACT_ROWS] = {
         "contact ends this far before q_lim"},
 };
 
-/* Two states: the farthest point since the last reversal moves along; a return of more than the
- * band from it is the next reversal. The distance fits uint32_t in both directions. */
-static inline void follow_reversals(struct exh_contact *s, int32_t pos, int32_t band)
+int32_t exh_contact_wall(struct exh_contact *s, int32_t pos_m_q30, int32_t lim_m_q30)
 {
-    const int32_t turn = s->turn_m_q30;
+    const int32_t pen = exh_diff_sat32(pos_m_q30, lim_m_q30);
     if (!s->started) {
-        s->turn_m_q30 = pos;
+        s->turn_m_q30 = pos_m_q30;
         s->started = 1;
-    } else if (s->inward ? pos < turn : pos > turn) {
-        s->turn_m_q30 = pos;
-    } else if ((s->inward ? (uint32_t)pos - (uint32_t)turn : (uint32_t)turn - (uint32_t)pos) >
-               (uint32_t)band) {
-        s->turn_m_q30 = pos;
-        s->inward = !s->inward;
     }
-}
-
-int exh_contact_step(struct exh_contact *s, const struct exh_contact_par *par,
-    struct exh_contact_in in, struct exh_force_ledger *out)
-{
-    const int32_t pen = exh_diff_sat32(in.pos_m_q30, in.lim_m_q30);
-    int touching;
-    int32_t on;
-
-    follow_reversals(s, in.pos_m_q30, par->f0_band_m_q30);
-    touching = pen >= 0 ||
-               (s->touching && pen > ~par->hyst_m_q30); /* ~h is -h - 1, which fits for any h */
-    s->touching = (uint8_t)touching;
-
-    /* Both products in every tick: the cost must not depend on contact. */
-    on = -(int32_t)touching;
-    out->spring_N_q20 = exh_mul_shr(par->k_Npm_q10 & on, pen, EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE);
-    out->damper_N_q20 =
-        exh_mul_shr(par->b_Nspm_q20 & on, in.vel_mps_q27, EXH_Q_B + EXH_Q_VEL - EXH_Q_FORCE);
-    out->pullback_N_q20 = par->f0_N_q20 & -(int32_t)s->inward;
-    out->passivity_N_q20 = 0;
-    return touching;
+    return exh_wrap_diff(pos_m_q30, pen);
 }
 
 void exh_contact_step_free(struct exh_contact *s, const struct exh_contact_par *par,
     int32_t pos_m_q30, struct exh_force_ledger *out)
 {
-    const struct exh_contact_in far = {pos_m_q30, 0, INT32_MAX};
-    (void)exh_contact_step(s, par, far, out);
-    s->touching = 0; /* at the end of the format it met */
-    out->spring_N_q20 = 0;
+    if (!s->started) { (void)exh_contact_wall(s, pos_m_q30, pos_m_q30); }
+    s->touching = 0;
+    out->spring_N_q20 = out->damper_N_q20 = 0;
+    out->pullback_N_q20 = exh_contact_pullback(s, par, pos_m_q30);
+    out->passivity_N_q20 = 0;
 }
 
 void exh_contact_serialize(struct exh_bytes *c, struct exh_contact *s)

@@ -5,6 +5,7 @@
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
+#include "filter_setup.h"
 #include "filter_tick.h"
 #include "../num/real.h"
 
@@ -68,20 +69,28 @@ static void high1(struct exh_filter_cfg *cfg, struct exh_real g)
     cfg->a = coefficient(exh_real_div(g, exh_real_add(exh_real_of(1), g)), 31, 31);
 }
 
-int exh_filter_setup(
-    struct exh_filter_cfg *cfg, const struct exh_filter_par *par, struct exh_period T)
+int exh_filter_ratio(
+    uint64_t *fc, uint64_t *rate, const struct exh_filter_par *par, struct exh_period T)
 {
-    /* fc T = num / den */
     const uint64_t num = par->fc_Hz_q16 > 0 ? (uint64_t)par->fc_Hz_q16 * T.num : 0;
     const uint64_t den = (uint64_t)T.den << 16;
-    struct exh_real g, damped;
-    int high;
-
+    *fc = num;
+    *rate = den;
     /* Frames of a glove may come slower than any loop runs. */
     if (T.num == 0 || T.den == 0) { return -EXH_E_RATE; }
     if (num == 0 || par->order < 1 || par->order > 2) { return -EXH_E_RANGE; }
     if (num >= den / 2) { return -EXH_E_CUTOFF; }
-    if (num < den >> 21) { return -EXH_E_RANGE; }
+    return num < den >> 21 ? -EXH_E_RANGE : 0;
+}
+
+int exh_filter_setup(
+    struct exh_filter_cfg *cfg, const struct exh_filter_par *par, struct exh_period T)
+{
+    uint64_t num, den;
+    struct exh_real g, damped;
+    const int err = exh_filter_ratio(&num, &den, par, T);
+    int high;
+    if (err != 0) { return err; }
 
     g = exh_real_tan_pi(num, den);
     /* g > 11/32. Beyond a quarter of the rate g > 1, and without end. */

@@ -145,7 +145,50 @@ static void start(
 
 /* --- the tick --- */
 
-static void cross(const struct exh_glove_cfg *cfg, int32_t *angle_turn_q32)
+uint32_t exh_glove_believe(struct exh_glove *s, const struct exh_glove_cfg *cfg,
+    const struct exh_glove_in *in, int32_t *code_raw_q16)
+{
+    uint32_t faulty = 0;
+    if (!s->started) { start(s, cfg, in); }
+    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
+        const int16_t raw = in->raw[i];
+        if (raw < cfg->lo_raw[i] || raw > cfg->hi_raw[i] || (s->run[i] | s->cause[i]) != 0) {
+            doubt(s, cfg, i, raw);
+            faulty |= (uint32_t)(s->cause[i] != EXH_GLOVE_GOOD) << i;
+        } else {
+            s->good_raw[i] = raw;
+        }
+        code_raw_q16[i] = s->good_raw[i] * (INT32_C(1) << EXH_Q_RAW);
+    }
+    return faulty;
+}
+
+/* The limit is seen in the high word alone, of a small CPU. */
+static inline int32_t angle_of(int32_t from_zero_raw_q15, int32_t gain_turnpraw_q38)
+{
+    const unsigned n = EXH_Q_ZERO + EXH_Q_TPRAW - EXH_Q_TURN;
+    const uint64_t half = UINT64_C(1) << (31 + n);
+    const int64_t v = (int64_t)from_zero_raw_q15 * gain_turnpraw_q38 + (INT64_C(1) << (n - 1));
+    if ((uint64_t)v + half >= 2 * half) { return exh_sat32(v >> n); }
+    return exh_from_u32((uint32_t)((uint64_t)v >> n & UINT32_MAX));
+}
+
+void exh_glove_angles(struct exh_glove *s, const struct exh_glove_cfg *cfg, unsigned from,
+    unsigned to, int32_t *angle_turn_q32)
+{
+    const struct exh_glove_sensor *cal = &cfg->cal->sensor[from];
+    int32_t *const x = angle_turn_q32; /* codes q16 on their way to become angles */
+    if (cfg->order > 0 && from < to) {
+        exh_filter_step(&s->filter[from], &cfg->filter, &x[from], &x[from], to - from);
+    }
+    for (unsigned i = from; i < to; i++, cal++) {
+        const int32_t code = quantizer_in_place(&s->quantizer[i], &cfg->quantizer, x[i]);
+        /* Half the code: the difference to a zero at the far end fits. */
+        x[i] = angle_of(exh_wrap_diff(code >> 1, cal->zero_raw_q15), cal->gain_turnpraw_q38);
+    }
+}
+
+void exh_glove_cross(const struct exh_glove_cfg *cfg, int32_t *angle_turn_q32)
 {
     for (unsigned n = 0; n < cfg->crosses && n < EXH_GLOVE_SENSORS; n++) {
         const unsigned i = cfg->crossed[n] < EXH_GLOVE_SENSORS ? cfg->crossed[n] : 0;
@@ -164,28 +207,9 @@ static void cross(const struct exh_glove_cfg *cfg, int32_t *angle_turn_q32)
 uint32_t exh_glove_step(struct exh_glove *s, const struct exh_glove_cfg *cfg,
     const struct exh_glove_in *in, int32_t *angle_turn_q32)
 {
-    const struct exh_glove_sensor *cal = cfg->cal->sensor;
-    int32_t *const x = angle_turn_q32; /* codes q16 on their way to become angles */
-    uint32_t faulty = 0;
-    if (!s->started) { start(s, cfg, in); }
-    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
-        const int16_t raw = in->raw[i];
-        if (raw < cfg->lo_raw[i] || raw > cfg->hi_raw[i] || (s->run[i] | s->cause[i]) != 0) {
-            doubt(s, cfg, i, raw);
-            faulty |= (uint32_t)(s->cause[i] != EXH_GLOVE_GOOD) << i;
-        } else {
-            s->good_raw[i] = raw;
-        }
-        x[i] = s->good_raw[i] * (INT32_C(1) << EXH_Q_RAW);
-    }
-    if (cfg->order > 0) { exh_filter_step(s->filter, &cfg->filter, x, x, EXH_GLOVE_SENSORS); }
-    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++, cal++) {
-        const int32_t code = quantizer_in_place(&s->quantizer[i], &cfg->quantizer, x[i]);
-        /* Half the code: the difference to a zero at the far end fits. */
-        angle_turn_q32[i] = exh_sat32(exh_mul_shr(exh_wrap_diff(code >> 1, cal->zero_raw_q15),
-            cal->gain_turnpraw_q38, EXH_Q_ZERO + EXH_Q_TPRAW - EXH_Q_TURN));
-    }
-    cross(cfg, angle_turn_q32);
+    const uint32_t faulty = exh_glove_believe(s, cfg, in, angle_turn_q32);
+    exh_glove_angles(s, cfg, 0, EXH_GLOVE_SENSORS, angle_turn_q32);
+    exh_glove_cross(cfg, angle_turn_q32);
     return faulty;
 }
 

@@ -14,6 +14,7 @@
 #define LEN_MAX_M_Q34      EXH_Q(120, 1000, 34)
 #define BASE_MAX_M_Q32     EXH_Q(125, 1000, 32)
 #define PULL_MAX_RADPM_Q20 EXH_Q(250, 1, 20)
+#define HALF_TURN_Q56      (UINT64_C(1) << 55)
 
 /* The arms are ours, and not measured: cables guided 20, 16 and 12 mm from the joints'
  * axes (thicker there, and less room towards the tip) give 61 mm of string from straight to bent
@@ -62,12 +63,17 @@ uint32_t exh_hand_joints(const struct exh_hand_map *map, unsigned finger,
         const struct exh_hand_joint *j = &map->joint[finger][i];
         int64_t sum_q56 =
             (int64_t)j->bias_turn_q32 * (INT32_C(1) << 24) + (INT32_C(1) << 23); /* |sum| < 2^60 */
-        int64_t want;
+        int32_t want;
         for (unsigned t = 0; t < EXH_HAND_TERMS; t++) {
             sum_q56 += (int64_t)j->gain_q24[t] * sensor_turn_q32[j->sensor[t]];
         }
-        want = sum_q56 >> (56 - 32); /* half of an LSB is in it */
-        joint_turn_q32[i] = exh_clamp32(exh_limit32(want), j->lo_turn_q32, j->hi_turn_q32);
+        if ((uint64_t)sum_q56 + HALF_TURN_Q56 < 2 * HALF_TURN_Q56) { /* half of an LSB is in it */
+            want = exh_from_u32((uint32_t)((uint64_t)sum_q56 >> (56 - 32) & UINT32_MAX));
+        } else {
+            want = sum_q56 < 0 ? INT32_MIN : INT32_MAX;
+            limited |= UINT32_C(1) << i;
+        }
+        joint_turn_q32[i] = exh_clamp32(want, j->lo_turn_q32, j->hi_turn_q32);
         limited |= (uint32_t)(want != joint_turn_q32[i]) << i;
     }
     return limited;

@@ -5,6 +5,8 @@
 #include "exhand/error.h"
 #include "exhand/safety.h"
 
+#include "../num/mem.h"
+
 #define HEAD_B     UINT32_C(18)
 #define LEN_AT     4u
 #define CRC_B      4u
@@ -51,14 +53,18 @@ static void hello_bytes(struct exh_bytes *c, struct exh_wire_hello *h)
 
 static void finger_bytes(struct exh_bytes *c, struct exh_wire_state *s, unsigned f)
 {
-    int32_t v[] = {s->force_N_q20[f], s->d_m_q30[f], s->q_m_q30[f], s->q_lim_m_q30[f]};
-    exh_bytes_i32s(c, s->joint_turn_q32[f], 3);
-    exh_bytes_i32s(c, s->tip_m_q30[f], 3);
-    exh_bytes_i32s(c, v, 4);
-    s->force_N_q20[f] = v[0];
-    s->d_m_q30[f] = v[1];
-    s->q_m_q30[f] = v[2];
-    s->q_lim_m_q30[f] = v[3];
+    int32_t *const joint = s->joint_turn_q32[f], *const tip = s->tip_m_q30[f];
+    int32_t v[] = {joint[0], joint[1], joint[2], tip[0], tip[1], tip[2], s->force_N_q20[f],
+        s->d_m_q30[f], s->q_m_q30[f], s->q_lim_m_q30[f]};
+    exh_bytes_i32s(c, v, 10);
+    for (unsigned i = 0; i < 3; i++) {
+        joint[i] = v[i];
+        tip[i] = v[3 + i];
+    }
+    s->force_N_q20[f] = v[6];
+    s->d_m_q30[f] = v[7];
+    s->q_m_q30[f] = v[8];
+    s->q_lim_m_q30[f] = v[9];
 }
 
 static void state_bytes(struct exh_bytes *c, struct exh_wire_state *s)
@@ -145,6 +151,20 @@ static int payload_bytes(struct exh_bytes *c, struct exh_wire_packet *p)
     case EXH_WIRE_TRACE_ASK: trace_ask_bytes(c, &p->u.trace_ask); return 1;
     case EXH_WIRE_TRACE: trace_bytes(c, &p->u.trace); return 1;
     default: return 0;
+    }
+}
+
+/* Of memory, what the payload of a type takes: the others are up to ten times as long. */
+static size_t payload_size(const struct exh_wire_packet *p)
+{
+    switch (p->type) {
+    case EXH_WIRE_HELLO: return sizeof p->u.hello;
+    case EXH_WIRE_STATE: return sizeof p->u.state;
+    case EXH_WIRE_PLANES: return sizeof p->u.planes;
+    case EXH_WIRE_PARAM: return sizeof p->u.param;
+    case EXH_WIRE_ACK: return sizeof p->u.ack;
+    case EXH_WIRE_TRACE_ASK: return sizeof p->u.trace_ask;
+    default: return sizeof p->u.trace;
     }
 }
 
@@ -302,13 +322,13 @@ int exh_wire_decode(
     } else {
         r = refuse(rx, &h);
         if (rx->reordered == reordered || !may_be_late(h.type)) { return r; }
-        *p = now;
+        memcpy(p, &now, offsetof(struct exh_wire_packet, u) + payload_size(&now));
         return h.type;
     }
     rx->accepted++;
     rx->quiet_us = 0;
     rx->open = 0;
-    *p = now;
+    memcpy(p, &now, offsetof(struct exh_wire_packet, u) + payload_size(&now));
     return h.type;
 }
 

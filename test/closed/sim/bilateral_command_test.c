@@ -354,7 +354,7 @@ TEST(bad_usage_is_refused_by_name)
         {"--link", "colour=3", "colour"},
         {"--link", "delay=.1,loss=0,delay=.2", "delay: it comes twice"},
         {"--link", "loss=2", "0..1"},
-        {"--link", "trace=/none", "/none"},
+        {"--link", "trace=/none", "--link: trace: /none"},
         {"--set", "d_lim=1", "d_lim"},
         {"--set", "fingers=3", "--fingers"},
         {"--device", "speed=1", "--speed"},

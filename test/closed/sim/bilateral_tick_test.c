@@ -333,6 +333,7 @@ TEST(a_shorter_time_between_states_acts_at_once)
 {
     start();
     par.own.state_every = 10000;
+    CHECK_EQ_I64(tick(1, EXH_WIRE_HELLO), 1);
     CHECK_EQ_I64(tick(1, EXH_WIRE_STATE), 1);
     CHECK_EQ_I64(tick(1, EXH_WIRE_STATE), 0);
     par.own.state_every = 5;
@@ -341,6 +342,32 @@ TEST(a_shorter_time_between_states_acts_at_once)
     CHECK_EQ_I64(tick(1, EXH_WIRE_STATE), 1);
     box.wire.wait_ticks = UINT32_MAX; /* restored from what nobody wrote */
     CHECK_EQ_I64(tick(1, EXH_WIRE_STATE), 1);
+}
+
+/* Packets of a kind that go out, where a packet comes in too. */
+static int heard(int type)
+{
+    hello();
+    return tick(1, type);
+}
+
+/* A tick that has to read packets sends no state, unless it is the last before the next is due; a
+ * hello goes out in another tick than a state. */
+TEST(what_is_due_goes_out_in_ticks_that_read_nothing)
+{
+    start();
+    CHECK_EQ_I64(heard(EXH_WIRE_HELLO), 1); /* the first packet of all does not wait */
+    CHECK_EQ_I64(out.packets, 1);
+    CHECK_EQ_I64(tick(1, EXH_WIRE_STATE), 1);
+    CHECK_EQ_I64(out.packets, 1);
+    for (int k = 2; k < 10; k++) { CHECK_EQ_I64(tick(1, EXH_WIRE_STATE), k == 5); }
+    for (int k = 0; k < 4; k++) { CHECK_EQ_I64(heard(EXH_WIRE_STATE), 0); }
+    CHECK_EQ_I64(heard(EXH_WIRE_STATE), 1);
+    CHECK_EQ_I64(heard(EXH_WIRE_STATE), 0);
+    CHECK_EQ_I64(tick(1, EXH_WIRE_STATE) + tick(1, EXH_WIRE_STATE), 1);
+    for (int k = 2; k < 4; k++) { CHECK_EQ_I64(tick(1, EXH_WIRE_STATE), 0); }
+    par.own.state_every = 1; /* no tick to wait in */
+    for (int k = 0; k < 4; k++) { CHECK_EQ_I64(heard(EXH_WIRE_STATE), 1); }
 }
 
 /* The answer to a packet that asks for a value; what it staged: as said. */
@@ -596,6 +623,7 @@ TEST_MAIN("bilateral, tick by tick", a_plane_told_before_the_first_glove_frame_i
     a_wall_that_the_glove_denies_does_not_pull_for_ever, an_old_glove_frame,
     missed_ticks_make_planes_older, a_world_that_has_started_anew_is_greeted_at_once,
     no_packet_makes_the_box_deaf_for_good, a_world_that_differs_is_told_by_bits,
-    a_shorter_time_between_states_acts_at_once, no_packet_sets_what_is_the_boxs_own,
-    a_trace_that_is_asked_for_comes_whole, a_trace_asked_for_again_goes_on_and_ends_as_asked,
-    frames_that_had_no_room_are_missed_by_number, a_trace_goes_on_from_bytes);
+    a_shorter_time_between_states_acts_at_once, what_is_due_goes_out_in_ticks_that_read_nothing,
+    no_packet_sets_what_is_the_boxs_own, a_trace_that_is_asked_for_comes_whole,
+    a_trace_asked_for_again_goes_on_and_ends_as_asked, frames_that_had_no_room_are_missed_by_number,
+    a_trace_goes_on_from_bytes);

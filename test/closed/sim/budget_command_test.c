@@ -20,23 +20,23 @@ static int csv_int(const char *line, int n)
 TEST(figures_by_hand)
 {
     char *dir = said_dir();
-    /* 3794 * 2 / 1600 + 5 * 0.25 = 5.992; 12 accesses; 50 us less 5.992 are 12 of 3.667. */
+    /* 3785 * 2 / 1600 + 5 * 0.25 = 5.981; 12 accesses; 50 us less 5.981 are 12 of 3.668. */
     said(&s, dir, cli_budget, WORDS("budget", "--csv"));
     CHECK(
         s.status == 0 &&
             strstr(s.out,
                 "\"drop, in "
-                "turn\",20000,11,0,3794,5.992,12.000,25.000,10.000,0.000,40000,A/D,40000,3.667\n"),
+                "turn\",20000,11,0,3785,5.981,12.000,25.000,10.000,0.000,40000,A/D,40000,3.668\n"),
         "%s", s.out);
-    /* 30.977 and 32: 15879 Hz; and 32 of 0.7: 18734. */
-    CHECK(strstr(s.out, ",30.977,32.000,25.000,10.000,16.923,15879,bus,18734,2.157\n") != NULL,
+    /* 15737 * 2 / 1600 + 5 * 0.25 = 20.921; and 32: 18896 Hz; and 32 of 0.7: 23083. */
+    CHECK(strstr(s.out, ",20.921,32.000,25.000,10.000,27.500,18896,bus,23083,2.471\n") != NULL,
         "%s", s.out);
     said(&s, dir, cli_budget, WORDS("budget", "--access-us", "2", "--csv"));
-    CHECK(strstr(s.out, ",30.977,64.000,25.000,10.000,16.923,10529,bus,18734,2.157\n") != NULL,
+    CHECK(strstr(s.out, ",20.921,64.000,25.000,10.000,27.500,11776,bus,23083,2.471\n") != NULL,
         "%s", s.out);
-    /* The fast access alone: 1e6 / (30.977 + 32 * 0.5). */
+    /* The fast access alone: 1e6 / (20.921 + 32 * 0.5). */
     said(&s, dir, cli_budget, WORDS("budget", "--fast-us", "0.5", "--csv"));
-    CHECK(strstr(s.out, ",15879,bus,21287,2.157\n") != NULL, "%s", s.out);
+    CHECK(strstr(s.out, ",18896,bus,27085,2.471\n") != NULL, "%s", s.out);
     said_clean(dir);
 }
 

@@ -132,7 +132,7 @@ TEST(a_glove_that_is_silent_for_longer_than_an_age_can_tell)
     par.own.glove_ms = 60000;
     par.supply.max_V_q20 = par.supply.scale_V_q30 = par.supply.time_ms = 1;
     cfg.par = &par;
-    cfg.n = 1;
+    cfg.n = s.frame.places = 1;
     CHECK_EQ_I64(bilateral_cause_setup(&cfg, (struct exh_period){1, 2000}), 0);
     want = 120001;
     do {

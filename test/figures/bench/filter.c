@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The glove's 22 channels: low-pass and quantizer. */
+/* The glove's 22 channels: low-passes and quantizer. */
 #include "bench.h"
 
 #include "exhand/exhand.h"
@@ -11,6 +11,8 @@
 
 static struct exh_filter_cfg cfg;
 static struct exh_filter state[CHANNELS];
+static struct exh_filter_cheap_cfg cheap_cfg;
+static struct exh_filter_cheap cheap[CHANNELS];
 static struct exh_quantizer_cfg code_cfg;
 static struct exh_quantizer code[CHANNELS];
 static int32_t x[BENCH_OPS + CHANNELS], y[CHANNELS];
@@ -20,6 +22,9 @@ static void tune(int32_t order, uint32_t ticks, int32_t tenths)
 {
     const struct exh_filter_par par = {order, (int32_t)((INT64_C(65536) * tenths) / 10)};
     EXH_ASSERT(exh_filter_setup(&cfg, &par, (struct exh_period){1, ticks}) == 0);
+    if (order == 2) {
+        EXH_ASSERT(exh_filter_cheap_setup(&cheap_cfg, &par, (struct exh_period){1, ticks}) == 0);
+    }
 }
 
 static void inputs(void)
@@ -28,6 +33,7 @@ static void inputs(void)
     bench_seed();
     for (uint32_t i = 0; i < BENCH_OPS + CHANNELS; i++) { x[i] = bench_in(-794568949, 794568949); }
     exh_filter_reset(state, zero, CHANNELS);
+    exh_filter_cheap_reset(cheap, &cheap_cfg, zero, CHANNELS);
 }
 
 static void second_setup(void)
@@ -49,6 +55,8 @@ static void high_setup(void)
 }
 
 static void filter_op(uint32_t i) { exh_filter_step(state, &cfg, &x[i], y, CHANNELS); }
+
+static void cheap_op(uint32_t i) { exh_filter_cheap_step(cheap, &cheap_cfg, &x[i], y, CHANNELS); }
 
 static void quantizer_setup(void)
 {
@@ -85,8 +93,23 @@ static long double ref_step(long double in)
     return low;
 }
 
-/* A step of 0.37, a sine at fc, and full-scale noise, which clips. */
-static void one_error(struct error *e, int32_t order, uint32_t ticks, int32_t tenths)
+static int32_t exact_step(int32_t in)
+{
+    int32_t out;
+    exh_filter_step(state, &cfg, &in, &out, 1);
+    return out;
+}
+
+static int32_t cheap_step(int32_t in)
+{
+    int32_t out;
+    exh_filter_cheap_step(cheap, &cheap_cfg, &in, &out, 1);
+    return out;
+}
+
+/* A step of 0.37, a sine at fc, and noise of full scale times noise, which at 1 clips. */
+static void step_error(struct error *e, int32_t (*step)(int32_t in), long double noise,
+    int32_t order, uint32_t ticks, int32_t tenths)
 {
     const int32_t n = (int32_t)(30 * ticks * 10 / (uint32_t)tenths);
     const long double r = tenths / (10.0L * ticks);
@@ -100,12 +123,15 @@ static void one_error(struct error *e, int32_t order, uint32_t ticks, int32_t te
         for (int32_t t = 0; t < n; t++) {
             const int32_t in = kind == 0   ? 794568949
                                : kind == 1 ? (int32_t)lrintl(794568949 * sinl(2 * PI * r * t))
-                                           : bench_i32();
-            int32_t out;
-            exh_filter_step(state, &cfg, &in, &out, 1);
-            error_add(e, out - bench_clamp(ref_step(in), INT32_MIN, INT32_MAX));
+                                           : (int32_t)lrintl(noise * bench_i32());
+            error_add(e, step(in) - bench_clamp(ref_step(in), INT32_MIN, INT32_MAX));
         }
     }
+}
+
+static void one_error(struct error *e, int32_t order, uint32_t ticks, int32_t tenths)
+{
+    step_error(e, exact_step, 1, order, ticks, tenths);
 }
 
 static void second_error(struct error *e)
@@ -124,6 +150,21 @@ static void high_error(struct error *e)
     one_error(e, 2, 1000, 2500);
     one_error(e, 2, 1000, 4000);
     one_error(e, 2, 1000, 4500);
+}
+
+static void cheap_error(struct error *e)
+{
+    for (uint32_t ticks = 10; ticks <= 10000; ticks *= 10) {
+        step_error(e, cheap_step, 0.8L, 2, ticks, 10);
+    }
+}
+
+static void cheap_high_error(struct error *e)
+{
+    step_error(e, cheap_step, 0.8L, 2, 1000, 690);
+    step_error(e, cheap_step, 0.7L, 2, 1000, 2500);
+    step_error(e, cheap_step, 0.48L, 2, 1000, 4000);
+    step_error(e, cheap_step, 0.48L, 2, 1000, 4500);
 }
 
 static void quantizer_error(struct error *e)
@@ -152,6 +193,13 @@ static const struct kernel kernels[] = {
         "as above", 0, NULL},
     {"filter_2_high_x22", "FS", 1 / 2147483648.0, 6, 1, high_setup, filter_op, high_error,
         "coefficients rounded at 2^-32; as above at fc/fs 0.12, 0.25, 0.4, 0.45", 0, NULL},
+    {"filter_cheap_x22", "FS", 1 / 2147483648.0, 633, 1, second_setup, cheap_op, cheap_error,
+        "b, c rounded at 10^-4: 8 LSB + rate/(16 fc) LSB; as above, noise at 0.8 of full scale", 0,
+        NULL},
+    {"filter_cheap_high_x22", "FS", 1 / 2147483648.0, 80, 1, high_setup, cheap_op, cheap_high_error,
+        "coefficients rounded at 2^-30; as above at fc/fs 0.069, 0.25, 0.4, 0.45, noise that "
+        "does not clip",
+        0, NULL},
     {"quantizer_x22", "code", 1, 1, 1, quantizer_setup, quantizer_op, quantizer_error,
         "half a code and half the hysteresis of one code; 14 bits", 0, NULL},
 };

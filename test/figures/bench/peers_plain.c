@@ -39,6 +39,37 @@ static void ours_block(uint32_t i)
     }
 }
 
+static struct exh_filter_cheap_cfg cheap_cfg;
+static struct exh_filter_cheap cheap[CHANNELS];
+
+static void cheap_setup(const struct butterworth *f)
+{
+    const struct exh_filter_par par = {2, (int32_t)(f->fc << 16)};
+    const int32_t zero[CHANNELS] = {0};
+    EXH_ASSERT(exh_filter_cheap_setup(&cheap_cfg, &par, (struct exh_period){1, f->fs}) == 0);
+    exh_filter_cheap_reset(cheap, &cheap_cfg, zero, CHANNELS);
+}
+
+static long double cheap_step(long double x)
+{
+    const int32_t in = (int32_t)(x * 2147483648.0L);
+    int32_t y;
+    exh_filter_cheap_step(cheap, &cheap_cfg, &in, &y, 1);
+    return y / 2147483648.0L;
+}
+
+static void cheap_tick(uint32_t i)
+{
+    exh_filter_cheap_step(cheap, &cheap_cfg, &peer_x_q31[i], y_q31, CHANNELS);
+}
+
+static void cheap_block(uint32_t i)
+{
+    for (uint32_t k = 0; k < BLOCK; k++) {
+        exh_filter_cheap_step(cheap, &cheap_cfg, &peer_x_q31[i + k], &y_q31[k], 1);
+    }
+}
+
 static void ours_sine(uint32_t turn_q32, long double *sine, long double *cosine)
 {
     struct exh_sincos y;
@@ -126,6 +157,8 @@ PLAIN(double, peer_x_f64)
 
 static const struct filter_peer filters[] = {
     {"exhand", ours_setup, native_q31, ours_step, ours_tick, ours_block, sizeof state[0], 0},
+    {"exhand-cheap", cheap_setup, native_q31, cheap_step, cheap_tick, cheap_block, sizeof cheap[0],
+        0},
     {"plain double DF2T", double_setup, double_native, double_step, double_tick, double_block,
         sizeof double_biquad[0], 0},
     {"plain float DF2T", float_setup, float_native, float_step, float_tick, float_block,

@@ -74,7 +74,7 @@ class Par:
         self.f0_rest = any_ms(rng, 1, 12, rate)
         self.glove_time = any_ms(rng, 4, 10, rate) if rng.draw(0, 15) else 0
         self.link_time = any_ms(rng, 10, 14, rate) if rng.draw(0, 15) else 0
-        self.every = rng.draw(1, 4)
+        self.every = rng.draw(1, 8 if T[0] < T[1] else 4)  # below 0.25 Hz, no cutoff is legal
         self.finger = [FingerPar(rng, rate) for _ in range(FINGERS)]
         self.material = [[any_size(rng, m) for m in (1024000000, 1048576000, 104857600)]
                          for _ in range(MATERIALS)]
@@ -184,7 +184,7 @@ class Finger:
 
 
 class Wire:
-    pack = Struct("<q7I").pack
+    pack = Struct("<q7IB").pack
 
     def __init__(self, session, T):
         self.tick_us = (1000000 * T[0] << 20) // T[1]
@@ -192,6 +192,7 @@ class Wire:
         self.tx, self.rx = Sender(session, 0), Receiver()
         self.now = self.trip = self.exchanges = self.set = self.wait = self.differs = self.odd = 0
         self.age, self.acks, self.trace = M32, [], Trace()
+        self.due = self.heard = 0
 
     def us(self):
         return self.now >> 20 & M32
@@ -200,11 +201,13 @@ class Wire:
         now = self.now - (1 << 64) if self.now >> 63 else self.now
         return (pack("<II", self.tx.session, self.tx.seq) + self.rx.state() +
                 self.pack(now, self.age, self.trip, self.exchanges, self.set, self.wait,
-                          self.differs, self.odd) +
+                          self.differs, self.odd, self.due) +
                 self.trace.state())
 
 
 class Bilateral:
+    frame = Struct("<22iIIB").pack
+
     def __init__(self, par, T):
         self.par = par
         self.at = [f for f in range(FINGERS) if par.fingers >> f & 1]
@@ -224,10 +227,22 @@ class Bilateral:
                                              for ms in (par.glove_time, par.link_time))
         self.worn = self.faulty = self.unsure = 0
         self.seen = M32
+        # a glove frame: its angles, its faults, the age of the one before, parts still to do
+        self.angle, self.doubts, self.before, self.left = [0] * SENSORS, 0, 0, 0
+        units = 4 + (self.n + 1) // 2
+        self.parts = min(par.every, units)
+        self.part = [self.upto(-(-p * units // self.parts)) for p in range(self.parts + 1)]
+
+    def upto(self, unit):
+        """Sensors and places of fingers that are done behind so many units."""
+        return (0, 4, 10, 16, 22, 22, 22, 22)[unit], min(self.n, (0, 0, 0, 0, 0, 2, 4, 5)[unit])
 
     def age(self, f):
         """Of what is known of where a finger is."""
-        return M32 if self.faulty & self.finger[f].sensors else self.seen
+        if self.faulty & self.finger[f].sensors:
+            return M32
+        there = self.part[self.parts - self.left][1] > self.at.index(f)
+        return self.seen if there else self.before
 
     def take(self, mail, missed):
         w = self.wire
@@ -235,7 +250,7 @@ class Bilateral:
         w.now = w.now + w.tick_us * (missed + 1) & M64
         if w.rx.wait(w.us() - before & M32, 1000 * self.par.quiet):
             w.exchanges = 0
-        w.age, w.acks = min(M32, w.age + missed + 1), []
+        w.age, w.acks, w.heard = min(M32, w.age + missed + 1), [], len(mail)
         for p in mail:
             session = w.rx.session
             got = w.rx.take(p)
@@ -267,11 +282,28 @@ class Bilateral:
             if self.age(f) != M32:
                 self.finger[f].pre.tell(kind, material, number, v[:3], v[3:6], age)
 
+    def see_some(self):
+        """The next part of the newest frame."""
+        (s0, p0), (s1, p1) = self.part[self.parts - self.left:][:2]
+        for i in range(s0, s1):
+            self.angle[i] = self.glove.own(i, self.angle[i])
+        if s0 < s1 == SENSORS:
+            self.angle = self.glove.cross(self.angle)
+        for f in self.at[p0:p1]:
+            self.finger[f].see(self.angle)
+        self.left -= 1
+        if self.left == 0:
+            self.faulty = self.doubts
+
     def see(self, raw, age):
-        self.faulty, angle = self.glove.tick(raw)
-        self.worn, self.seen = 1, age
-        for f in self.at:
-            self.finger[f].see(angle)
+        if raw:
+            while self.left:
+                self.see_some()
+            self.doubts, self.angle = self.glove.believe(raw)
+            self.faulty |= self.doubts
+            self.worn, self.seen, self.left = 1, age, self.parts
+        if self.left:
+            self.see_some()
 
     def causes(self, code, missed):
         """Of the box: glove, link, supply."""
@@ -298,11 +330,13 @@ class Bilateral:
         placed = din & 255 | sum(1 << 8 + k for k, f in enumerate(at) if din >> 8 + f & 1)
         age = glove_age if glove_age < 65535 else M32
         self.seen = age if self.worn else M32
+        older = min(M32, self.before + missed + 1)
+        self.before = (self.seen if not raw and not self.left
+                       else older if self.worn and older < 65535 else M32)
         for f in at:
             self.finger[f].pre.skip(missed)
         self.take(mail, missed)
-        if raw:
-            self.see(raw, age)
+        self.see(raw, age)
         ready = 7 | (0 if raised & ENCODER else 8)
         permit = self.safety.step(placed, raised | self.causes(supply, missed), missed, command,
                                   self.n, ready)
@@ -343,10 +377,14 @@ class Bilateral:
         if w.wait == 0 or w.wait >= self.par.state_every:
             often = 8 if w.age == M32 or w.rx.open else 128
             w.wait = self.par.state_every
-            if w.exchanges % often == 0:
-                self.put(out, HELLO, pack("<BII20x", 0, VERSION, TABLE))
+            w.due |= 3 if w.exchanges % often == 0 else 2
             w.exchanges += 1
-            self.put(out, TELL, self.told(paper))
+        last = w.wait == 1
+        for bit in 1, 2:  # one a tick, and in one with packets none, but in the last
+            if w.due & bit and (last or not out and not (w.heard and w.tx.seq)):
+                self.put(out, *((TELL, self.told(paper)) if bit == 2 else
+                                (HELLO, pack("<BII20x", 0, VERSION, TABLE))))
+                w.due &= ~bit
         w.wait -= 1
         for ack in w.acks:
             self.put(out, ACK, ack)
@@ -372,7 +410,7 @@ class Bilateral:
 
     def state(self):
         return (b"".join(s.state() for s in self.finger) + self.safety.state() +
-                self.glove.state() +
+                self.glove.state() + self.frame(*self.angle, self.doubts, self.before, self.left) +
                 self.wire.state() + pack("<BIII", self.worn, self.faulty, self.supply.off,
                                          self.unsure))
 
@@ -510,7 +548,7 @@ class Hand:
         self.par, self.codes, self.wrong, self.age = par, codes, 0, 0
 
     def frame(self, rng, k):
-        """Codes, or None where there is no new frame."""
+        """Codes, or None where there is no new frame. Now and then one is missing, or early."""
         self.age = min(65535, self.age + 1)
         if rng.draw(0, 47) == 0:
             self.wrong ^= 1 << rng.draw(0, 21)
@@ -518,7 +556,7 @@ class Hand:
             self.wrong = 0
         if away(k):
             self.wrong = (1 << SENSORS) - 1
-        if k % self.par.every or rng.draw(0, 31) == 0:
+        if (k % self.par.every != 0) != (rng.draw(0, 31) == 0):
             return None
         self.age = 0
         return [(-32768 if i & 1 else 32767) if self.wrong >> i & 1 else

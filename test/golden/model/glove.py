@@ -78,24 +78,33 @@ class Glove:
             self.good[i] = r
         return self.good[i]
 
-    def tick(self, raw):
-        own = []
-        for i, r in enumerate(raw):
-            x = self.believed(i, r) << 16
-            if not self.started:
-                self.channel[i] = Channel(x)
-            if self.filter:
-                x = self.channel[i].tick(self.filter, x)
-            x = self.quantizer[i].tick(self.bits, self.hyst, x)
-            s = self.sensors[i]
-            own.append(sat32(shr(((x >> 1) - s[0]) * s[1], 21)))
+    def believe(self, raw):
+        """Who is faulty, and 22 codes q16."""
+        x = [self.believed(i, r) << 16 for i, r in enumerate(raw)]
+        if not self.started:
+            self.channel = [Channel(v) for v in x]
         self.started = 1
+        return sum((c != GOOD) << i for i, c in enumerate(self.cause)), x
+
+    def own(self, i, x):
+        """Code q16 to the angle of sensor i alone."""
+        if self.filter:
+            x = self.channel[i].tick(self.filter, x)
+        x = self.quantizer[i].tick(self.bits, self.hyst, x)
+        s = self.sensors[i]
+        return sat32(shr(((x >> 1) - s[0]) * s[1], 21))
+
+    def cross(self, own):
         out = own[:]
         for i in CROSSED:
             s = self.sensors[i]
             out[i] = sat32(own[i] +
                            sum(shr(own[a] * c, 30) for c, a in zip(s[2], s[5]) if a != NONE))
-        return sum((c != GOOD) << i for i, c in enumerate(self.cause)), out
+        return out
+
+    def tick(self, raw):
+        faulty, x = self.believe(raw)
+        return faulty, self.cross([self.own(i, v) for i, v in enumerate(x)])
 
     def state(self):
         sensors = zip(self.channel, self.quantizer, self.good, self.faults, self.run, self.cause)

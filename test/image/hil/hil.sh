@@ -41,8 +41,10 @@ fast="supply=0 ad_settle=0"
 box="--loop --glove-age 1"
 # The most a class of ticks may vary in the scene's instructions, ppm of its dearest tick.
 even="--spread 50000"
-# The most instructions that a tick of the full box may take, the image's part with the scene's.
-dear="--most 25000"
+# The most instructions that a tick of the full box may take, the image's part and the scene's: with
+# a glove frame in every tick, and with one in every twentieth, computed and taken in parts.
+dear="--most 22500"
+dear_parts="--most 16000"
 # With as few accesses as a tick can do with (docs/CARDS.md); the glove at 500 Hz, in parts.
 sparing="monitor=2 turns=1"
 parts="--loop --turns --glove-last --set every=20"
@@ -114,8 +116,8 @@ show_box()
     # shellcheck disable=SC2086
     for r in 500 1000; do run "the full box, $r Hz" bilateral $box --rate "$r" --ticks "$few"; done
     # shellcheck disable=SC2086
-    run "the full box, 10 kHz" bilateral $parts $dear --rate 10000 --ticks 10000 \
-        --options "$sparing scan_slice=4 headroom=15"
+    run "the full box, 10 kHz" bilateral $parts $dear_parts --rate 10000 --ticks 10000 \
+        --options "$sparing scan_slice=2 headroom=15"
 }
 show_wild()
 {

@@ -266,7 +266,7 @@ static int judge(const struct cell *cell, int n)
 
 static int take_links(const struct bilateral_options *o, const char *networks)
 {
-    static char names[LINKS_MAX][300];
+    static char paths[LINKS_MAX][300];
     if (strcmp(o->link, "none") != 0) { /* this one alone */
         if (networks) { cli_complain("--networks: %s: not beside --link %s", networks, o->link); }
         if (networks) { return 2; }
@@ -284,18 +284,18 @@ static int take_links(const struct bilateral_options *o, const char *networks)
     while (networks && *networks) {
         const char *comma = strchr(networks, ','), *slash;
         const int len = comma ? (int)(comma - networks) : (int)strlen(networks);
-        char *name;
+        char *path;
         if (is.links == LINKS_MAX) {
             cli_complain("--networks: %s: only %d beside the %d known links", networks,
                 LINKS_MAX - LINKS, LINKS);
             return 2;
         }
-        name = names[is.links];
-        snprintf(name, sizeof names[0], "trace=%.*s", len, networks);
+        path = paths[is.links];
+        snprintf(path, sizeof paths[0], "%.*s", len, networks);
         is.o[is.links] = *o;
-        if (bilateral_take_link(&is.o[is.links], name)) { return 2; }
-        slash = strrchr(name, '/');
-        is.name[is.links++] = slash ? slash + 1 : name + 6;
+        if (bilateral_take_trace(&is.o[is.links], "--networks", path)) { return 2; }
+        slash = strrchr(path, '/');
+        is.name[is.links++] = slash ? slash + 1 : path;
         networks += len + (comma != NULL);
     }
     return 0;

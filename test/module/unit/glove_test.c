@@ -657,6 +657,38 @@ TEST(a_second_cross_term_alone)
     CHECK_EQ_I64(angle[5], 3276800);
 }
 
+/* Spread over any parts, a frame has the same angles, faults and state. */
+TEST(a_frame_in_parts_is_the_same)
+{
+    struct fixture whole, parts;
+    uint8_t bytes[2][2048];
+    set_up(&whole);
+    whole.par = defaults();
+    whole.cal.sensor[3] =
+        (struct exh_glove_sensor){0, 1 << 22, {1 << 29, -(1 << 28)}, -4000, 6000, {2, 4}};
+    ready(&whole);
+    parts = whole;
+    for (int n = 0; n < 300; n++) {
+        const unsigned first = (unsigned)check_i32_in(0, EXH_GLOVE_SENSORS);
+        for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
+            whole.in.raw[i] = (int16_t)check_i32_in(-12000, 14000);
+        }
+        CHECK_EQ_I64(
+            exh_glove_believe(&parts.s, &whole.cfg, &whole.in, parts.angle), frame(&whole));
+        exh_glove_angles(&parts.s, &whole.cfg, first, EXH_GLOVE_SENSORS, parts.angle);
+        exh_glove_angles(&parts.s, &whole.cfg, 0, first, parts.angle);
+        exh_glove_cross(&whole.cfg, parts.angle);
+        CHECK(memcmp(parts.angle, whole.angle, sizeof whole.angle) == 0, "frame %d", n);
+        for (int k = 0; k < 2; k++) {
+            struct exh_bytes c = exh_bytes_writer(bytes[k], sizeof bytes[k]);
+            memset(bytes[k], 0, sizeof bytes[k]);
+            exh_glove_serialize(&c, k == 0 ? &whole.s : &parts.s);
+            CHECK(exh_bytes_ok(&c), "no room");
+        }
+        CHECK(memcmp(bytes[0], bytes[1], sizeof bytes[0]) == 0, "frame %d: state", n);
+    }
+}
+
 TEST_MAIN("unit/glove", codes_become_angles, a_gain_below_zero_falls,
     angles_saturate_at_half_a_turn, abductions_lose_what_knuckles_add,
     absent_sensors_have_no_faults, causes_are_told_apart,
@@ -667,4 +699,5 @@ TEST_MAIN("unit/glove", codes_become_angles, a_gain_below_zero_falls,
     noise_within_the_hysteresis_moves_no_angle_twice, default_calibration_runs_at_the_default,
     default_calibration_gives_its_end_points, setup_rejections, state_round_trip,
     damaged_state_finds_back, a_state_that_has_not_begun_is_empty, every_cause_has_a_word,
-    the_first_and_the_last_have_cross_terms, a_second_cross_term_alone);
+    the_first_and_the_last_have_cross_terms, a_second_cross_term_alone,
+    a_frame_in_parts_is_the_same);

@@ -13,6 +13,8 @@
 
 /* link.c: an option by cli_call, into both ways. */
 int bilateral_take_link(void *ctx, const char *text);
+/* Recorded round trips, for both ways. Else 2, and words that begin with the option. */
+int bilateral_take_trace(struct bilateral_options *o, const char *option, const char *path);
 
 /* experiment.c: exit status. */
 int bilateral_experiment(const struct bilateral_options *o);

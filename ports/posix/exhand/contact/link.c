@@ -31,13 +31,17 @@ static int is_twice(const char *first, const char *name)
 
 static int is_log(const char *path) { return strstr(path, ".csv") != NULL; }
 
-static int take_trace(struct bilateral_options *o, const char *path)
+int bilateral_take_trace(struct bilateral_options *o, const char *option, const char *path)
 {
+    const enum sim_trace_kind kind = is_log(path) ? SIM_TRACE_ROUND : SIM_TRACE_MS;
     char why[256];
-    if (fifo_is(path)) { return bad(path, "a FIFO: give a file"); }
-    if (sim_trace_read(
-            &o->trace, path, is_log(path) ? SIM_TRACE_ROUND : SIM_TRACE_MS, why, sizeof why) < 0) {
-        return bad(path, why);
+    if (fifo_is(path)) {
+        cli_complain("%s: %s: a FIFO: give a file", option, path);
+        return 2;
+    }
+    if (sim_trace_read(&o->trace, path, kind, why, sizeof why) < 0) {
+        cli_complain("%s: %s", option, why);
+        return 2;
     }
     for (int w = 0; w < SIM_LINK_WAYS; w++) {
         o->run.board.line.trace[w] = &o->trace;
@@ -88,7 +92,7 @@ int bilateral_take_link(void *ctx, const char *text)
         if (equals == NULL) { return bad(name, "give NAME=VALUE"); }
         *equals = '\0';
         if (is_twice(all, name)) { return bad(name, "it comes twice: give it once"); }
-        err = strcmp(name, "trace") == 0 ? take_trace(o, equals + 1)
+        err = strcmp(name, "trace") == 0 ? bilateral_take_trace(o, "--link: trace", equals + 1)
                                          : take_value(o, name, equals + 1);
         if (err) { return err; }
     }

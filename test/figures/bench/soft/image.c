@@ -28,6 +28,8 @@ static int32_t any(void)
 
 static struct exh_filter_cfg filter_cfg;
 static struct exh_filter filter[CHANNELS];
+static struct exh_filter_cheap_cfg cheap_cfg;
+static struct exh_filter_cheap cheap[CHANNELS];
 int32_t soft_x[OPS + CHANNELS], soft_y[CHANNELS];
 static double b_double[5], s_double[CHANNELS][2];
 static float b_float[5], s_float[CHANNELS][2];
@@ -38,6 +40,8 @@ static void filter_start(struct exh_period T)
     static const struct exh_filter_par par = {2, EXH_Q(20, 1, 16)};
     EXH_ASSERT(exh_filter_setup(&filter_cfg, &par, T) == 0);
     exh_filter_reset(filter, zero, CHANNELS);
+    EXH_ASSERT(exh_filter_cheap_setup(&cheap_cfg, &par, T) == 0);
+    exh_filter_cheap_reset(cheap, &cheap_cfg, zero, CHANNELS);
 }
 
 /* fc/fs = 0.01 and 0.4 */
@@ -47,6 +51,11 @@ static void high_start(void) { filter_start((struct exh_period){1, 50}); }
 static void filter_op(uint32_t i)
 {
     exh_filter_step(filter, &filter_cfg, &soft_x[i], soft_y, CHANNELS);
+}
+
+static void cheap_op(uint32_t i)
+{
+    exh_filter_cheap_step(cheap, &cheap_cfg, &soft_x[i], soft_y, CHANNELS);
 }
 
 #define FILTER(T) \
@@ -281,10 +290,12 @@ static void say_number(uint32_t n)
 
 static const struct soft_op low[] = {
     {"filter,exhand", filter_op},
+    {"filter,exhand-cheap", cheap_op},
     {"filter,plain double DF2T", filter_double_op},
     {"filter,plain float DF2T", filter_float_op},
 };
-static const struct soft_op high[] = {{"filter_high,exhand", filter_op}};
+static const struct soft_op high[] = {
+    {"filter_high,exhand", filter_op}, {"filter_high,exhand-cheap", cheap_op}};
 static const struct soft_op others[] = {
     {"sine,exhand sincos", sine_op},
     {"law,exhand contact law", law_op},

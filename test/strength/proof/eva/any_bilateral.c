@@ -6,7 +6,7 @@
  * a tick leaves is a state that a tick takes. Any parameters in their rows.
  *
  * EVA: -eva-slevel 5 -kernel-warn-key annot:missing-spec=abort
- * WITH: examples/glove/cal.c lib/src/sense/glove_cal.c examples/bilateral/finger.c examples/bilateral/cause.c examples/bilateral/wire.c examples/bilateral/trace.c examples/bilateral/tables.c lib/src/talk/trace.c
+ * WITH: examples/glove/cal.c lib/src/sense/glove_cal.c examples/bilateral/finger.c examples/bilateral/frame.c examples/bilateral/cause.c examples/bilateral/wire.c examples/bilateral/trace.c examples/bilateral/tables.c lib/src/talk/trace.c
  * PLANT: examples/bilateral/bilateral.h: return f & (0u - (f < BILATERAL_FINGERS)); -> return f;
  * PLANT: examples/bilateral/bilateral.h: return n > 0 ? n : 1; -> return n;
  * PLANT: examples/bilateral/trace.c: if (t->result > 0) { t->result = 0; } -> (void)0;
@@ -158,6 +158,8 @@ static void any_cfg(void)
     ANY(cfg.supply);
     ANY(cfg.safety);
     ANY(cfg.at);
+    ANY(cfg.part);
+    cfg.parts = any8();
     /*@ admit safety_cfg(&cfg.safety); */
     cfg.par = &active;
     ANY(cfg.glove);
@@ -190,7 +192,8 @@ static void kept(void)
         /*@ assert next_finger: velocity(&now->velocity) && contact(&now->contact) && drive(&now->drive) &&
               precontact(&now->precontact); */
     }
-    /*@ assert next: safety(&state.safety) && state.wire.trace.result <= 0 && state.wire.trace.answer <= 1; */
+    /*@ assert next: safety(&state.safety) && state.wire.trace.result <= 0 && state.wire.trace.answer <= 1 &&
+          state.frame.left <= 7; */
 }
 
 static void one_tick(uint8_t least, uint8_t most, uint8_t packets)

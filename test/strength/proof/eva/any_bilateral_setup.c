@@ -4,7 +4,7 @@
  * the tick is proved with, every place is a finger, and the first are those in use.
  *
  * EVA: -eva-slevel 20 -eva-split-return-function setup:0,bilateral_setup:0,bilateral_finger_setup:0 -kernel-warn-key annot:missing-spec=abort
- * WITH: examples/glove/cal.c lib/src/sense/glove_cal.c examples/bilateral/finger.c examples/bilateral/cause.c examples/bilateral/wire.c examples/bilateral/tables.c
+ * WITH: examples/glove/cal.c lib/src/sense/glove_cal.c examples/bilateral/finger.c examples/bilateral/frame.c examples/bilateral/cause.c examples/bilateral/wire.c examples/bilateral/tables.c
  * PLANT: examples/bilateral/bilateral.c: if (!(mask >> f & 1u)) { cfg->at[at++] = (uint8_t)f; } -> cfg->at[at++] = (uint8_t)f;
  * PLANT: examples/bilateral/bilateral.c: cfg->drive[k] = cfg->drive[0]; -> (void)0;
  * PLANT: examples/bilateral/bilateral.c: if (cfg->n == 0) { return -EXH_E_RANGE; } -> (void)0;
@@ -74,6 +74,7 @@ static void chosen(int32_t fingers)
     err = exh_scene_bilateral.setup(board);
     if (err != 0) { return; }
     /*@ assert some: 1 <= cfg.n <= 5; */
+    /*@ assert parts: 1 <= cfg.parts <= 7; */
     for (unsigned k = 0; k < BILATERAL_FINGERS; k++) {
         const unsigned f = cfg.at[k];
         const struct bilateral_finger_cfg *const c = &cfg.finger[f];

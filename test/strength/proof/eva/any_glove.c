@@ -3,7 +3,7 @@
  * Any codes, in any state that the bytes leave, with a calibration of which only what the tick reads counts: any
  * gain, cross term, end and sensor, a zero within the card; any coefficients, limits and lists (those of damaged memory too).
  * Set-up of any parameters, and of any calibration that is valid. Believed codes, angles and faults afterwards
- * have no range but that of their types; a cause is one of the four.
+ * have no range but that of their types; a cause is one of the four. A frame in parts, an empty one among them.
  *
  * EVA: -eva-slevel 30
  * PLANT: lib/src/sense/glove.c: cfg->crossed[n] < EXH_GLOVE_SENSORS ? cfg->crossed[n] : 0 -> cfg->crossed[n]
@@ -88,6 +88,19 @@ static void one_frame(uint8_t kind)
     }
 }
 
+static void one_frame_in_parts(void)
+{
+    static const uint8_t end[] = {0, 4, 10, 22, 22, 3};
+    any_cfg(EXH_FILTER_LOW2);
+    FROM_BYTES(s, exh_glove_serialize);
+    ANY(in);
+    exh_glove_believe(&s, &cfg, &in, angle_turn_q32);
+    for (unsigned p = 0; p < 5; p++) {
+        exh_glove_angles(&s, &cfg, end[p], end[p + 1], angle_turn_q32);
+    }
+    exh_glove_cross(&cfg, angle_turn_q32);
+}
+
 static void set_up(void)
 {
     struct exh_glove_par par;
@@ -104,6 +117,7 @@ int main(void)
     one_frame(EXH_FILTER_LOW2);
     one_frame(EXH_FILTER_HIGH1);
     one_frame(EXH_FILTER_HIGH2);
+    one_frame_in_parts();
     END();
     return 0;
 }

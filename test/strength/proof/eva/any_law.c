@@ -2,8 +2,8 @@
 /* PROVES: contact law
  * The contact law: any state, position and velocity, parameters in their ranges.
  *
- * PLANT: lib/src/law/contact.c: (uint32_t)pos - (uint32_t)turn -> (uint32_t)(pos - turn)
- * PLANT: lib/src/law/contact.c: exh_diff_sat32(in.pos_m_q30, in.lim_m_q30) -> in.pos_m_q30 - in.lim_m_q30
+ * PLANT: lib/include/exhand/contact.h: (uint32_t)pos - (uint32_t)turn -> (uint32_t)(pos - turn)
+ * PLANT: lib/src/law/contact.c: exh_diff_sat32(pos_m_q30, lim_m_q30) -> pos_m_q30 - lim_m_q30
  */
 #include "law/contact.c"
 

@@ -91,14 +91,14 @@ void exh_velocity_window_serialize(struct exh_bytes *c, struct exh_velocity_wind
 
 /* --- law and force --- */
 
-int exh_contact_step(struct exh_contact *s, const struct exh_contact_par *par,
-    struct exh_contact_in in, struct exh_force_ledger *f)
+int32_t exh_contact_wall(struct exh_contact *s, int32_t pos_m_q30, int32_t lim_m_q30)
 {
-    (void)in;
-    /*@ assert law: contact(s) && contact_par(par); */
-    *s = any_contact();
-    *f = any_law_ledger();
-    return any8() & 1;
+    (void)pos_m_q30;
+    (void)lim_m_q30;
+    /*@ assert law: contact(s); */
+    s->turn_m_q30 = any32();
+    s->started = any8();
+    return any32();
 }
 
 void exh_contact_step_free(struct exh_contact *s, const struct exh_contact_par *par,

@@ -46,6 +46,26 @@ uint32_t exh_glove_step(struct exh_glove *s, const struct exh_glove_cfg *cfg,
     return any_sensors();
 }
 
+uint32_t exh_glove_believe(struct exh_glove *s, const struct exh_glove_cfg *cfg,
+    const struct exh_glove_in *in, int32_t *code_raw_q16)
+{
+    return exh_glove_step(s, cfg, in, code_raw_q16);
+}
+
+void exh_glove_angles(struct exh_glove *s, const struct exh_glove_cfg *cfg, unsigned from,
+    unsigned to, int32_t *angle_turn_q32)
+{
+    /*@ assert glove_angles: glove_cfg(cfg) && from <= 22 && to <= 22 && \valid(angle_turn_q32 + (0 .. 21)); */
+    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { angle_turn_q32[i] = any32(); }
+    *s = any_glove();
+}
+
+void exh_glove_cross(const struct exh_glove_cfg *cfg, int32_t *angle_turn_q32)
+{
+    /*@ assert glove_cross: glove_cfg(cfg) && \valid(angle_turn_q32 + (0 .. 21)); */
+    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { angle_turn_q32[i] = any32(); }
+}
+
 void exh_glove_serialize(struct exh_bytes *c, struct exh_glove *s)
 {
     (void)c;

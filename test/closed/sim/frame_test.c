@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: MIT */
+/* Scene bilateral: a glove frame that is computed in parts, tick by tick. */
+#include "check.h"
+
+#include "bilateral/bilateral.h"
+
+#include "exhand/error.h"
+
+#include <string.h>
+
+#define N       BILATERAL_FINGERS
+#define RATE_HZ 10000
+#define PARTS   7
+
+struct rig {
+    struct bilateral_par par;
+    struct bilateral_cfg cfg;
+    struct bilateral box;
+    struct bilateral_signals sig;
+    struct exh_scene_in in;
+};
+
+/* Without a low-pass, which is another for another time between frames. */
+static void start(struct rig *r, int every)
+{
+    static const struct rig none;
+    *r = none;
+    exh_scene_bilateral.defaults();
+    memcpy(&r->par, exh_scene_bilateral.params->active, sizeof r->par);
+    r->par.calib.uncalibrated = 1;
+    r->par.own.session = 7;
+    r->par.own.fingers = 31;
+    r->par.glove_own.every = every;
+    r->par.glove.order = 0;
+    r->in.glove.age_ticks = UINT16_MAX;
+    CHECK_EQ_I64(bilateral_setup(
+                     &r->cfg, &r->box, &r->par, (struct exh_scene_board){{1, RATE_HZ}, 16}, NULL),
+        0);
+}
+
+/* All knuckles bent by so many codes. */
+static void tick(struct rig *r, int glove_new, int bent_raw)
+{
+    static struct exh_scene_mail none;
+    struct exh_drive_out out;
+    r->in.glove_new = (uint8_t)glove_new;
+    if (r->in.glove.age_ticks < UINT16_MAX) { r->in.glove.age_ticks++; }
+    for (unsigned i = 0; glove_new && i < EXH_GLOVE_SENSORS; i++) {
+        r->in.glove.age_ticks = 3;
+        r->in.glove.raw[i] =
+            (int16_t)((exh_glove_cal_default.sensor[i].zero_raw_q15 >> 15) + bent_raw);
+    }
+    bilateral_tick(&r->box, &r->cfg, &r->in, &none, exh_scene_bilateral.params, &out, &r->sig);
+}
+
+static int same_tip(const struct rig *a, const struct rig *b, unsigned f)
+{
+    return memcmp(&a->box.finger[f].tip_m_q30, &b->box.finger[f].tip_m_q30,
+               sizeof a->box.finger[f].tip_m_q30) == 0;
+}
+
+static uint32_t age(const struct rig *r, unsigned f)
+{
+    return bilateral_finger_age(&r->box, &r->cfg, f);
+}
+
+/* Two fingers are seen in the fifth tick of a frame, two in the sixth, one in the seventh; each is
+ * as old as the frame it is of. What is seen in the end is what one tick would have made. */
+TEST(fingers_are_seen_one_after_the_other)
+{
+    static const int at[N] = {4, 4, 5, 5, 6};
+    static struct rig whole, parts;
+    start(&whole, 1);
+    start(&parts, 20);
+    for (int frame = 0; frame < 10; frame++) {
+        const uint32_t before = frame == 0 ? UINT32_MAX : 3 + 20;
+        for (int k = 0; k < 20; k++) {
+            if (k == 0) { tick(&whole, 1, 200 * frame); }
+            tick(&parts, k == 0, 200 * frame);
+            for (unsigned f = 0; f < N; f++) {
+                const uint32_t old = before == UINT32_MAX ? before : before + (uint32_t)k;
+                CHECK(k < at[f] || same_tip(&whole, &parts, f), "frame %d, %d: %u", frame, k, f);
+                CHECK(k >= at[f] || !same_tip(&whole, &parts, f), "frame %d, %d: %u", frame, k, f);
+                CHECK_EQ_I64(age(&parts, f), k >= at[f] ? 3 + (uint32_t)k : old);
+            }
+        }
+    }
+}
+
+TEST(a_frame_is_whole_by_the_next)
+{
+    static struct rig r;
+    for (int every = 1; every < 10; every++) {
+        start(&r, every);
+        for (int k = 0; k < 50; k++) {
+            const int left = every < PARTS ? every : PARTS;
+            tick(&r, k % every == 0, 10 * k);
+            CHECK_EQ_I64(r.box.frame.left, k % every + 1 < left ? left - 1 - k % every : 0);
+        }
+    }
+    start(&r, 20);
+    tick(&r, 1, 0);
+    tick(&r, 0, 0);
+    CHECK_EQ_I64(r.box.frame.left, PARTS - 2);
+    tick(&r, 1, 3000); /* before its time: the one before is whole first */
+    CHECK_EQ_I64(r.box.frame.left, PARTS - 1);
+    CHECK_EQ_I64(age(&r, 4), UINT32_MAX);
+    CHECK(r.box.finger[4].tip_m_q30.x != 0, "a finger has never been seen");
+}
+
+/* A fault holds from the first tick of the frame that has it to the last tick of the one that has
+ * it no more: as long as a finger may be of a held angle, it is not known. */
+TEST(a_fault_begins_at_once_and_ends_with_the_last_finger)
+{
+    static struct rig r;
+    int told = 0;
+    start(&r, 20);
+    r.par.glove.debounce_frames = 1;
+    CHECK_EQ_I64(
+        exh_glove_setup(&r.cfg.glove, &r.par.glove, &r.cfg.cal, (struct exh_period){20, RATE_HZ}),
+        0);
+    for (int k = 0; k < 20; k++) { tick(&r, k == 0, 0); }
+    for (int k = 0; k < 20; k++) {
+        tick(&r, k == 0, 32767);
+        told += r.box.glove_faults != 0;
+        CHECK_EQ_I64(age(&r, 2), UINT32_MAX);
+    }
+    CHECK_EQ_I64(told, 20);
+    for (int k = 0; k < 20; k++) {
+        tick(&r, k == 0, 0);
+        CHECK(age(&r, 2) == (k < PARTS - 1 ? UINT32_MAX : 3u + (uint32_t)k), "%d", k);
+    }
+}
+
+/* A state from its bytes in the middle of a frame goes on as the other. */
+TEST(a_frame_goes_on_from_bytes)
+{
+    static struct rig a, b;
+    static uint8_t byte[2][65536];
+    start(&a, 20);
+    start(&b, 20);
+    for (int k = 0; k < 60; k++) {
+        struct exh_bytes to = exh_bytes_writer(byte[0], sizeof byte[0]), from;
+        struct exh_bytes again = exh_bytes_writer(byte[1], sizeof byte[1]);
+        tick(&a, k % 20 == 0, 30 * k);
+        tick(&b, k % 20 == 0, 30 * k);
+        bilateral_bytes(&to, &a.box);
+        bilateral_bytes(&again, &b.box);
+        CHECK(to.at == again.at && memcmp(byte[0], byte[1], to.at) == 0, "tick %d", k);
+        memset(&b.box.frame, 0, sizeof b.box.frame);
+        from = exh_bytes_reader(byte[0], to.at);
+        bilateral_bytes(&from, &b.box);
+        CHECK(exh_bytes_ok(&from), "tick %d", k);
+    }
+}
+
+TEST_MAIN("bilateral, a frame in parts", fingers_are_seen_one_after_the_other,
+    a_frame_is_whole_by_the_next, a_fault_begins_at_once_and_ends_with_the_last_finger,
+    a_frame_goes_on_from_bytes);
