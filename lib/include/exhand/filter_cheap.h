@@ -23,7 +23,9 @@ extern "C" {
 
 /* Coefficients of all channels (docs/NUMERICS.md, "low-pass, cheap"). */
 struct exh_filter_cheap_cfg {
-    int32_t a, b, c;
+    int32_t a;    /* of the speed, q32; high: of the output, q29 */
+    int32_t b;    /* of the inputs less the output, q32; high: of the inputs, q29 */
+    int32_t c;    /* of the speed to the output, q32; high: of the output before, q29 */
     uint8_t high; /* 1: fc above 0.0685 of the rate */
 };
 

@@ -269,7 +269,10 @@ class Writer:
         self.fresh(old)
         status, said = end(self.begin(limit_B))
         how = f"files of at most {limit_B} bytes"
-        if status not in (1, 2) and self.name != "run-save":  # its client is told
+        # A run by the clock is shorter on a machine that has much to do: it may have fitted.
+        short = {len(d) < limit_B for d in files(self.dir).values() if d not in old.values()}
+        fitted = self.kind in ("rows", "log") and short == {True}
+        if status not in (1, 2) and not fitted and self.name != "run-save":  # its client is told
             fault(self.name, f"{how}: status {status}: {said[-200:]}")
         self.judge(old, False, how)
 
