@@ -132,6 +132,7 @@ uint8_t identify_step(struct identify_run *r, const struct identify_cfg *cfg, in
 #define IDENTIFY_PART_ROUND 7
 #define IDENTIFY_PART_UP    10 /* a slow pull up, */
 #define IDENTIFY_PART_DOWN  12 /* and down */
+#define IDENTIFY_PART_WAVE  17
 
 /* "pulse", "release"; NULL: no such part. The stage it belongs to. */
 const char *identify_part_text(unsigned part);

@@ -13,15 +13,19 @@
 
 /* Starts that are tried, the best of them first. */
 #define STARTS_MAX 128
-#define TRIED      6 /* at a time, */
-#define SHAKEN     8
-#define STARTS     6   /* and in all, while the model does not fit */
+#define TRIED      6
+#define ROUNDS     3   /* of more starts, while the model does not fit: */
+#define BESIDE     41  /* stiffnesses beside the one that was found, from -40 to 65 %, */
+#define BEST       3   /* of which so many are tried, */
+#define SHAKEN     4   /* and so many a little way off */
 #define GOOD       0.1 /* a start that came so far is the one */
 #define AGAIN      4   /* from what was found, at most */
 #define LAG_S      200e-6
 #define DENIED     1.25 /* a cost so much larger with the monitor's delay: the motion has another */
 #define SHARP_S    6e-6 /* the monitor tells the delay better than the motion, */
 #define SURE_S     50e-6 /* and closer lags the motion does not tell from each other */
+#define WEIGHED    3     /* times what counts is told by the last fit */
+#define CALM       0.5   /* a cost as of a device that never slackens */
 #define HOPELESS   20    /* a cost from which plain steps lead nowhere */
 
 struct starts {
@@ -77,12 +81,12 @@ static void lattice(struct starts *s, const struct fit *f, const struct identify
     const struct observations *o)
 {
     static const double cable_npm[] = {1000, 1800, 3200, 6000, 11000, 20000, 40000},
-                        share[] = {0.1, 0.3, 0.5, 0.7, 0.9};
+                        cable_nspm[] = {1.5, 5, 20}, share[] = {0.1, 0.3, 0.5, 0.7, 0.9};
     s->n = 0;
-    for (int i = 0; i < 70; i++) {
+    for (int i = 0; i < 105; i++) {
         struct model m = f->at;
         m.value[MODEL_CABLE_K] = cable_npm[i % 7];
-        m.value[MODEL_CABLE_B] = i < 35 ? 4 : 20;
+        m.value[MODEL_CABLE_B] = cable_nspm[i / 35];
         fit_split(&m, d, share[i / 7 % 5]);
         add(s, &m, fit_cost(&m, d, o, 2e-3));
     }
@@ -96,16 +100,16 @@ static void show(int over)
     progress_show("descents", done, 0, over);
 }
 
-/* From the best of the next TRIED starts over two rounds of the mass, then of all. */
+/* From the best TRIED starts over two rounds of the mass, then of all. */
 static int from_starts(struct fit *best, const struct fit *rotor_told, const struct starts *s,
-    int first, const struct identify_data *d, const struct observations *few)
+    const struct identify_data *d, const struct observations *few)
 {
     static const struct fit_how rough = {FIT_MASS & ~(1u << MODEL_STEP), 2e-3, 12, 0, 1e-2, 1},
                                 finer = {FIT_MASS, 2e-4, 12, 0, 1e-2, 1},
                                 all = {FIT_ALL, 7e-5, 30, 0, 3e-3, 1};
     int err = 0;
     best->cost = (double)INFINITY;
-    for (int i = first; i < first + TRIED && err == 0 && best->cost > GOOD; i++) {
+    for (int i = 0; i < TRIED && err == 0 && best->cost > GOOD; i++) {
         struct fit one = *rotor_told;
         one.at = s->m[i];
         err = fit_run(&one, d, few, rough);
@@ -221,44 +225,84 @@ static int again(struct fit *best, const struct identify_data *d, const struct o
     return err;
 }
 
+/* An oscillation of one cycle more or less fits, too, and nothing leads from one to the other: what
+ * stiffness and damping may be beside those that were found. */
+static void near(struct starts *s, const struct fit *f, const struct identify_data *d,
+    const struct observations *o)
+{
+    static const double damped[] = {1, 0.3, 0.1};
+    s->n = 0;
+    for (int i = 0; i < 3 * BESIDE; i++) {
+        struct model m = f->at;
+        m.value[MODEL_CABLE_K] *= exp(0.025 * (i % BESIDE - BESIDE / 2));
+        m.value[MODEL_CABLE_B] *= damped[i / BESIDE];
+        if (i != BESIDE / 2) { add(s, &m, fit_cost(&m, d, o, 0)); }
+    }
+}
+
+/* From one start more, if it leads lower. */
+static int from(struct fit *best, const struct model *m, const struct identify_data *d,
+    const struct observations *o)
+{
+    struct fit f = *best;
+    int err;
+    f.at = *m;
+    err = estimate_finish(&f, d, o);
+    show(0);
+    if (err == 0 && f.cost < best->cost) { *best = f; }
+    return err;
+}
+
+/* Down from starts, then from beside what was found and from a little way off, until the model fits
+ * what a string does that never slackens. */
+static int begin(struct fit *best, const struct fit *told, const struct identify_data *d,
+    const struct observations *calm, struct sim_random *chance)
+{
+    struct observations few;
+    struct starts s;
+    int err = observe_calm(&few, d, 1u << IDENTIFY_MASS, 2, 0.06);
+    if (err == 0) { lattice(&s, told, d, &few); }
+    if (err == 0) { err = from_starts(best, told, &s, d, &few); }
+    if (err == 0) { err = estimate_finish(best, d, calm); }
+    for (int r = 0; r < ROUNDS && err == 0 && best->cost > CALM; r++) {
+        near(&s, best, d, calm);
+        for (int i = 0; i < BEST && err == 0; i++) { err = from(best, &s.m[i], d, calm); }
+        for (int i = 0; i < SHAKEN && err == 0 && best->cost > CALM; i++) {
+            struct fit f = *best;
+            fit_shake(&f, chance);
+            f.at.value[MODEL_LAG] = told->at.value[MODEL_LAG];
+            err = from(best, &f.at, d, calm);
+        }
+    }
+    observe_free(&few);
+    return err;
+}
+
 int identify_estimate(struct estimate_of *e, const struct identify_data *d)
 {
-    struct observations all, few;
+    struct observations all, calm;
     struct fit told;
-    struct starts s;
     struct sim_random chance = {1};
     int err;
     memset(e, 0, sizeof *e);
     memset(&told, 0, sizeof told);
     err = rotor(&told, d);
     if (err) { return err; }
-    if (observe(&few, d, 1u << IDENTIFY_MASS, 2, 0.06) || observe(&all, d, 3, 0, 0.05)) {
-        return -1;
-    }
+    if (observe_calm(&calm, d, 3, 0, 0.05) || observe(&all, d, 3, 0, 0.05)) { return -1; }
     e->rounds = all.rounds;
     e->counts = all.n;
-    e->fit.cost = (double)INFINITY;
-    lattice(&s, &told, d, &few);
-    for (int i = 0; i < STARTS && err == 0 && e->fit.cost > RESULT_RESIDUAL_MAX; i += TRIED) {
-        struct fit f;
-        err = from_starts(&f, &told, &s, i, d, &few);
-        if (err == 0) { err = estimate_finish(&f, d, &all); }
+    err = begin(&e->fit, &told, d, &calm, &chance);
+    for (int i = 0; i < WEIGHED && err == 0; i++) {
+        err = fit_weigh(&e->fit.at, d, &all);
+        if (err == 0) { err = estimate_finish(&e->fit, d, &all); }
         show(0);
-        if (err == 0 && f.cost < e->fit.cost) { e->fit = f; }
     }
-    for (int i = 0; i < SHAKEN && err == 0 && e->fit.cost > RESULT_RESIDUAL_MAX; i++) {
-        struct fit f = e->fit;
-        fit_shake(&f, &chance);
-        f.at.value[MODEL_LAG] = told.at.value[MODEL_LAG];
-        err = estimate_finish(&f, d, &all);
-        show(0);
-        if (err == 0 && f.cost < e->fit.cost) { e->fit = f; }
-    }
+    e->counted = all.counted;
     if (err == 0) { err = with_monitor(e, d, &all); }
     if (err == 0) { err = again(&e->fit, d, &all, &chance); }
     if (err == 0 && e->lag_told) { estimate_lag_end(&e->fit, &e->lag, d); }
     show(1);
-    observe_free(&few);
+    observe_free(&calm);
     observe_free(&all);
     return err;
 }

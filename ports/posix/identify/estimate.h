@@ -11,7 +11,8 @@ struct estimate_of {
     struct lag lag;
     int lag_told;
     unsigned rounds;
-    size_t counts; /* observations */
+    size_t counts;  /* observations, */
+    double counted; /* and how many of them a model can foretell */
 };
 
 /* Down to a fit, from where f is. 0; -1: out of memory. */

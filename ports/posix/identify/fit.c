@@ -9,8 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define N     MODEL_PARS
-#define HUBER 4.0 /* deviations: farther ones count less */
+#define N       MODEL_PARS
+#define HUBER   4.0 /* deviations: farther ones count less */
+#define CHANCES 4   /* times MODEL_LANES runs tell the scatter of a model, */
+#define SCATTER 2.0 /* of which so many variances of an observation are too much */
 
 struct work {
     const struct identify_data *d;
@@ -67,10 +69,8 @@ static int work_open(struct work *w, const struct identify_data *d, const struct
     return ok ? 0 : -1;
 }
 
-/* The models' means over the ticks of each observation. */
-static void predict(struct work *w, const struct model *m, int models, double *const *to)
+static void means(const struct work *w, int models, double *const *to)
 {
-    model_run(m, models, w->d, w->o->last, w->q);
     for (int n = 0; n < models; n++) {
         for (size_t i = 0; i < w->o->n; i++) {
             const struct observation *o = &w->o->o[i];
@@ -79,6 +79,13 @@ static void predict(struct work *w, const struct model *m, int models, double *c
             to[n][i] = sum / o->ticks;
         }
     }
+}
+
+/* The models' means over the ticks of each observation. */
+static void predict(struct work *w, const struct model *m, int models, double *const *to)
+{
+    model_run(m, models, w->d, w->o->last, w->q);
+    means(w, models, to);
 }
 
 static void centre(struct work *w, double *v)
@@ -102,7 +109,7 @@ static double residuals(struct work *w, const struct model *m)
     predict(w, m, 1, &w->at);
     for (size_t i = 0; i < w->o->n; i++) {
         w->r[i] = (double)w->o->o[i].cnt - w->at[i];
-        w->w[i] = 1 / (1 / (double)w->o->o[i].weight + w->floor * w->floor);
+        w->w[i] = (double)w->o->o[i].share / (1 / (double)w->o->o[i].weight + w->floor * w->floor);
     }
     centre(w, w->r);
     for (size_t i = 0; i < w->o->n; i++) {
@@ -110,7 +117,54 @@ static double residuals(struct work *w, const struct model *m)
         cost += e < HUBER ? e * e : HUBER * (2 * e - HUBER);
         if (!(e < HUBER)) { w->w[i] *= HUBER / e; }
     }
-    return w->o->n ? cost / (double)w->o->n : (double)INFINITY;
+    return w->o->counted > 0 ? cost / w->o->counted : (double)INFINITY;
+}
+
+/* --- what a model can foretell --- */
+
+/* To w->r: the variance of each prediction over when the drive takes each command over. */
+static void scatter(struct work *w, const struct model *m)
+{
+    struct sim_random chance = {1};
+    memset(w->r, 0, w->o->n * sizeof *w->r);
+    for (int c = 0; c < CHANCES; c++) {
+        model_chances(m, w->d, w->o->last, &chance, w->q);
+        means(w, MODEL_LANES, w->j);
+        for (int k = 0; k < MODEL_LANES; k++) { centre(w, w->j[k]); }
+        for (size_t i = 0; i < w->o->n; i++) {
+            double mean = 0, square = 0;
+            for (int k = 0; k < MODEL_LANES; k++) { mean += w->j[k][i] / MODEL_LANES; }
+            for (int k = 0; k < MODEL_LANES; k++) {
+                square += (w->j[k][i] - mean) * (w->j[k][i] - mean);
+            }
+            w->r[i] += square / (MODEL_LANES - 1) / CHANCES;
+        }
+    }
+}
+
+/* Where a string slackens and strikes, nobody foretells what it does next: a group whose scatter is
+ * larger than what its observations may be off by counts as next to nothing. */
+int fit_weigh(const struct model *m, const struct identify_data *d, struct observations *o)
+{
+    struct work w;
+    if (work_open(&w, d, o)) { return -1; }
+    for (size_t i = 0; i < o->n; i++) { w.w[i] = (double)o->o[i].weight; }
+    scatter(&w, m);
+    memset(w.sum, 0, o->groups * sizeof *w.sum);
+    memset(w.ws, 0, o->groups * sizeof *w.ws);
+    for (size_t i = 0; i < o->n; i++) {
+        w.sum[o->o[i].group] += w.w[i] * w.r[i];
+        w.ws[o->o[i].group]++;
+    }
+    o->counted = 0;
+    for (size_t i = 0; i < o->n; i++) {
+        const unsigned g = o->o[i].group;
+        const double share = 1 / (1 + pow(w.sum[g] / w.ws[g] / SCATTER, 4));
+        o->o[i].share = (float)share;
+        o->counted += share;
+    }
+    work_free(&w);
+    return 0;
 }
 
 /* --- coordinates: what the free rotor tells by itself comes first, in ratios --- */

@@ -32,6 +32,8 @@ struct fit_how {
 /* From f->at. 0, or -1: out of memory. */
 int fit_run(
     struct fit *f, const struct identify_data *d, const struct observations *o, struct fit_how how);
+/* The shares of observations become those that this model can foretell. 0, or -1: out of memory. */
+int fit_weigh(const struct model *m, const struct identify_data *d, struct observations *o);
 /* Of a model as it is; infinite: out of memory. */
 double fit_cost(const struct model *m, const struct identify_data *d, const struct observations *o,
     double floor_m);

@@ -2,6 +2,7 @@
 #include "identify/model.h"
 
 #include "sim/plant.h"
+#include "sim/random.h"
 
 #include "identify/identify.h"
 
@@ -136,20 +137,56 @@ static void advance(struct lanes *l, const struct identify_data *d, size_t i, in
     }
 }
 
+/* Each lane takes the next command over when another would have. */
+static void change_turns(struct lanes *l, struct sim_random *chance)
+{
+    for (int k = l->n - 1; k > 0; k--) {
+        const int other = (int)(sim_random_u64(chance) >> 33) % (k + 1);
+        const ptrdiff_t ticks = l->ticks[k];
+        l->ticks[k] = l->ticks[other];
+        l->ticks[other] = ticks;
+        for (int part = 0; part < 2; part++) {
+            const struct plant_piece piece = l->piece[part][k];
+            l->piece[part][k] = l->piece[part][other];
+            l->piece[part][other] = piece;
+        }
+    }
+}
+
+static void run(struct lanes *l, const struct identify_data *d, size_t n, struct sim_random *chance,
+    float *const *q_cnt)
+{
+    int busy = 0;
+    for (size_t i = 0; i < n; i++) {
+        const struct identify_sample *x = &d->sample[i];
+        if (chance && i > 0 && !(x->coded_A == x[-1].coded_A)) { change_turns(l, chance); }
+        if (!busy && x->busy) { release(l, x); }
+        busy = x->busy;
+        for (int k = 0; k < l->n; k++) { q_cnt[k][i] = (float)(l->plant[k].q_m * l->per_m[k]); }
+        if (!busy) { continue; }
+        advance(l, d, i, 0);
+        advance(l, d, i, 1);
+    }
+}
+
 void model_run(
     const struct model *m, int models, const struct identify_data *d, size_t n, float *const *q_cnt)
 {
     struct lanes l;
-    int busy = 0;
     memset(&l, 0, sizeof l);
     while (l.n < models) { add(&l, &m[l.n], d); }
-    for (size_t i = 0; i < n; i++) {
-        const struct identify_sample *x = &d->sample[i];
-        if (!busy && x->busy) { release(&l, x); }
-        busy = x->busy;
-        for (int k = 0; k < l.n; k++) { q_cnt[k][i] = (float)(l.plant[k].q_m * l.per_m[k]); }
-        if (!busy) { continue; }
-        advance(&l, d, i, 0);
-        advance(&l, d, i, 1);
+    run(&l, d, n, NULL, q_cnt);
+}
+
+void model_chances(const struct model *m, const struct identify_data *d, size_t n,
+    struct sim_random *chance, float *const *q_cnt)
+{
+    struct lanes l;
+    memset(&l, 0, sizeof l);
+    while (l.n < MODEL_LANES) {
+        struct model late = *m;
+        late.value[MODEL_DELAY] += ((l.n + 0.5) / MODEL_LANES - 0.5) / d->servo_Hz;
+        add(&l, &late, d);
     }
+    run(&l, d, n, chance, q_cnt);
 }

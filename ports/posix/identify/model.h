@@ -53,4 +53,10 @@ struct sim_device model_device(const struct model *m, double T_s, double servo_H
 void model_run(const struct model *m, int models, const struct identify_data *d, size_t n,
     float *const *q_cnt);
 
+struct sim_random;
+/* The same of MODEL_LANES runs of one model that differ by when in its period the drive takes each
+ * command over. */
+void model_chances(const struct model *m, const struct identify_data *d, size_t n,
+    struct sim_random *chance, float *const *q_cnt);
+
 #endif

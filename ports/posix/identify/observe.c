@@ -52,8 +52,14 @@ static int add(struct observations *to, size_t *cap, const struct observation *o
     return 0;
 }
 
-int observe(struct observations *to, const struct identify_data *d, unsigned stages,
-    unsigned rounds, double group_s)
+static int calm(const struct identify_sample *x)
+{
+    return x->stage == IDENTIFY_SLACK ||
+           (x->part >= IDENTIFY_PART_UP && x->part < IDENTIFY_PART_WAVE);
+}
+
+static int choose(struct observations *to, const struct identify_data *d, unsigned stages,
+    unsigned rounds, double group_s, int only_calm)
 {
     size_t cap = 0, from = 0, began = 0;
     memset(to, 0, sizeof *to);
@@ -65,11 +71,16 @@ int observe(struct observations *to, const struct identify_data *d, unsigned sta
         }
         if (wanted(&x[i], stages, rounds)) { to->last = i + 2; }
         if (x[i].cnt == x[i - 1].cnt) { continue; }
+        if (only_calm && !calm(&x[i])) {
+            from = i;
+            continue;
+        }
         if (wanted(&x[i], stages, rounds) && same(&x[i], &x[i - 1])) {
             const struct observation o = {.from = (uint32_t)i - 1,
                 .ticks = 2,
                 .cnt = ((float)x[i].cnt + (float)x[i - 1].cnt + 1) / 2,
                 .weight = weight(d, (uint32_t)(i - from), x[i].cnt - x[i - 1].cnt),
+                .share = 1,
                 .group = to->groups,
                 .round = x[i].repeat};
             if (add(to, &cap, &o)) { return -1; }
@@ -78,5 +89,18 @@ int observe(struct observations *to, const struct identify_data *d, unsigned sta
         from = i;
     }
     to->groups++;
+    to->counted = (double)to->n;
     return 0;
+}
+
+int observe(struct observations *to, const struct identify_data *d, unsigned stages,
+    unsigned rounds, double group_s)
+{
+    return choose(to, d, stages, rounds, group_s, 0);
+}
+
+int observe_calm(struct observations *to, const struct identify_data *d, unsigned stages,
+    unsigned rounds, double group_s)
+{
+    return choose(to, d, stages, rounds, group_s, 1);
 }

@@ -12,6 +12,7 @@ struct observation {
     uint32_t from, ticks; /* samples */
     float cnt;            /* its middle */
     float weight;         /* 1 / (expected deviation)^2 */
+    float share;          /* of the weight that counts, as fit_weigh() left it; at first 1 */
     uint32_t group;       /* part of a round: where it lies in all is not known */
     uint16_t round;
 };
@@ -19,6 +20,7 @@ struct observation {
 struct observations {
     struct observation *o;
     size_t n;
+    double counted; /* of them, each by its share */
     unsigned groups, rounds;
     size_t last; /* samples that are needed of the rounds wanted */
 };
@@ -26,6 +28,10 @@ struct observations {
 /* No group is longer than group_s: what the drive took over sooner or later adds up. Of the first
  * `rounds` of these stages (bits); 0: of all. 0, or -1: out of memory. Free it in any case. */
 int observe(struct observations *to, const struct identify_data *d, unsigned stages,
+    unsigned rounds, double group_s);
+/* The same without the square wave and what follows it until a slow pull, where the string may have
+ * slackened and struck. */
+int observe_calm(struct observations *to, const struct identify_data *d, unsigned stages,
     unsigned rounds, double group_s);
 void observe_free(struct observations *o);
 

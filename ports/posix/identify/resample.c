@@ -33,7 +33,7 @@ static int told_again(struct again *r, const struct identify_data *d, const stru
     struct fit first = *was, best = *was;
     struct lag lag;
     struct observations all;
-    int err = observe(&all, d, 3, 0, 0.05);
+    int err = observe(&all, d, 3, 0, 0.05) || fit_weigh(&was->at, d, &all) ? -1 : 0;
     first.held = 0;
     r->lag_told = err == 0 && e->lag_told && estimate_lag(&first, &lag, d) == 0;
     best.cost = (double)INFINITY;

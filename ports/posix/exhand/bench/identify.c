@@ -17,6 +17,8 @@
 
 #include <string.h>
 
+#define MOST 0.95 /* of the edges: said if fewer are used */
+
 struct options {
     struct identify_session s;
     int64_t rate_Hz, seed, repeats;
@@ -61,8 +63,12 @@ static void print(
     printf("%-9s %-8s %11.5g  %11.5g .. %-11.5g", "mu_both", "", model_mu(&r->value), r->mu_low,
         r->mu_high);
     if (truth) { printf(" %11.5g", model_mu(truth)); }
-    printf("\n%u rounds, %zu edges of counts; residual %.3g of %.3g allowed: %s\n", e->rounds,
-        e->counts, r->residual, RESULT_RESIDUAL_MAX,
+    printf("\n%u rounds, %zu edges of counts", e->rounds, e->counts);
+    if (e->counted < MOST * (double)e->counts) {
+        printf(", %.0f %% used: the string slackened and struck in the others",
+            100 * e->counted / (double)e->counts);
+    }
+    printf("; residual %.3g of %.3g allowed: %s\n", r->residual, RESULT_RESIDUAL_MAX,
         r->residual <= RESULT_RESIDUAL_MAX ? "the model fits" : "the model does NOT fit");
 }
 
