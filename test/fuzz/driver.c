@@ -17,7 +17,7 @@
 #include <string.h>
 #include <time.h>
 
-#define INPUT_MAX 1024u
+#define INPUT_MAX 4096u
 #define FILES_MAX 64
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

@@ -34,19 +34,37 @@ $(B)/fuzz/modbus-libfuzzer: test/fuzz/modbus_fuzz.c $(lib_src) $(wildcard lib/in
 	$(Q)clang $(filter-out -MMD -MP,$(base)) -DFUZZ_NO_MAIN $(san) -fsanitize=fuzzer \
 	    -o $@ $(filter %.c,$^)
 
+# Files that the host reads. In a make of its own: the whole program is built with sanitizers.
+files_obj := $(patsubst %,$(B)/posix/test/fuzz/%.o,files_fuzz $(if $(FUZZ_NO_MAIN),,driver)) \
+             $(filter-out %/exhand/main.o,$(exh_obj)) $(dev_obj) $(gpio_none)
+$(B)/fuzz/files: $(files_obj) $(B)/posix/libexhand.a
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs)
+files_vars_plain     := B=$(B)/san CFLAGS="$(san)" LDFLAGS="$(san)"
+files_vars_libfuzzer := B=$(B)/fuzz/clang CC=clang FUZZ_NO_MAIN=1 \
+                        CFLAGS="$(san) -fsanitize=fuzzer-no-link" \
+                        LDFLAGS="$(san) -fsanitize=fuzzer"
+files_plain          := $(B)/san/fuzz/files
+files_libfuzzer      := $(B)/fuzz/clang/fuzz/files
+
 ##@ Fuzzing
-## Feed hostile packets, frames and requests to every parser (FUZZ_SECONDS=30 FUZZ_SEED=1
+## Feed hostile packets, frames, requests and files to every parser (FUZZ_SECONDS=30 FUZZ_SEED=1
 ## FUZZER=plain or libfuzzer).
 .PHONY: fuzz
 fuzz:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/fuzz/plain $(B)/fuzz/$(FUZZER) \
 	    $(addsuffix $(if $(filter libfuzzer,$(FUZZER)),-libfuzzer),$(B)/fuzz/net $(B)/fuzz/modbus)
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(files_vars_$(FUZZER)) $(files_$(FUZZER))
 	@$(B)/fuzz/plain --check test/fuzz/corpus
 ifeq ($(FUZZER),plain)
 	@cd $(B)/fuzz && { ./net $(FUZZ_SECONDS) $(FUZZ_SEED) & net=$$!; \
-	    ./modbus $(FUZZ_SECONDS) $(FUZZ_SEED) & modbus=$$!; } && \
-	    ./plain $(FUZZ_SECONDS) $(FUZZ_SEED) $(CURDIR)/test/fuzz/corpus; packets=$$?; wait $$net && \
-	    wait $$modbus && exit $$packets
+	    ./modbus $(FUZZ_SECONDS) $(FUZZ_SEED) & modbus=$$!; \
+	    $(abspath $(files_plain)) $(FUZZ_SECONDS) $(FUZZ_SEED) $(CURDIR)/test/fuzz/files \
+	        > files.out 2> files.txt & files=$$!; } && \
+	    ./plain $(FUZZ_SECONDS) $(FUZZ_SEED) $(CURDIR)/test/fuzz/corpus; packets=$$?; \
+	    wait $$files || { grep -v '^exhand: ' files.txt | tail -n 30; exit 1; }; \
+	    tail -n 1 files.out; \
+	    wait $$net && wait $$modbus && exit $$packets
 else
 	@mkdir -p $(B)/fuzz/found && cd $(B)/fuzz && \
 	    ./libfuzzer -max_total_time=$(FUZZ_SECONDS) -max_len=1024 \
@@ -57,6 +75,10 @@ else
 	@mkdir -p $(B)/fuzz/modbus-found && cd $(B)/fuzz && \
 	    ./modbus-libfuzzer -max_total_time=$(FUZZ_SECONDS) -max_len=2048 \
 	    -print_final_stats=1 modbus-found
+	@mkdir -p $(B)/fuzz/files-found && cd $(B)/fuzz && \
+	    $(abspath $(files_libfuzzer)) -max_total_time=$(FUZZ_SECONDS) -max_len=4096 \
+	    -close_fd_mask=1 -print_final_stats=1 files-found $(CURDIR)/test/fuzz/files 2> files.txt; \
+	    failed=$$?; grep -v '^exhand: ' files.txt | tail -n 30; exit $$failed
 endif
 
 ## Try every option of every command of build/posix/exhand-lab with some twenty bad values each.

@@ -145,7 +145,9 @@ int logfile_open(struct logfile *l, const char *path)
     l->path = path;
     l->shown_s = until_now_s() + LONG_S;
     err = open_file(l);
-    return err ? err : read_header(l);
+    if (err == 0) { err = read_header(l); }
+    if (err) { logfile_close(l); }
+    return err;
 }
 
 /* Of an image that begins there: what its number of points makes of it; 0: it is cut off. */
