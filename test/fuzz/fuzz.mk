@@ -40,7 +40,8 @@ files_obj := $(patsubst %,$(B)/posix/test/fuzz/%.o,files_fuzz $(if $(FUZZ_NO_MAI
 $(B)/fuzz/files: $(files_obj) $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs)
-files_vars_plain     := B=$(B)/san CFLAGS="$(san)" LDFLAGS="$(san)"
+san_vars             := B=$(B)/san CFLAGS="$(san)" LDFLAGS="$(san)"
+files_vars_plain     := $(san_vars)
 files_vars_libfuzzer := B=$(B)/fuzz/clang CC=clang FUZZ_NO_MAIN=1 \
                         CFLAGS="$(san) -fsanitize=fuzzer-no-link" \
                         LDFLAGS="$(san) -fsanitize=fuzzer"
@@ -87,7 +88,6 @@ options: $(lab)
 	@JOBS=$(jobs) test/fuzz/options.py $(lab) $(ARGS)
 
 # What the command line is tried by under sanitizers: these tests, and five values of each option.
-san_vars := B=$(B)/san CFLAGS="$(san)" LDFLAGS="$(san)"
 san_cli  := $(patsubst %,$(B)/san/test/sim/%_test,cli csv fifo lab lines listen outfile \
             params_file quad_command regs_command)
 

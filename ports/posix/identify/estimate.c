@@ -286,12 +286,14 @@ int identify_estimate(struct estimate_of *e, const struct identify_data *d)
     int err;
     memset(e, 0, sizeof *e);
     memset(&told, 0, sizeof told);
+    memset(&all, 0, sizeof all);
+    memset(&calm, 0, sizeof calm);
     err = rotor(&told, d);
-    if (err) { return err; }
-    if (observe_calm(&calm, d, 3, 0, 0.05) || observe(&all, d, 3, 0, 0.05)) { return -1; }
+    if (err == 0) { err = observe_calm(&calm, d, 3, 0, 0.05); }
+    if (err == 0) { err = observe(&all, d, 3, 0, 0.05); }
     e->rounds = all.rounds;
     e->counts = all.n;
-    err = begin(&e->fit, &told, d, &calm, &chance);
+    if (err == 0) { err = begin(&e->fit, &told, d, &calm, &chance); }
     for (int i = 0; i < WEIGHED && err == 0; i++) {
         err = fit_weigh(&e->fit.at, d, &all);
         if (err == 0) { err = estimate_finish(&e->fit, d, &all); }

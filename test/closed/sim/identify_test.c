@@ -69,10 +69,14 @@ TEST(a_string_that_slackens_is_told_apart)
         {"kf", {2.55, 6.33}}, {"step", {44.3e-6, 35.4e-6}}, {"cable_k", {1191, 55480}},
         {"cable_b", {4.35, 1.28}}, {"mu_motor", {0.041, 0.0314}}, {"mu_mass", {0.1715, 0.2457}}};
     static const int firm[] = {MODEL_ROTOR, MODEL_KF, MODEL_STEP, MODEL_CABLE_K};
+    CHECK(strcmp(identify_part_text(IDENTIFY_PART_WAVE), "square wave") == 0, "%s",
+        identify_part_text(IDENTIFY_PART_WAVE));
     for (int n = 0; n < 2; n++) {
         struct identify_session c = session(7);
         struct estimate_of e;
+        struct observations o;
         struct model truth;
+        double cost;
         for (size_t i = 0; i < LEN(of); i++) {
             const struct sim_device_row *row;
             CHECK_EQ_I64(sim_device_set(&c.board.device, of[i].name, of[i].value[n], &row), 0);
@@ -80,6 +84,13 @@ TEST(a_string_that_slackens_is_told_apart)
         CHECK_EQ_I64(assign_step(&c.board.device, 0, 0), 0);
         truth = model_of(&c.board.device, 1.0 / c.rate_Hz);
         run(&c);
+        CHECK_EQ_I64(observe(&o, &data, 3, 0, 0.05), 0);
+        cost = fit_cost(&truth, &data, &o, 0);
+        CHECK(cost > RESULT_RESIDUAL_MAX, "device %d: the truth has %g", n, cost);
+        CHECK_EQ_I64(fit_weigh(&truth, &data, &o), 0);
+        cost = fit_cost(&truth, &data, &o, 0);
+        CHECK(cost < 1, "device %d: of what it can foretell the truth has %g", n, cost);
+        observe_free(&o);
         CHECK_EQ_I64(identify_estimate(&e, &data), 0);
         CHECK(e.fit.cost < 1, "device %d: residual %g", n, e.fit.cost);
         CHECK(e.counted < 0.9 * (double)e.counts, "device %d: %g of %zu", n, e.counted, e.counts);
