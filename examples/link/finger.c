@@ -85,7 +85,6 @@ static struct exh_safety_cfg safety_cfg;
 
 static struct exh_quad quad;
 static struct exh_velocity_window vel;
-static struct exh_contact contact;
 static struct exh_drive drive;
 static struct exh_tracking track;
 static struct exh_safety safety;
@@ -118,7 +117,7 @@ static void tick(const struct exh_drive_in *in, uint8_t command, struct exh_driv
     struct exh_current_ledger current;
     uint32_t limits;
 
-    exh_contact_step(&contact, &wall, q, &force);
+    (void)exh_contact_law(&wall, q, &force);
     limits = now.limits | exh_axis_force(&axis, &permit, &force, &current);
     exh_axis_out(&axis, &safety, now.cnt, &current, &limits, out);
 }

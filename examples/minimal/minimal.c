@@ -39,7 +39,6 @@ static struct exh_knot knot[2] = {
 static struct state {
     struct exh_quad quad;
     struct exh_velocity_window vel;
-    struct exh_contact contact;
     struct exh_drive drive;
     struct exh_tracking track;
     struct exh_safety safety;
@@ -90,7 +89,7 @@ static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
     struct exh_current_ledger i;
     uint32_t limits;
 
-    exh_contact_step(&s.contact, &contact_par, q, &f);
+    (void)exh_contact_law(&contact_par, q, &f);
     limits = now.limits | exh_axis_force(&axis, &permit, &f, &i);
     exh_axis_out(&axis, &s.safety, now.cnt, &i, &limits, out);
 }

@@ -132,6 +132,53 @@ static inline int exh_contact_step(struct exh_contact *s, const struct exh_conta
 void exh_contact_step_free(struct exh_contact *s, const struct exh_contact_par *par,
     int32_t pos_m_q30, struct exh_force_ledger *out);
 
+/* --- the law without memory --- */
+
+/* Eq. 1 as it is printed: contact begins and ends at q_lim, and F0 acts while the velocity is below
+ * 0, so the hysteresis and F0's band are not read. It suits a wall without F0, and an encoder whose
+ * velocity does not chatter about 0. Both functions take every int32_t.
+ *
+ * 1 at q >= q_lim. *past: the penetration in 2^-30 m, 0 .. 4 m; no meaning where it returns 0. */
+static inline int exh_contact_past(struct exh_contact_in in, uint32_t *past)
+{
+    *past = (uint32_t)in.pos_m_q30 - (uint32_t)in.lim_m_q30;
+    return in.pos_m_q30 >= in.lim_m_q30;
+}
+
+/* Fills spring, damper and pullback, zeroes passivity; the rest is drive.h's. Each term is rounded
+ * once: their sum is within 1 LSB of exact. Returns 1 in contact. */
+static inline int exh_contact_law(
+    const struct exh_contact_par *par, struct exh_contact_in in, struct exh_force_ledger *out)
+{
+    const int shift = EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE;
+    uint32_t past;
+    const int c = exh_contact_past(in, &past);
+    const uint64_t spring = (uint64_t)(uint32_t)par->k_Npm_q10 * (past & (uint32_t)-c);
+    out->spring_N_q20 = (int64_t)((spring + (UINT32_C(1) << (shift - 1))) >> shift);
+    out->damper_N_q20 =
+        exh_mul_shr(par->b_Nspm_q20, in.vel_mps_q27 & -c, EXH_Q_B + EXH_Q_VEL - EXH_Q_FORCE);
+    out->pullback_N_q20 = par->f0_N_q20 & in.vel_mps_q27 >> 31;
+    out->passivity_N_q20 = 0;
+    return c;
+}
+
+/* The force to command by the same law, N, q20, where nobody asks why: 0 .. EXH_FORCE_MAX_N_Q20,
+ * limited at both ends, within 0.51 LSB of exact. */
+static inline int32_t exh_contact_force(const struct exh_contact_par *par, struct exh_contact_in in)
+{
+    const int shift = EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE;
+    const int64_t damper =
+        (int64_t)par->b_Nspm_q20 * in.vel_mps_q27 >> (EXH_Q_B + EXH_Q_VEL - EXH_Q_K - EXH_Q_POS);
+    uint32_t past;
+    const int c = exh_contact_past(in, &past);
+    const uint64_t sum = (uint64_t)(uint32_t)par->k_Npm_q10 * past + (uint64_t)damper;
+    const int64_t terms = exh_shr_round(exh_from_u64(sum), shift);
+    const int64_t f = (c ? terms : 0) + (par->f0_N_q20 & in.vel_mps_q27 >> 31);
+    const uint64_t pull = (uint64_t)f; /* beyond the limit where f is below 0, too */
+    if (pull <= EXH_FORCE_MAX_N_Q20) { return (int32_t)pull; }
+    return f < 0 ? 0 : EXH_FORCE_MAX_N_Q20;
+}
+
 /* State through a cursor (bytes.h). */
 void exh_contact_serialize(struct exh_bytes *c, struct exh_contact *s);
 

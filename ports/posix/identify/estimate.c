@@ -13,14 +13,16 @@
 
 /* Starts that are tried, the best of them first. */
 #define STARTS_MAX 128
-#define TRIED      6
-#define ROUNDS     3   /* of more starts, while the model does not fit: */
-#define BESIDE     41  /* stiffnesses beside the one that was found, from -40 to 65 %, */
-#define BEST       3   /* of which so many are tried, */
-#define SHAKEN     4   /* and so many a little way off */
-#define GOOD       0.1 /* a start that came so far is the one */
-#define AGAIN      4   /* from what was found, at most */
+#define DRAWN      2000
+#define ROUGH      40 /* of them go down roughly, */
+#define TRIED      6  /* and of these so many all the way */
+#define ROUNDS     3  /* of more starts, while the model does not fit: */
+#define BESIDE     41 /* stiffnesses beside the one that was found, from -40 to 65 %, */
+#define BEST       3  /* of which so many are tried, */
+#define SHAKEN     4  /* and so many a little way off */
+#define AGAIN      4  /* from what was found, at most */
 #define LAG_S      200e-6
+#define FAR_M      2e-3 /* where a start may be by so much beside the string */
 #define DENIED     1.25 /* a cost so much larger with the monitor's delay: the motion has another */
 #define SHARP_S    6e-6 /* the monitor tells the delay better than the motion, */
 #define SURE_S     50e-6 /* and closer lags the motion does not tell from each other */
@@ -76,20 +78,52 @@ static int rotor(struct fit *f, const struct identify_data *d)
     return err;
 }
 
-/* Where the string's stiffness, its damping and the place of the friction may be. */
-static void lattice(struct starts *s, const struct fit *f, const struct identify_data *d,
-    const struct observations *o)
+/* Between low and high, as often at half as at twice the middle. */
+static double anywhere(struct sim_random *chance, double low, double high)
 {
-    static const double cable_npm[] = {1000, 1800, 3200, 6000, 11000, 20000, 40000},
-                        cable_nspm[] = {1.5, 5, 20}, share[] = {0.1, 0.3, 0.5, 0.7, 0.9};
-    s->n = 0;
-    for (int i = 0; i < 105; i++) {
-        struct model m = f->at;
-        m.value[MODEL_CABLE_K] = cable_npm[i % 7];
-        m.value[MODEL_CABLE_B] = cable_nspm[i / 35];
-        fit_split(&m, d, share[i / 7 % 5]);
-        add(s, &m, fit_cost(&m, d, o, 2e-3));
+    return low * exp(sim_random_unit(chance) * log(high / low));
+}
+
+/* What the free rotor does not tell: force constant, string, friction in proportion and how much of
+ * it is the motor's. What it told is in proportion to the force constant. */
+static struct model draw(const struct model *told, struct sim_random *chance)
+{
+    struct model m = *told;
+    double *v = m.value;
+    const double share = sim_random_unit(chance), mu = anywhere(chance, 0.03, 0.6);
+    const double kf = anywhere(chance, 0.7, 1.4);
+    for (int i = 0; i < MODEL_PARS; i++) {
+        if (i == MODEL_KF || i == MODEL_ROTOR || i == MODEL_VISCOUS || i == MODEL_COULOMB) {
+            v[i] *= kf;
+        }
     }
+    v[MODEL_MU_MOTOR] = mu * share;
+    v[MODEL_MU_MASS] = mu * (1 - share);
+    v[MODEL_CABLE_K] = anywhere(chance, 1000, 60000);
+    v[MODEL_CABLE_B] = anywhere(chance, 1, 80);
+    return m;
+}
+
+/* Of many drawn the best, after a rough descent of those that promise most. The force constant
+ * stays as it was drawn: it moves with what the rotor told. */
+static int starts(struct starts *s, const struct model *told, const struct identify_data *d,
+    const struct observations *few, struct sim_random *chance)
+{
+    static const struct fit_how rough = {
+        FIT_MASS & ~(1u << MODEL_STEP | 1u << MODEL_KF), FAR_M, 12, 0, 1e-2, 1};
+    struct starts drawn;
+    int err = 0;
+    drawn.n = s->n = 0;
+    for (int i = 0; i < DRAWN; i++) {
+        const struct model m = draw(told, chance);
+        add(&drawn, &m, fit_cost(&m, d, few, FAR_M));
+    }
+    for (int i = 0; i < ROUGH && err == 0; i++) {
+        struct fit one = {.at = drawn.m[i]};
+        err = fit_run(&one, d, few, rough);
+        add(s, &one.at, one.cost);
+    }
+    return err;
 }
 
 /* One more of the descents, of which nobody knows how many there are. */
@@ -98,26 +132,6 @@ static void show(int over)
     static int done;
     done += !over;
     progress_show("descents", done, 0, over);
-}
-
-/* From the best TRIED starts over two rounds of the mass, then of all. */
-static int from_starts(struct fit *best, const struct fit *rotor_told, const struct starts *s,
-    const struct identify_data *d, const struct observations *few)
-{
-    static const struct fit_how rough = {FIT_MASS & ~(1u << MODEL_STEP), 2e-3, 12, 0, 1e-2, 1},
-                                finer = {FIT_MASS, 2e-4, 12, 0, 1e-2, 1},
-                                all = {FIT_ALL, 7e-5, 30, 0, 3e-3, 1};
-    int err = 0;
-    best->cost = (double)INFINITY;
-    for (int i = 0; i < TRIED && err == 0 && best->cost > GOOD; i++) {
-        struct fit one = *rotor_told;
-        one.at = s->m[i];
-        err = fit_run(&one, d, few, rough);
-        if (err == 0) { err = fit_run(&one, d, few, finer); }
-        if (one.cost < best->cost) { *best = one; }
-        show(0);
-    }
-    return err ? err : fit_run(best, d, few, all);
 }
 
 /* Down to where no step lowers the cost; from there the plain steps, which a rough cost does not
@@ -253,17 +267,31 @@ static int from(struct fit *best, const struct model *m, const struct identify_d
     return err;
 }
 
-/* Down from starts, then from beside what was found and from a little way off, until the model fits
- * what a string does that never slackens. */
+/* From the best starts, until the model fits what a string does that never slackens. */
+static int from_starts(struct fit *best, const struct starts *s, const struct identify_data *d,
+    const struct observations *calm)
+{
+    static const struct fit_how finer = {FIT_ALL & ~(1u << MODEL_LAG), 2e-4, 20, 0, 1e-2, 1};
+    int err = 0;
+    best->cost = (double)INFINITY;
+    for (int i = 0; i < TRIED && err == 0 && best->cost > CALM; i++) {
+        struct fit one = *best;
+        one.at = s->m[i];
+        err = fit_run(&one, d, calm, finer);
+        if (err == 0) { err = from(best, &one.at, d, calm); }
+    }
+    return err;
+}
+
+/* Down from starts, then from beside what was found and from a little way off, as long. */
 static int begin(struct fit *best, const struct fit *told, const struct identify_data *d,
     const struct observations *calm, struct sim_random *chance)
 {
     struct observations few;
     struct starts s;
     int err = observe_calm(&few, d, 1u << IDENTIFY_MASS, 2, 0.06);
-    if (err == 0) { lattice(&s, told, d, &few); }
-    if (err == 0) { err = from_starts(best, told, &s, d, &few); }
-    if (err == 0) { err = estimate_finish(best, d, calm); }
+    if (err == 0) { err = starts(&s, &told->at, d, &few, chance); }
+    if (err == 0) { err = from_starts(best, &s, d, calm); }
     for (int r = 0; r < ROUNDS && err == 0 && best->cost > CALM; r++) {
         near(&s, best, d, calm);
         for (int i = 0; i < BEST && err == 0; i++) { err = from(best, &s.m[i], d, calm); }

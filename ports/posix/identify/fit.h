@@ -44,8 +44,4 @@ void fit_shake(struct fit *f, struct sim_random *chance);
 /* Where to begin, from currents and times of the run. */
 struct model fit_start(const struct identify_data *d);
 
-/* Force constant and frictions by the currents that lift and let sink, so much of it the motor's;
- * what the rotor told stays. */
-void fit_split(struct model *m, const struct identify_data *d, double at_motor);
-
 #endif

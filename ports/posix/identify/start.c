@@ -6,21 +6,16 @@
 
 #include "sim/plant.h"
 
-#include <math.h>
-
-#define PULL_M 0.006 /* the scene ends a slow pull behind so much */
-
 /* Currents at the ends of the slow pulls, and how fast the pulses were. */
 struct seen {
     double free_A, up_A, down_A, pulse_A;
-    double ramp_Aps;   /* of the slow pulls */
     double pulse_mps2; /* at the step told */
     int pulses;
 };
 
 static struct seen look(const struct identify_data *d)
 {
-    struct seen s = {0, 0, 0, 0, 0, 0, 0};
+    struct seen s = {0, 0, 0, 0, 0, 0};
     size_t began = 0;
     for (size_t i = 1; i < d->n; i++) {
         const struct identify_sample *a = &d->sample[i - 1], *b = &d->sample[i];
@@ -28,10 +23,6 @@ static struct seen look(const struct identify_data *d)
         if (!a->busy || !ends) { continue; }
         if (a->part == 0) { s.free_A = (double)a->coded_A; }
         if (a->part == IDENTIFY_PART_UP) { s.up_A = (double)a->coded_A; }
-        if (a->part == IDENTIFY_PART_UP) {
-            s.ramp_Aps = ((double)a->coded_A - (double)d->sample[began].coded_A) /
-                         ((double)(i - began) * d->T_s);
-        }
         if (a->part == IDENTIFY_PART_DOWN) { s.down_A = (double)a->coded_A; }
         if (a->part == 2) {
             const double t_s = (double)(i - began) * d->T_s - 1e-3;
@@ -59,30 +50,4 @@ struct model fit_start(const struct identify_data *d)
     const struct model m = {{kg, 0.7 * kf * s.free_A, kg / 0.02, d->T_s + 300e-6, kf, d->step_m,
         3000, 4, 0.6 * mu, 0.3 * mu, 160e-6}};
     return m;
-}
-
-/* kf up = M g (1 + a) / (1 - b) + f, kf down = M g (1 - a) / (1 + b) - f; f / kf is known. */
-void fit_split(struct model *m, const struct identify_data *d, double at_motor)
-{
-    const struct seen s = look(d);
-    double *v = m->value;
-    const double weight_N = d->mass_kg * SIM_GRAVITY, free_A = v[MODEL_COULOMB] / v[MODEL_KF];
-    /* A pull goes on while what it moves gathers way: x = F' t^3 / 6 m. */
-    const double m_kg = d->mass_kg + v[MODEL_ROTOR];
-    const double past_A = s.ramp_Aps * cbrt(6 * PULL_M * m_kg / (s.ramp_Aps * v[MODEL_KF]));
-    const double up_A = s.up_A - free_A - past_A, down_A = s.down_A + free_A + past_A;
-    const double per_rotor = v[MODEL_KF] / v[MODEL_ROTOR],
-                 damps = v[MODEL_VISCOUS] / v[MODEL_ROTOR];
-    double low = 0, high = 0.8;
-    if (!(up_A > down_A) || !(down_A > 0)) { return; }
-    for (int i = 0; i < 40; i++) {
-        const double mu = (low + high) / 2, a = mu * at_motor, b = mu - a;
-        *((1 + a) * (1 + b) / ((1 - b) * (1 - a)) < up_A / down_A ? &low : &high) = mu;
-    }
-    v[MODEL_MU_MOTOR] = low * at_motor;
-    v[MODEL_MU_MASS] = low - low * at_motor;
-    v[MODEL_KF] = weight_N * (1 + v[MODEL_MU_MOTOR]) / (1 - v[MODEL_MU_MASS]) / up_A;
-    v[MODEL_ROTOR] = v[MODEL_KF] / per_rotor;
-    v[MODEL_VISCOUS] = damps * v[MODEL_ROTOR];
-    v[MODEL_COULOMB] = free_A * v[MODEL_KF];
 }

@@ -202,6 +202,41 @@ TEST(what_does_not_hold_is_cut)
     CHECK(gains_k_max(&x.rule, x.region.row[2].b_Nspm) > 0.4 * high[2], "nothing is left");
 }
 
+static double area_of(const struct exh_gains_par *rule)
+{
+    double sum = 0;
+    for (int i = 0; i < 1000; i++) { sum += gains_k_max(rule, i * 0.1); }
+    return sum;
+}
+
+/* Rules of any shape: whatever the new one allows, the old one allowed with 3 % more of k. */
+TEST(a_rule_moves_inwards)
+{
+    while (check_case(50)) {
+        struct exh_gains_par old, now;
+        double last;
+        memset(&old, 0, sizeof old);
+        old.knots = check_i32_in(2, EXH_GAINS_KNOTS);
+        old.k_min_Npm_q10 = check_i32_in(0, 500 * 1024);
+        for (int i = 0; i < old.knots; i++) {
+            const int32_t before = i > 0 ? old.b_Nspm_q20[i - 1] : 0;
+            old.b_Nspm_q20[i] = before + check_i32_in(i > 0 ? 1 << 17 : 0, 12 << 20);
+            old.k_Npm_q10[i] = check_i32_in(600 * 1024, 20000 * 1024);
+        }
+        now = old;
+        gains_rule_inwards(&now, 0.03);
+        for (int i = 0; i < 1000; i++) {
+            const double b = i * 0.1, k = gains_k_max(&now, b);
+            CHECK(k <= 0.97 * gains_k_max(&old, b) + 1, "b %g: %g of %g", b, k,
+                gains_k_max(&old, b));
+        }
+        last = old.b_Nspm_q20[old.knots - 1] - old.b_Nspm_q20[0];
+        CHECK(now.b_Nspm_q20[now.knots - 1] - now.b_Nspm_q20[0] <= 0.97 * last, "last b");
+        CHECK(old.knots > 2 || last < 2 << 20 || area_of(&now) > 0.85 * area_of(&old),
+            "%g of %g is left", area_of(&now), area_of(&old));
+    }
+}
+
 /* --- the scene that has a rule --- */
 
 static int stage(uint16_t id, int32_t raw)
@@ -409,5 +444,5 @@ TEST(a_map_is_judged)
 
 TEST_MAIN("gains", the_papers_points, cases_fill_all_phases, the_rule_is_inside_everywhere,
     a_rectangle_is_taken, luck_and_islands_are_left_out, what_does_not_hold_is_cut,
-    the_scene_refuses_by_name, over_the_wire_too, a_pair_is_judged, one_answer_by_every_path,
-    a_run_is_refused_by_its_rule, bad_usage_is_named, a_map_is_judged);
+    a_rule_moves_inwards, the_scene_refuses_by_name, over_the_wire_too, a_pair_is_judged,
+    one_answer_by_every_path, a_run_is_refused_by_its_rule, bad_usage_is_named, a_map_is_judged);

@@ -35,7 +35,10 @@ $(B)/bench/sim_work $(B)/bench/sim_statistics:
 .PHONY: sim-built
 sim-built: $(B)/bench/sim_work $(B)/bench/sim_statistics
 
-# The kernels for a 32-bit CPU, with the same flags and static. Only instructions are counted there.
+# The kernels for a 32-bit CPU, compiled as ports/pc104 compiles a full box (PORT_CFLAGS and
+# PORT_WHOLE), static. Only instructions are counted there.
+i686_flags := -march=i686 -fno-pic -fno-pie -no-pie -fno-stack-protector -fcf-protection=none \
+              -fno-asynchronous-unwind-tables -O3 -flto=auto -Wno-maybe-uninitialized
 bench_i686 := $(B)/bench/kernels-i686
 i686_src   := $(patsubst $(B)/posix/%.o,%.c,$(filter-out %/velocity.o,$(bench_obj))) \
               test/no_board.c $(bench_scenes) $(filter-out lib/src/num/crc.c,$(lib_src))
@@ -43,7 +46,7 @@ $(bench_i686): $(i686_src) \
     $(wildcard test/figures/bench/*.h lib/src/*/*.h lib/include/exhand/*.h test/wide.h) $(stamp)
 	@mkdir -p $(@D)
 	$(Q)i686-linux-gnu-gcc -static $(filter-out -MMD -MP -g,$(base)) $(PORT_HOSTFLAGS) $(CFLAGS) \
-	    -Itest -o $@ $(filter %.c,$^) -lm
+	    $(i686_flags) -Itest -o $@ $(filter %.c,$^) -lm
 
 # Ours beside others' code: CMSIS-DSP if peers.sh could fetch it. Same compiler and flags.
 cmsis     := $(B)/peers/cmsisdsp-1.10.3

@@ -61,6 +61,20 @@ static void law_op(uint32_t i)
     }
 }
 
+static void plain_law_op(uint32_t i)
+{
+    for (uint32_t f = 0; f < FINGERS; f++) {
+        (void)exh_contact_law(&path_par.contact, at[f][i], &ledger[f]);
+    }
+}
+
+static void plain_force_op(uint32_t i)
+{
+    for (uint32_t f = 0; f < FINGERS; f++) {
+        bench_sink = exh_contact_force(&path_par.contact, at[f][i]);
+    }
+}
+
 static void law_force_op(uint32_t i)
 {
     for (uint32_t f = 0; f < FINGERS; f++) {
@@ -150,6 +164,29 @@ static long double exact_plain(struct exh_contact_in in)
 {
     const long double f = exact_law(&path_par.contact, in, in.vel_mps_q27 < 0);
     return bench_clamp(f, 0, path_par.drive.f_max_N_q20);
+}
+
+static void plain_law_error(struct error *e)
+{
+    start();
+    for (uint32_t i = 0; i < HOUR; i++) {
+        const struct exh_contact_in in = hour_in(i);
+        struct exh_force_ledger l;
+        (void)exh_contact_law(&path_par.contact, in, &l);
+        error_add(e, (long double)(l.spring_N_q20 + l.damper_N_q20 + l.pullback_N_q20) -
+                         exact_law(&path_par.contact, in, in.vel_mps_q27 < 0));
+    }
+}
+
+static void plain_force_error(struct error *e)
+{
+    start();
+    for (uint32_t i = 0; i < HOUR; i++) {
+        const struct exh_contact_in in = hour_in(i);
+        const long double f = exact_law(&path_par.contact, in, in.vel_mps_q27 < 0);
+        error_add(
+            e, exh_contact_force(&path_par.contact, in) - bench_clamp(f, 0, EXH_FORCE_MAX_N_Q20));
+    }
 }
 
 static void double_error(struct error *e)
@@ -370,6 +407,11 @@ static const struct kernel kernels[] = {
     {"contact_law_x5", "N", NEWTON, 1, 1, start, law_op, law_error,
         "contact.h; 1 h of 2 kHz ticks, then random gains at full scale", 104,
         "integer Q31 law with contact test, F0, clamp" HARNESS},
+    {"contact_law_plain_x5", "N", NEWTON, 1, 1, start, plain_law_op, plain_law_error,
+        "contact.h, exh_contact_law(): no hysteresis, F0 by the velocity's sign; the same hour", 0,
+        NULL},
+    {"contact_force_x5", "N", NEWTON, 0.51, 1, start, plain_force_op, plain_force_error,
+        "contact.h, exh_contact_force(): the same without the ledger, limited", 0, NULL},
     {"law_and_force_x5", "N", NEWTON, 1, 1, start, law_force_op, law_force_error,
         "contact.h, limits exact; 1 h of 2 kHz ticks", 123,
         "CMSIS-DSP arm_pid_q31, Ki = 0: no contact test, F0 or clamp" HARNESS},

@@ -82,6 +82,14 @@ static long double ours_off(uint32_t i)
     return bench_q((long double)(ledger.spring_N_q20 + ledger.damper_N_q20), EXH_Q_FORCE) - want;
 }
 
+static void force_op(uint32_t i)
+{
+    for (uint32_t f = 0; f < WORK_FINGERS; f++) {
+        bench_sink =
+            exh_contact_force(&par, (struct exh_contact_in){op_pos[i][f], op_vel[i][f], 0});
+    }
+}
+
 /* --- bare --- */
 
 static struct bare_law bare; /* no constant that the compiler could see through */
@@ -141,16 +149,38 @@ static long double float_off(uint32_t i)
     return law_float(&in_float, (float)pos, (float)((pos - last) / WALL_T_S)) - clamped(pos, last);
 }
 
+/* The next count and what a law with limits ought to give there; returns the velocity. */
+static int32_t counts(int32_t *n, long double *want)
+{
+    const int32_t last = (int32_t)(last_m / WALL_STEP_M + 0.5);
+    *n = wall_cnt();
+    *want = clamped(*n * WALL_STEP_M, last_m);
+    last_m = *n * WALL_STEP_M;
+    return (*n - last) * 71213 * 250;
+}
+
+static long double force_off(uint32_t i)
+{
+    int32_t n;
+    long double want;
+    const int32_t vel = counts(&n, &want);
+    (void)i;
+    return bench_q(
+               exh_contact_force(&par, (struct exh_contact_in){n * 71213, vel, 0}), EXH_Q_FORCE) -
+           want;
+}
+
 static long double bare_off(uint32_t i)
 {
-    const int32_t n = wall_cnt(), last = (int32_t)(last_m / WALL_STEP_M + 0.5);
-    const long double want = clamped(n * WALL_STEP_M, last_m);
+    int32_t n;
+    long double want;
+    const int32_t vel = counts(&n, &want);
     (void)i;
-    last_m = n * WALL_STEP_M;
-    return bench_q(bare_law(&bare, n * 71213, (n - last) * 71213 * 250), EXH_Q_FORCE) - want;
+    return bench_q(bare_law(&bare, n * 71213, vel), EXH_Q_FORCE) - want;
 }
 
 static const struct work works[] = {
+    {"law", "exhand force alone", "ours", "N", WORK_HOUR, setup, force_op, force_off},
     {"law", "exhand contact law", "ours", "N", WORK_HOUR, setup, ours_op, ours_off},
     {"law", "bare integer law", "integer", "N", WORK_HOUR, bare_setup, bare_op, bare_off},
     {"law", "plain double law", "float", "N", WORK_HOUR, setup, double_op, double_off},

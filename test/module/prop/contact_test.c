@@ -119,5 +119,64 @@ TEST(pullback_against_the_whole_history)
     }
 }
 
+/* The law without memory: F0 by the velocity's sign, the whole penetration of up to 4 m. */
+static void plain_case(const struct exh_contact_par *par, struct exh_contact_in in)
+{
+    const int64_t past = (int64_t)in.pos_m_q30 - in.lim_m_q30, most = EXH_FORCE_MAX_N_Q20;
+    const struct wide half = wide_of(INT64_C(1) << 26), tenth = wide_of(INT64_C(1) << 19);
+    const struct wide f0 = wide_shl(wide_of(in.vel_mps_q27 < 0 ? par->f0_N_q20 : 0), 27);
+    const struct wide spring = wide_shl(wide_mul(par->k_Npm_q10, past), 7);
+    const struct wide in_touch = wide_add(spring, wide_mul(par->b_Nspm_q20, in.vel_mps_q27));
+    const struct wide exact = past >= 0 ? wide_add(f0, in_touch) : f0;
+    struct exh_force_ledger f = {1, 1, 1, 1, 5, 6, 7, 8};
+    const int touching = exh_contact_law(par, in, &f);
+    const int64_t sum = f.spring_N_q20 + f.damper_N_q20 + f.pullback_N_q20;
+    const int64_t force = exh_contact_force(par, in);
+    const struct wide off = wide_sub(wide_shl(wide_of(force), 27), exact);
+    CHECK_EQ_I64(touching, past >= 0);
+    CHECK(touching || (f.spring_N_q20 == 0 && f.damper_N_q20 == 0), "force without contact");
+    CHECK(f.passivity_N_q20 == 0 && f.clamp_N_q20 == 5 && f.force_N_q20 == 8, "the drive's");
+    CHECK(wide_within(wide_sub(wide_shl(wide_of(sum), 27), exact), wide_of(INT64_C(1) << 27)),
+        "past %" PRId64 ": the sum of the terms is off by more than 1 LSB", past);
+    CHECK(force >= 0 && force <= most, "force %" PRId64, force);
+    CHECK(wide_within(off, wide_add(half, tenth)) || (force == 0 && !wide_negative(off)) ||
+              (force == most && wide_negative(off)),
+        "past %" PRId64 ": force %" PRId64 " is off by more than 0.51 LSB", past, force);
+}
+
+TEST(law_without_memory)
+{
+    for (uint32_t i = 0; i < 8 * 8 * 8 * 8; i++) {
+        const struct exh_contact_par par = {
+            i >> 9 & 1 ? exh_contact_rows[0].max : exh_contact_rows[0].min,
+            i >> 10 & 1 ? exh_contact_rows[1].max : exh_contact_rows[1].min,
+            i >> 11 & 1 ? exh_contact_rows[2].max : exh_contact_rows[2].min, 0, 0};
+        plain_case(&par, (struct exh_contact_in){check_corner[i & 7], check_corner[i >> 3 & 7],
+                             check_corner[i >> 6 & 7]});
+    }
+    while (check_case(1)) {
+        const struct exh_contact_par par = {in_row(0), in_row(1), in_row(2), 0, 0};
+        const int32_t pos = check_i32(), most_vel = check_i32_in(1, INT32_MAX);
+        const int64_t lim = (int64_t)pos + check_i32_in(-99999, 99);
+        const int32_t near = (int32_t)wide_sat32(wide_of(lim));
+        plain_case(&par, (struct exh_contact_in){pos, check_i32_in(-most_vel, most_vel), near});
+        plain_case(&par, (struct exh_contact_in){pos, check_i32(), check_i32()});
+    }
+}
+
+/* Where neither hysteresis nor F0 is asked for, both laws are the same to the bit. */
+TEST(both_laws_agree)
+{
+    while (check_case(1)) {
+        const struct exh_contact_par par = {in_row(0), in_row(1), 0, 0, 0};
+        const struct exh_contact_in in = {
+            check_i32_in(-(1 << 30), 1 << 30), check_i32(), check_i32_in(-(1 << 30) + 1, 1 << 30)};
+        struct exh_contact s = {check_i32(), check_u64() & 1, check_u64() & 1, 1};
+        struct exh_force_ledger a, b;
+        CHECK_EQ_I64(exh_contact_law(&par, in, &a), exh_contact_step(&s, &par, in, &b));
+        CHECK(a.spring_N_q20 == b.spring_N_q20 && a.damper_N_q20 == b.damper_N_q20, "terms");
+    }
+}
+
 TEST_MAIN("prop/contact", law_at_all_corners, law_at_random, law_with_unchecked_parameters,
-    pullback_against_the_whole_history);
+    pullback_against_the_whole_history, law_without_memory, both_laws_agree);

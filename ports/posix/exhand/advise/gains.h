@@ -54,8 +54,13 @@ int gains_told(struct region_opt *o, const struct result_file *f, double rate_Hz
 /* 0, or 1 after a line on stderr: too little is allowed for one. */
 int gains_rule(struct exh_gains_par *rule, const struct region *r);
 
-/* The same, and every pair that is then tried along its line and below it holds: what does not cuts
- * the rows beside it (prove.c). */
+/* The rule ends by this share of k, and of its width in b, inside of what it was: on its line a
+ * fall of a hundred that does not rest is hardly seen by the falls of a pair. Nothing is allowed
+ * that was not. */
+void gains_rule_inwards(struct exh_gains_par *rule, double by);
+
+/* A rule, and every pair that is then tried along its line and below it holds: what does not cuts
+ * the rows beside it. At last it moves inwards, where the options say so (prove.c). */
 int gains_proved(struct gains_rate *x);
 
 /* As a scene with this rule answers: the one answer there is. */

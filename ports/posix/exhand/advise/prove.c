@@ -70,5 +70,6 @@ int gains_proved(struct gains_rate *x)
         failed = pass(x, pair);
         if (failed) { err = gains_rule(&x->rule, &x->region); }
     }
+    if (err == 0 && x->region.o.inwards > 0) { gains_rule_inwards(&x->rule, x->region.o.inwards); }
     return err;
 }

@@ -136,6 +136,7 @@ static double search(const struct profile *p, int *knots, int *end, int *level)
 /* --- in the library's formats --- */
 
 static int32_t down(double v, int frac) { return (int32_t)(v * (double)(INT32_C(1) << frac)); }
+static double si(int32_t raw, int frac) { return (double)raw / (double)(INT32_C(1) << frac); }
 
 static void take(struct exh_gains_par *rule, const struct profile *p, int knots, int j, int level)
 {
@@ -175,9 +176,37 @@ int gains_rule(struct exh_gains_par *rule, const struct region *r)
     return 1;
 }
 
-/* --- what it says --- */
+/* --- and inside of it --- */
 
-static double si(int32_t raw, int frac) { return (double)raw / (double)(INT32_C(1) << frac); }
+/* The right end of each piece falls until the line is on or below each knot of the other. */
+static void keep_below(double *k, const double *b, int knots, const double *k0, const double *b0)
+{
+    for (int n = 0; n + 1 < knots; n++) {
+        for (int i = 0; i < knots; i++) {
+            const double t = (b0[i] - b[n]) / (b[n + 1] - b[n]);
+            if (!(t > 0 && t < 1)) { continue; }
+            k[n + 1] = lower(k[n + 1], (k0[i] - k[n] * (1 - t)) / t);
+        }
+    }
+}
+
+void gains_rule_inwards(struct exh_gains_par *rule, double by)
+{
+    double k0[EXH_GAINS_KNOTS], b0[EXH_GAINS_KNOTS], k[EXH_GAINS_KNOTS], b[EXH_GAINS_KNOTS];
+    for (int i = 0; i < rule->knots; i++) {
+        b0[i] = si(rule->b_Nspm_q20[i], EXH_Q_B);
+        k0[i] = (1 - by) * si(rule->k_Npm_q10[i], EXH_Q_K);
+        b[i] = b0[0] + (b0[i] - b0[0]) * (1 - by); /* the first knot stays */
+    }
+    for (int i = 0; i < rule->knots; i++) {
+        k[i] = lower(k0[i], (1 - by) * gains_k_max(rule, b[i]));
+    }
+    keep_below(k, b, rule->knots, k0, b0);
+    for (int i = 0; i < rule->knots; i++) {
+        rule->b_Nspm_q20[i] = down(b[i], EXH_Q_B);
+        rule->k_Npm_q10[i] = down(k[i], EXH_Q_K);
+    }
+}
 
 int gains_allows(const struct exh_gains_par *rule, double k_Npm, double b_Nspm)
 {

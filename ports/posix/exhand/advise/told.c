@@ -5,7 +5,8 @@
 
 #include "base/assign.h"
 
-#define TOLD 12
+#define TOLD    12
+#define INWARDS 0.03
 #define ROOT \
     0.93303299153680741 /* 2^(-1/10): as many steps, none of them a multiple of another \
                          */
@@ -78,6 +79,7 @@ int gains_told(struct region_opt *o, const struct result_file *f, double rate_Hz
     const double more = f->rate_Hz / rate_Hz;
     const int far = more > 1.01 || more < 0.99;
     o->devices = 0;
+    o->inwards = INWARDS;
     for (int i = 0; i < TOLD; i++) {
         const struct model m = told(f, i);
         struct sim_device d = model_device(&m, 1 / rate_Hz, sim_device_default().servo_hz);

@@ -153,6 +153,14 @@ static void law_op(uint32_t i)
     }
 }
 
+static void force_op(uint32_t i)
+{
+    for (uint32_t f = 0; f < FINGERS; f++) {
+        soft_sink = exh_contact_force(
+            &wall, (struct exh_contact_in){soft_x[i + f] >> 6, soft_x[i + f + 1] >> 4, 0});
+    }
+}
+
 static void law_double_op(uint32_t i)
 {
     for (uint32_t f = 0; f < FINGERS; f++) {
@@ -298,6 +306,7 @@ static const struct soft_op high[] = {
     {"filter_high,exhand", filter_op}, {"filter_high,exhand-cheap", cheap_op}};
 static const struct soft_op others[] = {
     {"sine,exhand sincos", sine_op},
+    {"law,exhand force alone", force_op},
     {"law,exhand contact law", law_op},
     {"law,plain double law", law_double_op},
     {"law,plain float law", law_float_op},

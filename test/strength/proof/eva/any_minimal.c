@@ -7,7 +7,7 @@
  * PLANT: examples/minimal/minimal.c: &now, 1, box); -> &now, 0, box);
  * PLANT: lib/include/exhand/axis.h: exh_gate_step(s, a->drive_cfg, 1, -> exh_gate_step(s, a->drive_cfg, 2,
  * PLANT: examples/minimal/minimal.c: exh_axis_sense(&axis, &in->drive, 0); -> exh_axis_sense(&axis, &in->drive, 5);
- * PLANT: examples/minimal/minimal.c: exh_contact_step(&s.contact, &contact_par, q, &f); -> (void)q;
+ * PLANT: examples/minimal/minimal.c: (void)exh_contact_law(&contact_par, q, &f); -> (void)q;
  * PLANT: examples/minimal/minimal.c: = {knot, 2}, no_table -> = {knot, 3}, no_table
  */
 #include "minimal/minimal.c"
@@ -22,13 +22,12 @@ int main(void)
     if (exh_scene_minimal.setup(board) != 0) { return 1; }
     ANY(s.quad);
     s.vel = any_velocity();
-    s.contact = any_contact();
     s.drive = any_drive();
     ANY(s.track);
     s.safety = any_safety();
     ANY(in);
     exh_scene_minimal.tick(&in, &out);
-    /*@ assert next: velocity(&s.vel) && contact(&s.contact) && drive(&s.drive) && safety(&s.safety); */
+    /*@ assert next: velocity(&s.vel) && drive(&s.drive) && safety(&s.safety); */
     /*@ assert no_other_drive: out.enable <= 1; */
     END();
     return 0;
