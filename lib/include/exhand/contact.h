@@ -150,7 +150,7 @@ static inline int exh_contact_past(struct exh_contact_in in, uint32_t *past)
 static inline int exh_contact_law(
     const struct exh_contact_par *par, struct exh_contact_in in, struct exh_force_ledger *out)
 {
-    const int shift = EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE;
+    const unsigned shift = EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE;
     uint32_t past;
     const int c = exh_contact_past(in, &past);
     const uint64_t spring = (uint64_t)(uint32_t)par->k_Npm_q10 * (past & (uint32_t)-c);
@@ -166,7 +166,7 @@ static inline int exh_contact_law(
  * limited at both ends, within 0.51 LSB of exact. */
 static inline int32_t exh_contact_force(const struct exh_contact_par *par, struct exh_contact_in in)
 {
-    const int shift = EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE;
+    const unsigned shift = EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE;
     const int64_t damper =
         (int64_t)par->b_Nspm_q20 * in.vel_mps_q27 >> (EXH_Q_B + EXH_Q_VEL - EXH_Q_K - EXH_Q_POS);
     uint32_t past;

@@ -227,8 +227,8 @@ TEST(a_rule_moves_inwards)
         gains_rule_inwards(&now, 0.03);
         for (int i = 0; i < 1000; i++) {
             const double b = i * 0.1, k = gains_k_max(&now, b);
-            CHECK(k <= 0.97 * gains_k_max(&old, b) + 1, "b %g: %g of %g", b, k,
-                gains_k_max(&old, b));
+            CHECK(
+                k <= 0.97 * gains_k_max(&old, b) + 1, "b %g: %g of %g", b, k, gains_k_max(&old, b));
         }
         last = old.b_Nspm_q20[old.knots - 1] - old.b_Nspm_q20[0];
         CHECK(now.b_Nspm_q20[now.knots - 1] - now.b_Nspm_q20[0] <= 0.97 * last, "last b");
