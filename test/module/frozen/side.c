@@ -35,7 +35,6 @@ static void state(struct exh_bytes *c)
 {
     exh_quad_serialize(c, &s.quad);
     exh_velocity_window_serialize(c, &s.vel);
-    exh_contact_serialize(c, &s.contact);
     exh_drive_serialize(c, &s.drive);
     exh_tracking_serialize(c, &s.track);
     exh_safety_serialize(c, &s.safety);
