@@ -21,8 +21,7 @@ void minimal_par(struct pipe_wall_par *p, long double *lim_m)
 
 void minimal_now(struct pipe_wall_now *now)
 {
-    now->turn_m = bench_q(s.contact.turn_m_q30, EXH_Q_POS);
-    now->inward = s.contact.inward;
-    now->touching = s.contact.touching;
+    now->turn_m = 0; /* its law remembers nothing */
+    now->inward = now->touching = 0;
     now->force_N = bench_q(s.drive.force_N_q20, EXH_Q_FORCE);
 }
