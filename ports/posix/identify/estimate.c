@@ -92,11 +92,10 @@ static struct model draw(const struct model *told, struct sim_random *chance)
     double *v = m.value;
     const double share = sim_random_unit(chance), mu = anywhere(chance, 0.03, 0.6);
     const double kf = anywhere(chance, 0.7, 1.4);
-    for (int i = 0; i < MODEL_PARS; i++) {
-        if (i == MODEL_KF || i == MODEL_ROTOR || i == MODEL_VISCOUS || i == MODEL_COULOMB) {
-            v[i] *= kf;
-        }
-    }
+    v[MODEL_KF] *= kf;
+    v[MODEL_ROTOR] *= kf;
+    v[MODEL_COULOMB] *= kf;
+    v[MODEL_VISCOUS] *= kf;
     v[MODEL_MU_MOTOR] = mu * share;
     v[MODEL_MU_MASS] = mu * (1 - share);
     v[MODEL_CABLE_K] = anywhere(chance, 1000, 60000);

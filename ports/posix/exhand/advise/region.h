@@ -18,7 +18,8 @@ struct region_opt {
     struct settle_wall wall; /* k and b are not looked at */
     int cases;               /* a pair */
     double margin;           /* every second case with so much (a share) less friction */
-    double inwards; /* so much (a share of k and of b) the rule ends before what is proved */
+    double inwards; /* by this share of k, and of its width in b, a rule ends inside of what is
+                       proved */
     int at_phase;   /* 1: the wall lies `phase` counts above a count; 0: anywhere */
     double phase;
     int jobs;
