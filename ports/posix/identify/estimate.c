@@ -47,6 +47,14 @@ static void add(struct starts *s, const struct model *m, double cost)
     s->cost[i] = cost;
 }
 
+static void add_all(struct starts *s, const struct model *m, int models,
+    const struct identify_data *d, const struct observations *o, double floor_m)
+{
+    double cost[STARTS_MAX];
+    fit_costs(m, models, d, o, floor_m, cost);
+    for (int i = 0; i < models; i++) { add(s, &m[i], cost[i]); }
+}
+
 /* The free rotor alone, which a few pulses tell. */
 static int rotor(struct fit *f, const struct identify_data *d)
 {
@@ -56,16 +64,17 @@ static int rotor(struct fit *f, const struct identify_data *d)
                         late_s[] = {0.5e-3, 1e-3};
     const struct model first = fit_start(d);
     struct observations o;
+    struct model m[18];
     struct starts s;
     int err = observe(&o, d, 1u << IDENTIFY_SLACK, 0, 10);
-    s.n = 0;
-    for (int i = 0; i < 18 && err == 0; i++) {
-        struct model m = first;
-        m.value[MODEL_ROTOR] *= heavier[i % 3];
-        m.value[MODEL_VISCOUS] = m.value[MODEL_ROTOR] / stop_s[i / 3 % 3];
-        m.value[MODEL_DELAY] = late_s[i / 9] + d->T_s / 2;
-        add(&s, &m, fit_cost(&m, d, &o, 7e-4));
+    for (int i = 0; i < 18; i++) {
+        m[i] = first;
+        m[i].value[MODEL_ROTOR] *= heavier[i % 3];
+        m[i].value[MODEL_VISCOUS] = m[i].value[MODEL_ROTOR] / stop_s[i / 3 % 3];
+        m[i].value[MODEL_DELAY] = late_s[i / 9] + d->T_s / 2;
     }
+    s.n = 0;
+    if (err == 0) { add_all(&s, m, 18, d, &o, 7e-4); }
     f->cost = (double)INFINITY;
     for (int i = 0; i < 3 && err == 0; i++) {
         struct fit one = *f;
@@ -110,12 +119,14 @@ static int starts(struct starts *s, const struct model *told, const struct ident
 {
     static const struct fit_how rough = {
         FIT_MASS & ~(1u << MODEL_STEP | 1u << MODEL_KF), FAR_M, 12, 0, 1e-2, 1};
+    struct model m[STARTS_MAX];
     struct starts drawn;
     int err = 0;
     drawn.n = s->n = 0;
-    for (int i = 0; i < DRAWN; i++) {
-        const struct model m = draw(told, chance);
-        add(&drawn, &m, fit_cost(&m, d, few, FAR_M));
+    for (int i = 0; i < DRAWN; i += STARTS_MAX) {
+        const int n = DRAWN - i < STARTS_MAX ? DRAWN - i : STARTS_MAX;
+        for (int k = 0; k < n; k++) { m[k] = draw(told, chance); }
+        add_all(&drawn, m, n, d, few, FAR_M);
     }
     for (int i = 0; i < ROUGH && err == 0; i++) {
         struct fit one = {.at = drawn.m[i]};
@@ -244,13 +255,16 @@ static void near(struct starts *s, const struct fit *f, const struct identify_da
     const struct observations *o)
 {
     static const double damped[] = {1, 0.3, 0.1};
-    s->n = 0;
+    struct model m[3 * BESIDE];
+    int n = 0;
     for (int i = 0; i < 3 * BESIDE; i++) {
-        struct model m = f->at;
-        m.value[MODEL_CABLE_K] *= exp(0.025 * (i % BESIDE - BESIDE / 2));
-        m.value[MODEL_CABLE_B] *= damped[i / BESIDE];
-        if (i != BESIDE / 2) { add(s, &m, fit_cost(&m, d, o, 0)); }
+        if (i == BESIDE / 2) { continue; } /* f itself */
+        m[n] = f->at;
+        m[n].value[MODEL_CABLE_K] *= exp(0.025 * (i % BESIDE - BESIDE / 2));
+        m[n++].value[MODEL_CABLE_B] *= damped[i / BESIDE];
     }
+    s->n = 0;
+    add_all(s, m, n, d, o, 0);
 }
 
 /* From one start more, if it leads lower. */

@@ -11,7 +11,7 @@
 
 #define N       MODEL_PARS
 #define HUBER   4.0 /* deviations: farther ones count less */
-#define CHANCES 4   /* times MODEL_LANES runs tell the scatter of a model, */
+#define CHANCES 4   /* times MODEL_CHANCES runs tell the scatter of a model, */
 #define SCATTER 2.0 /* of which so many variances of an observation are too much */
 
 struct work {
@@ -102,13 +102,13 @@ static void centre(struct work *w, double *v)
     }
 }
 
-/* The cost, Huber's; residuals are left centred, weights those of the observations. */
-static double residuals(struct work *w, const struct model *m)
+/* The cost, Huber's, of these positions; residuals are left centred, weights those of the
+ * observations. */
+static double cost_at(struct work *w, const double *at)
 {
     double cost = 0;
-    predict(w, m, 1, &w->at);
     for (size_t i = 0; i < w->o->n; i++) {
-        w->r[i] = (double)w->o->o[i].cnt - w->at[i];
+        w->r[i] = (double)w->o->o[i].cnt - at[i];
         w->w[i] = (double)w->o->o[i].share / (1 / (double)w->o->o[i].weight + w->floor * w->floor);
     }
     centre(w, w->r);
@@ -120,6 +120,12 @@ static double residuals(struct work *w, const struct model *m)
     return w->o->counted > 0 ? cost / w->o->counted : (double)INFINITY;
 }
 
+static double residuals(struct work *w, const struct model *m)
+{
+    predict(w, m, 1, &w->at);
+    return cost_at(w, w->at);
+}
+
 /* --- what a model can foretell --- */
 
 /* To w->r: the variance of each prediction over when the drive takes each command over. */
@@ -129,15 +135,15 @@ static void scatter(struct work *w, const struct model *m)
     memset(w->r, 0, w->o->n * sizeof *w->r);
     for (int c = 0; c < CHANCES; c++) {
         model_chances(m, w->d, w->o->last, &chance, w->q);
-        means(w, MODEL_LANES, w->j);
-        for (int k = 0; k < MODEL_LANES; k++) { centre(w, w->j[k]); }
+        means(w, MODEL_CHANCES, w->j);
+        for (int k = 0; k < MODEL_CHANCES; k++) { centre(w, w->j[k]); }
         for (size_t i = 0; i < w->o->n; i++) {
             double mean = 0, square = 0;
-            for (int k = 0; k < MODEL_LANES; k++) { mean += w->j[k][i] / MODEL_LANES; }
-            for (int k = 0; k < MODEL_LANES; k++) {
+            for (int k = 0; k < MODEL_CHANCES; k++) { mean += w->j[k][i] / MODEL_CHANCES; }
+            for (int k = 0; k < MODEL_CHANCES; k++) {
                 square += (w->j[k][i] - mean) * (w->j[k][i] - mean);
             }
-            w->r[i] += square / (MODEL_LANES - 1) / CHANCES;
+            w->r[i] += square / (MODEL_CHANCES - 1) / CHANCES;
         }
     }
 }
@@ -363,14 +369,18 @@ void fit_shake(struct fit *f, struct sim_random *chance)
     from_free(u, &f->at);
 }
 
-double fit_cost(const struct model *m, const struct identify_data *d, const struct observations *o,
-    double floor_m)
+void fit_costs(const struct model *m, int models, const struct identify_data *d,
+    const struct observations *o, double floor_m, double *cost)
 {
     struct work w;
-    double cost;
-    if (work_open(&w, d, o)) { return (double)INFINITY; }
+    const int opened = work_open(&w, d, o) == 0;
     w.floor = floor_m / d->step_m;
-    cost = residuals(&w, m);
-    work_free(&w);
-    return cost;
+    for (int i = 0; i < models; i++) {
+        const int lane = i % MODEL_LANES, left = models - i;
+        cost[i] = (double)INFINITY;
+        if (!opened) { continue; }
+        if (lane == 0) { predict(&w, &m[i], left < MODEL_LANES ? left : MODEL_LANES, w.j); }
+        cost[i] = cost_at(&w, w.j[lane]);
+    }
+    if (opened) { work_free(&w); }
 }

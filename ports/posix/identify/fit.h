@@ -34,9 +34,9 @@ int fit_run(
     struct fit *f, const struct identify_data *d, const struct observations *o, struct fit_how how);
 /* The shares of observations become those that this model can foretell. 0, or -1: out of memory. */
 int fit_weigh(const struct model *m, const struct identify_data *d, struct observations *o);
-/* Of a model as it is; infinite: out of memory. */
-double fit_cost(const struct model *m, const struct identify_data *d, const struct observations *o,
-    double floor_m);
+/* Of models as they are; infinite: out of memory. */
+void fit_costs(const struct model *m, int models, const struct identify_data *d,
+    const struct observations *o, double floor_m, double *cost);
 /* Moves what is not held by chance, about as far as a start is that came near. */
 struct sim_random;
 void fit_shake(struct fit *f, struct sim_random *chance);

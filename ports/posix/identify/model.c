@@ -67,9 +67,9 @@ struct sim_device model_device(const struct model *m, double T_s, double servo_H
 /* The models that run side by side. */
 struct lanes {
     int n, slack;
-    struct sim_device device[MODEL_LANES];
-    struct plant plant[MODEL_LANES];
-    struct plant_piece piece[2][MODEL_LANES]; /* in a tick, of the older and the newer command */
+    struct sim_lanes plant;
+    struct plant_piece whole[2][MODEL_LANES]; /* in a tick, of the older and the newer command, */
+    struct sim_lane_pieces piece[2];          /* and the same side by side */
     ptrdiff_t ticks[MODEL_LANES];             /* of delay */
     double per_m[MODEL_LANES], stand_m[MODEL_LANES];
 };
@@ -81,35 +81,42 @@ static struct plant_piece piece_of(const struct sim_device *d, double dt_s)
     return s;
 }
 
+static void set_piece(struct lanes *l, int behind, int k, struct plant_piece piece)
+{
+    l->whole[behind][k] = piece;
+    sim_lane_pieces_set(&l->piece[behind], k, &piece);
+}
+
 static void add(struct lanes *l, const struct model *m, const struct identify_data *d)
 {
     const double late_s = m->value[MODEL_DELAY] - m->value[MODEL_LAG];
     const double some_s = late_s > 0 ? late_s : 0;
-    struct sim_device *device = &l->device[l->n];
+    const struct plant still = {0};
+    struct sim_device device = model_device(m, d->T_s, d->servo_Hz);
     double most_s, phase_s;
-    *device = model_device(m, d->T_s, d->servo_Hz);
-    device->mass_kg = d->mass_kg;
-    device->substep_s = SUBSTEP_S;
-    device->mon_lag_s = 0; /* nobody looks at it */
-    most_s = plant_step_that_will_do(device, 0, 0);
-    if (most_s > 0 && most_s < SUBSTEP_S) { device->substep_s = most_s; }
+    device.mass_kg = d->mass_kg;
+    device.substep_s = SUBSTEP_S;
+    device.mon_lag_s = 0; /* nobody looks at it */
+    most_s = plant_step_that_will_do(&device, 0, 0);
+    if (most_s > 0 && most_s < SUBSTEP_S) { device.substep_s = most_s; }
+    sim_lanes_set(&l->plant, l->n, &still, &device);
     l->per_m[l->n] = 1 / m->value[MODEL_STEP];
     l->ticks[l->n] = (ptrdiff_t)(some_s / d->T_s);
     phase_s = some_s - (double)l->ticks[l->n] * d->T_s;
-    l->piece[0][l->n] = piece_of(device, phase_s);
-    l->piece[1][l->n++] = piece_of(device, d->T_s - phase_s);
+    set_piece(l, 0, l->n, piece_of(&device, phase_s));
+    set_piece(l, 1, l->n, piece_of(&device, d->T_s - phase_s));
+    l->n++;
 }
 
 /* Where the hand left it. */
 static void release(struct lanes *l, const struct identify_sample *x)
 {
-    const struct plant rest = {0};
+    struct sim_lanes *p = &l->plant;
     l->slack = x->stage == IDENTIFY_SLACK;
     for (int k = 0; k < l->n; k++) {
-        struct plant *p = &l->plant[k];
-        *p = rest;
-        p->q_m = l->stand_m[k] = x->cnt / l->per_m[k];
-        p->x_m = l->slack ? p->q_m - FAR_M : p->q_m;
+        p->q_m[k] = l->stand_m[k] = x->cnt / l->per_m[k];
+        p->x_m[k] = l->slack ? p->q_m[k] - FAR_M : p->q_m[k];
+        p->v_mps[k] = p->w_mps[k] = p->cur_A[k] = 0;
     }
 }
 
@@ -118,22 +125,26 @@ static double coded_A(const struct identify_data *d, ptrdiff_t i)
     return i < 0 ? 0 : (double)d->sample[i].coded_A;
 }
 
+/* A slack string's end follows; a taut one's mass comes no lower than where the hand left it. */
+static void bound(struct sim_lanes *p, int k, int slack, double stand_m)
+{
+    if (slack) {
+        p->x_m[k] = p->q_m[k] - FAR_M;
+        p->v_mps[k] = 0;
+    } else if (p->x_m[k] > stand_m) {
+        p->x_m[k] = stand_m;
+        if (p->v_mps[k] > 0) { p->v_mps[k] = 0; }
+    }
+}
+
 /* Before or behind the place in tick i at which the newer command arrives. */
 static void advance(struct lanes *l, const struct identify_data *d, size_t i, int behind)
 {
-    double ref_A[MODEL_LANES];
+    double ref_A[MODEL_LANES] = {0};
     for (int k = 0; k < l->n; k++) { ref_A[k] = coded_A(d, (ptrdiff_t)i - l->ticks[k] - !behind); }
-    plant_advance_each(l->plant, l->device, l->piece[behind], ref_A, l->n);
+    sim_lanes_advance(&l->plant, &l->piece[behind], ref_A, l->n);
     for (int k = 0; k < l->n; k++) {
-        struct plant *p = &l->plant[k];
-        if (l->piece[behind][k].n == 0) { continue; }
-        if (l->slack) {
-            p->x_m = p->q_m - FAR_M;
-            p->v_mps = 0;
-        } else if (p->x_m > l->stand_m[k]) {
-            p->x_m = l->stand_m[k];
-            if (p->v_mps > 0) { p->v_mps = 0; }
-        }
+        if (l->whole[behind][k].n > 0) { bound(&l->plant, k, l->slack, l->stand_m[k]); }
     }
 }
 
@@ -146,9 +157,9 @@ static void change_turns(struct lanes *l, struct sim_random *chance)
         l->ticks[k] = l->ticks[other];
         l->ticks[other] = ticks;
         for (int part = 0; part < 2; part++) {
-            const struct plant_piece piece = l->piece[part][k];
-            l->piece[part][k] = l->piece[part][other];
-            l->piece[part][other] = piece;
+            const struct plant_piece piece = l->whole[part][k];
+            set_piece(l, part, k, l->whole[part][other]);
+            set_piece(l, part, other, piece);
         }
     }
 }
@@ -162,7 +173,7 @@ static void run(struct lanes *l, const struct identify_data *d, size_t n, struct
         if (chance && i > 0 && !(x->coded_A == x[-1].coded_A)) { change_turns(l, chance); }
         if (!busy && x->busy) { release(l, x); }
         busy = x->busy;
-        for (int k = 0; k < l->n; k++) { q_cnt[k][i] = (float)(l->plant[k].q_m * l->per_m[k]); }
+        for (int k = 0; k < l->n; k++) { q_cnt[k][i] = (float)(l->plant.q_m[k] * l->per_m[k]); }
         if (!busy) { continue; }
         advance(l, d, i, 0);
         advance(l, d, i, 1);
@@ -183,9 +194,9 @@ void model_chances(const struct model *m, const struct identify_data *d, size_t 
 {
     struct lanes l;
     memset(&l, 0, sizeof l);
-    while (l.n < MODEL_LANES) {
+    while (l.n < MODEL_CHANCES) {
         struct model late = *m;
-        late.value[MODEL_DELAY] += ((l.n + 0.5) / MODEL_LANES - 0.5) / d->servo_Hz;
+        late.value[MODEL_DELAY] += ((l.n + 0.5) / MODEL_CHANCES - 0.5) / d->servo_Hz;
         add(&l, &late, d);
     }
     run(&l, d, n, chance, q_cnt);

@@ -7,6 +7,7 @@
 #include "identify/data.h"
 
 #include "sim/device.h"
+#include "sim/lanes.h"
 
 /* What is fitted, in this order. */
 enum model_par {
@@ -47,15 +48,17 @@ struct model model_of(const struct sim_device *d, double T_s);
 struct sim_device model_device(const struct model *m, double T_s, double servo_Hz);
 
 /* Models that run at a time. */
-#define MODEL_LANES 4
+#define MODEL_LANES SIM_LANES
+/* Runs of one model, of which each has another time. */
+#define MODEL_CHANCES 4
 
 /* Position of each of 1 .. MODEL_LANES models at each sample, counts, of the first n. */
 void model_run(const struct model *m, int models, const struct identify_data *d, size_t n,
     float *const *q_cnt);
 
 struct sim_random;
-/* The same of MODEL_LANES runs of one model that differ by when in its period the drive takes each
- * command over. */
+/* The same of MODEL_CHANCES runs of one model that differ by when in its period the drive takes
+ * each command over. */
 void model_chances(const struct model *m, const struct identify_data *d, size_t n,
     struct sim_random *chance, float *const *q_cnt);
 

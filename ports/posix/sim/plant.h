@@ -44,11 +44,6 @@ struct plant_piece plant_piece_of(const struct sim_device *d, double dt_s);
 void plant_advance_piece(
     struct plant *p, const struct sim_device *d, const struct plant_piece *s, double ref_A);
 
-/* Each of some plants over its own piece, a sub-step of each in turn. A plant alone waits for its
- * own last result in every line; here the others fill the wait. */
-void plant_advance_each(struct plant *p, const struct sim_device *d, const struct plant_piece *s,
-    const double *ref_A, int plants);
-
 /* The currents alone, over a piece of one sub-step: mass and string are held. */
 void plant_hold_piece(struct plant *p, const struct plant_piece *s, double ref_A);
 

@@ -114,10 +114,10 @@ TEST(a_string_that_slackens_is_told_apart)
         double cost;
         run(&c);
         CHECK_EQ_I64(observe(&o, &data, 3, 0, 0.05), 0);
-        cost = fit_cost(&truth, &data, &o, 0);
+        fit_costs(&truth, 1, &data, &o, 0, &cost);
         CHECK(cost > RESULT_RESIDUAL_MAX, "device %d: the truth has %g", n, cost);
         CHECK_EQ_I64(fit_weigh(&truth, &data, &o), 0);
-        cost = fit_cost(&truth, &data, &o, 0);
+        fit_costs(&truth, 1, &data, &o, 0, &cost);
         CHECK(cost < 1, "device %d: of what it can foretell the truth has %g", n, cost);
         observe_free(&o);
         CHECK_EQ_I64(identify_estimate(&e, &data), 0);

@@ -5,6 +5,7 @@
 #include "exp_neg.h"
 
 #include "sim/grid.h"
+#include "sim/lanes.h"
 #include "sim/plant.h"
 
 #include <math.h>
@@ -626,34 +627,42 @@ TEST(pieces_on_the_grid_are_few_and_what_they_would_be)
     CHECK(sim_grid(1e6) == 1e6 && sim_grid_s(70000.1, 70000.2) == 70000.2 - 70000.1, "later");
 }
 
-/* Three plants with another number of sub-steps each, and one with none. */
+/* Plants with another number of sub-steps each, one with none, and lanes without a plant. */
 TEST(side_by_side_they_go_as_alone)
 {
-    struct sim_device d[4];
-    struct plant each[4], alone[4];
-    struct plant_piece piece[4];
-    double ref_A[4];
-    memset(each, 0, sizeof each);
+    struct sim_lanes each;
+    struct sim_lane_pieces pieces;
+    struct sim_device d[6];
+    struct plant alone[6];
+    struct plant_piece piece[6];
+    memset(&each, 0, sizeof each);
+    memset(&pieces, 0, sizeof pieces);
     memset(alone, 0, sizeof alone);
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 6; k++) {
         d[k] = sim_device_default();
         d[k].rotor_kg *= 1 + 0.3 * k;
         d[k].substep_s = 100e-6 / (k + 1);
         piece[k] = plant_piece_of(&d[k], 200e-6 + 17e-6 * k);
-        each[k].x_m = alone[k].x_m = 1e-3 * k;
+        alone[k].x_m = 1e-3 * k;
+        if (k == 3) { piece[k].n = 0; }
+        sim_lanes_set(&each, k, &alone[k], &d[k]);
+        sim_lane_pieces_set(&pieces, k, &piece[k]);
     }
-    piece[3].n = 0;
     for (int n = 0; n < 20000; n++) {
-        for (int k = 0; k < 4; k++) {
+        double ref_A[SIM_LANES] = {0};
+        for (int k = 0; k < 6; k++) {
             ref_A[k] = n / 500 % 2 ? 0.4 + 0.1 * k : 0.05;
             if (piece[k].n) { plant_advance_piece(&alone[k], &d[k], &piece[k], ref_A[k]); }
         }
-        plant_advance_each(each, d, piece, ref_A, 4);
-        for (int k = 0; k < 4; k++) {
-            CHECK(memcmp(&each[k], &alone[k], sizeof each[k]) == 0, "plant %d, step %d", k, n);
+        sim_lanes_advance(&each, &pieces, ref_A, 6);
+        for (int k = 0; k < 6; k++) {
+            CHECK(each.x_m[k] == alone[k].x_m && each.v_mps[k] == alone[k].v_mps &&
+                      each.q_m[k] == alone[k].q_m && each.w_mps[k] == alone[k].w_mps &&
+                      each.cur_A[k] == alone[k].cur_A,
+                "plant %d, step %d", k, n);
         }
     }
-    CHECK(each[3].x_m == 3e-3 && each[0].x_m != each[1].x_m, "%g m", each[3].x_m);
+    CHECK(each.x_m[3] == 3e-3 && each.x_m[0] != each.x_m[1], "%g m", each.x_m[3]);
 }
 
 TEST_MAIN("plant", impact_speed_is_that_of_a_free_fall, a_rotor_slows_the_fall_by_its_share,

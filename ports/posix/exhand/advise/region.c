@@ -16,6 +16,8 @@
 #define FINE       1.02 /* and at the end of a row */
 #define SEARCH     16   /* octaves of k above the first in which something has to hold */
 #define SLIVER     0.01 /* of the area: so little may be left out at large b */
+#define DIP        0.25 /* of the rows beside it: what begins behind so little counts, */
+#define ISLANDS    4    /* of so many that begin there */
 #define ENOUGH     0.75 /* of the largest b: rows that go on for longer are laid anew */
 
 /* --- one pair of gains --- */
@@ -157,6 +159,25 @@ static struct region_row row_at(const struct region *r, int j)
     return next.high_Npm - next.low_Npm > first.high_Npm - first.low_Npm ? next : first;
 }
 
+static double larger(double a, double b) { return a > b ? a : b; }
+
+/* A few k that do not hold leave a row little, and would end the rule there. */
+static void fill_dips(struct region *r)
+{
+    for (int j = 2; j <= REGION_ROWS - 2; j++) {
+        struct region_row *row = &r->row[j];
+        const double before = larger(row[-1].high_Npm, row[-2].high_Npm);
+        const double after = larger(row[1].high_Npm, row[2].high_Npm);
+        const double most = DIP * (before < after ? before : after);
+        struct region_row next = *row;
+        for (int i = 0; i < ISLANDS && next.low_Npm > 0 && next.high_Npm < most; i++) {
+            struct draw draw = draw_of(&r->o, j);
+            next = span(&r->o, COARSE * COARSE * next.high_Npm, row->b_Nspm, &draw);
+        }
+        if (next.high_Npm >= most) { *row = next; }
+    }
+}
+
 /* --- all of them --- */
 
 /* The largest b at which something holds, to a hundredth. */
@@ -252,7 +273,9 @@ int region_fill(struct region *r, const struct region_opt *o)
         was = b_top;
         b_top = worth(r);
     } while (status == 0 && b_top < ENOUGH * was);
-    return status ? status : rows(r, 0);
+    if (status == 0) { status = rows(r, 0); }
+    if (status == 0) { fill_dips(r); }
+    return status;
 }
 
 #define PI 3.14159265358979323846

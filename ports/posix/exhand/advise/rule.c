@@ -8,6 +8,8 @@
 #define LEVELS 12   /* heights of a knot that are tried: down to 1 - LEVEL * LEVELS */
 #define LEVEL  0.02 /* of what is allowed there */
 #define MARGIN 1.0  /* N/m, more than any rounding of a knot moves the line */
+#define BROAD  5    /* rows next to each other: no luck with their cases */
+#define WORTH  1.1  /* of the area without it, for a second hill */
 
 /* Rows next to each other, from the first with an end. */
 struct profile {
@@ -38,6 +40,28 @@ static void one_peak(struct profile *p)
     for (int j = top - 1; j >= 0; j--) { p->k[j] = lower(p->k[j], p->k[j + 1]); }
 }
 
+static double least(const struct profile *p, int from, int rows)
+{
+    double k = p->k[from];
+    for (int j = from + 1; j < from + rows; j++) { k = lower(k, p->k[j]); }
+    return k;
+}
+
+/* Beside the first hill, as far as each row is one of BROAD that all hold. */
+static void hills(struct profile *p)
+{
+    struct profile first = *p, broad = *p;
+    one_peak(&first);
+    memset(broad.k, 0, sizeof broad.k);
+    for (int from = 0; from + BROAD <= p->last + 1; from++) {
+        const double k = least(p, from, BROAD);
+        for (int j = from; j < from + BROAD; j++) { broad.k[j] = broad.k[j] > k ? broad.k[j] : k; }
+    }
+    for (int j = 0; j <= p->last; j++) {
+        p->k[j] = first.k[j] > broad.k[j] ? first.k[j] : broad.k[j];
+    }
+}
+
 /* A row that had luck with its cases ends no farther than those beside it let expect. */
 static void smooth(struct profile *p)
 {
@@ -50,7 +74,7 @@ static void smooth(struct profile *p)
 }
 
 /* With all k from low_Npm on. */
-static void profile_of(struct profile *p, const struct region *r, double low_Npm)
+static void profile_of(struct profile *p, const struct region *r, double low_Npm, int more)
 {
     memset(p, 0, sizeof *p);
     p->low_Npm = low_Npm;
@@ -66,7 +90,11 @@ static void profile_of(struct profile *p, const struct region *r, double low_Npm
         p->k[p->last] = k;
     }
     cut_spikes(p);
-    one_peak(p);
+    if (more) {
+        hills(p);
+    } else {
+        one_peak(p);
+    }
     smooth(p);
 }
 
@@ -151,25 +179,38 @@ static void take(struct exh_gains_par *rule, const struct profile *p, int knots,
     }
 }
 
+/* With all k from this row's least on, where that is worth more than `most`. */
+static double from_row(
+    struct exh_gains_par *rule, const struct region *r, int row, int more, double most)
+{
+    const double low = r->row[row].low_Npm;
+    int knots = 0, end = 0, level = 0;
+    struct profile p;
+    double area;
+    for (int j = 0; j < row; j++) {
+        if (r->row[j].low_Npm == low) { return 0; } /* done */
+    }
+    if (r->row[row].high_Npm <= 0) { return 0; }
+    profile_of(&p, r, low, more);
+    if (p.last < 1) { return 0; }
+    area = search(&p, &knots, &end, &level) - low * (p.b[end] - p.b[0]);
+    if (area <= most) { return 0; }
+    rule->k_min_Npm_q10 = down(low, EXH_Q_K) + 1;
+    take(rule, &p, knots, end, level);
+    return area;
+}
+
 int gains_rule(struct exh_gains_par *rule, const struct region *r)
 {
     double most = 0;
     memset(rule, 0, sizeof *rule);
     rule->rate_Hz_q8 = (int32_t)(256 / r->o.wall.T_s + 0.5);
-    for (int i = 0; i <= REGION_ROWS; i++) {
-        const double low = r->row[i].low_Npm;
-        struct profile p;
-        int knots = 0, end = 0, level = 0, before = 0;
-        double area;
-        for (int j = 0; j < i; j++) { before |= r->row[j].low_Npm == low; }
-        if (before || r->row[i].high_Npm <= 0) { continue; }
-        profile_of(&p, r, low);
-        if (p.last < 1) { continue; }
-        area = search(&p, &knots, &end, &level) - low * (p.b[end] - p.b[0]);
-        if (area <= most * 1.01) { continue; } /* a larger least k has to be worth it */
-        most = area;
-        rule->k_min_Npm_q10 = down(low, EXH_Q_K) + 1;
-        take(rule, &p, knots, end, level);
+    for (int more = 0; more < 2; more++) {
+        double least = (more ? WORTH : 1) * most;
+        for (int i = 0; i <= REGION_ROWS; i++) {
+            const double area = from_row(rule, r, i, more, least);
+            if (area > 0) { least = 1.01 * (most = area); } /* a larger least k, too */
+        }
     }
     if (most > 0) { return 0; }
     cli_complain("%.6g Hz: too little is allowed for a rule", 1 / r->o.wall.T_s);

@@ -6,7 +6,7 @@
 #include "base/assign.h"
 
 #define TOLD    12
-#define INWARDS 0.03
+#define INWARDS 0.015
 #define ROOT \
     0.93303299153680741 /* 2^(-1/10): as many steps, none of them a multiple of another \
                          */
