@@ -44,7 +44,7 @@ DEVICES ?= 200
 .PHONY: certificate
 certificate:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(lab)
-	@$(lab) certificate --devices $(DEVICES) --seed 1400 --results $(B)/certificate.csv $(ARGS)
+	@$(lab) certificate --devices $(DEVICES) --seed 1500 --results $(B)/certificate.csv $(ARGS)
 
 # Recorded networks beside them, where there are any.
 SEEDS    ?= 5

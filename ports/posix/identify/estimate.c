@@ -99,7 +99,7 @@ static struct model draw(const struct model *told, struct sim_random *chance)
 {
     struct model m = *told;
     double *v = m.value;
-    const double share = sim_random_unit(chance), mu = anywhere(chance, 0.03, 0.6);
+    const double share = sim_random_unit(chance), mu = anywhere(chance, 0.03, 0.9);
     const double kf = anywhere(chance, 0.7, 1.4);
     v[MODEL_KF] *= kf;
     v[MODEL_ROTOR] *= kf;

@@ -13,9 +13,6 @@
 #define SEED       0x7265736D70 /* no seed of a simulated device that anybody gives */
 #define STUDENT_95 2.3646       /* for RESAMPLES - 1 */
 #define TRIES      4            /* starts of a fit, at most */
-/* Eight runs do not show all that a fit may miss: without it 93.3 and 93.7 % of the intervals of
- * random devices had the truth (make certificate, seeds 1100 and 1200). */
-#define WIDER 1.07
 
 struct again {
     int done, lag_told;
@@ -112,7 +109,7 @@ static void take_sum(struct fit *f, const struct model *told, const struct again
         const double apart = model_mu(&r[k].at) - model_mu(told) - mean;
         square += apart * apart / (n - 1);
     }
-    half = WIDER * STUDENT_95 * sqrt(square * (1 + 1.0 / n));
+    half = STUDENT_95 * sqrt(square * (1 + 1.0 / n));
     f->mu_low = value > half ? value - half : 0;
     f->mu_high = value + half;
 }
@@ -129,7 +126,7 @@ static void take(struct fit *f, const struct again *r, int n)
             const double apart = log_or(i, r[k].at.value[i]) - u - mean;
             square += apart * apart / (n - 1);
         }
-        half = WIDER * STUDENT_95 * sqrt(square * (1 + 1.0 / n));
+        half = STUDENT_95 * sqrt(square * (1 + 1.0 / n));
         f->at.value[i] = back(i, u - mean);
         f->low[i] = back(i, u - mean - half);
         f->high[i] = back(i, u - mean + half);

@@ -4,6 +4,7 @@
 #include "codes.h"
 #include "grid.h"
 #include "plant.h"
+#include "random.h"
 
 #include <string.h>
 
@@ -15,6 +16,7 @@
 #define GIVE_UP_S 3.0
 #define RANGE_M   1.99
 #define OUTPUTS   256 /* on their way to the drive */
+#define BLOCK     32  /* cases that fill each axis */
 
 struct span {
     double low, high;
@@ -40,16 +42,25 @@ struct run {
     int touched, still;
 };
 
+/* In a block of cases each part of 0..1 once, in an order of its own for each axis and block. */
+static double part_of(int i, uint64_t axis)
+{
+    struct sim_random order = {(uint64_t)(i / BLOCK) << 8 | axis},
+                      within = {(uint64_t)i << 8 | axis};
+    int part[BLOCK];
+    for (int n = 0; n < BLOCK; n++) {
+        const int other = (int)(sim_random_u64(&order) >> 33) % (n + 1);
+        part[n] = part[other];
+        part[other] = n;
+    }
+    within.state = ~within.state;
+    return (part[i % BLOCK] + sim_random_unit(&within)) / BLOCK;
+}
+
 struct settle_case settle_case_at(int i)
 {
-    static const double step[5] = {0.88127146163356962, 0.77663938908976826, 0.68443012958534266,
-        0.60316874068572834, 0.53155539771579141};
-    double v[5];
-    for (int k = 0; k < 5; k++) {
-        v[k] = 0.5 + i * step[k];
-        v[k] -= (double)sim_floor(v[k]);
-    }
-    return (struct settle_case){v[0], v[1], v[2], v[3], v[4]};
+    return (struct settle_case){
+        part_of(i, 0), part_of(i, 1), part_of(i, 2), part_of(i, 3), part_of(i, 4)};
 }
 
 static double clamp(double v, double low, double high)

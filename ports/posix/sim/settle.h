@@ -31,8 +31,8 @@ enum settle_end {
     SETTLE_ASTRAY /* no contact, or gone where nobody measures */
 };
 
-/* The i-th case of a sequence that fills all five evenly, however many are taken (the fractions of
- * i times the powers of the root of x^6 = x + 1). */
+/* The i-th case, i >= 0. Each block of 32 fills all five evenly (a Latin hypercube), and no two of
+ * them go together: height and tick make the place of the first tick behind the wall. */
 struct settle_case settle_case_at(int i);
 
 /* observe_s of the device is how long it is watched from the first contact; what has stuck before

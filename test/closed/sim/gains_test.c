@@ -40,7 +40,7 @@ TEST(the_papers_points)
     smooth.mu_motor = smooth.mu_mass = smooth.coulomb_n = 0;
     for (int i = 0; i < 6; i++) {
         const double *r = row[i];
-        CHECK(rests(&d, r[0], r[1], r[2], 10) == 10, "%g Hz", r[0]);
+        CHECK(rests(&d, r[0], r[1], r[2], 96) >= 91, "%g Hz", r[0]);
         CHECK(rests(&d, r[0], 2 * r[1], 2 * r[2], 10) < 10, "%g Hz, twice", r[0]);
         CHECK(rests(&smooth, r[0], r[1], r[2], 10) < 10, "%g Hz, no friction", r[0]);
     }
@@ -59,6 +59,24 @@ TEST(cases_fill_all_phases)
     }
     for (int k = 0; k < 5; k++) {
         for (int n = 0; n < 8; n++) { CHECK(hit[k][n] >= 1, "%d, eighth %d: %d", k, n, hit[k][n]); }
+    }
+}
+
+/* How far behind the wall the first tick comes: the fall's time, which the height moves by some
+ * ticks, less the tick's. Multiples of irrational steps once met it: all cases of a device had
+ * their tick within a quarter of the way. */
+TEST(cases_hold_no_two_phases_together)
+{
+    for (int a = 0; a <= 160; a++) {
+        int hit[4] = {0};
+        for (int i = 0; i < 256; i++) {
+            const struct settle_case c = settle_case_at(i);
+            const double behind = 0.1 * a * c.height - c.tick + 1;
+            hit[(int)(4 * (behind - (double)(int)behind))]++;
+        }
+        for (int n = 0; n < 4; n++) {
+            CHECK(hit[n] >= 40, "height by %g ticks, quarter %d: %d of 256", 0.1 * a, n, hit[n]);
+        }
     }
 }
 
@@ -205,8 +223,9 @@ TEST(a_second_hill_is_broad_or_left_out)
     }
 }
 
-/* At 88 Ns/m one fall onto a weak wall does not rest. The row ends at 646 N/m, those beside it at
- * 5000, and the rule ended there. What begins behind that fall is allowed, from a larger k on. */
+/* At 79 and 93 Ns/m a fall onto a weak wall does not rest: two rows end at 1000 N/m, those beside
+ * them at 7000. The rule ended there. What begins behind that fall is allowed, from a larger k on.
+ */
 TEST(a_dip_does_not_end_the_rule)
 {
     static struct gains_options a;
@@ -217,22 +236,22 @@ TEST(a_dip_does_not_end_the_rule)
     a.margin_percent = 0;
     CHECK(gains_refuse(&a) == 0, "refused");
     a.o.wall.T_s = 1.0 / 2000;
-    d->rotor_kg = 0.134739;
-    d->cable_npm = 24711.4;
-    d->cable_nspm = 2.09945;
-    d->mu_motor = 0.283551;
-    d->mu_mass = 0.133982;
-    d->coulomb_n = 0.0687966;
-    d->viscous_nspm = 1.64133;
-    d->kf_npa = 5.75304;
-    d->current_hz = 921.529;
-    d->delay_tick = 0.114398;
-    d->delay_s = 159.986e-6;
-    d->mon_lag_s = 51.8117e-6;
-    d->step_m = 90.0765e-6;
+    d->rotor_kg = 0.182711;
+    d->cable_npm = 40307;
+    d->cable_nspm = 1.0727;
+    d->mu_motor = 0.268723;
+    d->mu_mass = 0.19892;
+    d->coulomb_n = 0.101525;
+    d->viscous_nspm = 4.20624;
+    d->kf_npa = 7.72818;
+    d->current_hz = 1071.53;
+    d->delay_tick = 0.242341;
+    d->delay_s = 82.2552e-6;
+    d->mon_lag_s = 82.6481e-6;
+    d->step_m = 82.3518e-6;
     CHECK(plant_take_step(d, 0, 0) == 0, "no step");
     CHECK(region_fill(&x.region, &a.o) == 0 && gains_proved(&x) == 0, "no rule");
-    CHECK(gains_allows(&x.rule, 3000, 150), "of %g N/m at 150 Ns/m", gains_k_max(&x.rule, 150));
+    CHECK(gains_allows(&x.rule, 4000, 130), "of %g N/m at 130 Ns/m", gains_k_max(&x.rule, 130));
 }
 
 /* Rows that are twice as long as what holds: what is tried along the rule's line cuts them. */
@@ -499,8 +518,8 @@ TEST(a_map_is_judged)
     said_clean(dir);
 }
 
-TEST_MAIN("gains", the_papers_points, cases_fill_all_phases, the_rule_is_inside_everywhere,
-    a_rectangle_is_taken, luck_is_left_out, a_second_hill_is_broad_or_left_out,
-    a_dip_does_not_end_the_rule, what_does_not_hold_is_cut, a_rule_moves_inwards,
-    the_scene_refuses_by_name, over_the_wire_too, a_pair_is_judged, one_answer_by_every_path,
-    a_run_is_refused_by_its_rule, bad_usage_is_named, a_map_is_judged);
+TEST_MAIN("gains", the_papers_points, cases_fill_all_phases, cases_hold_no_two_phases_together,
+    the_rule_is_inside_everywhere, a_rectangle_is_taken, luck_is_left_out,
+    a_second_hill_is_broad_or_left_out, a_dip_does_not_end_the_rule, what_does_not_hold_is_cut,
+    a_rule_moves_inwards, the_scene_refuses_by_name, over_the_wire_too, a_pair_is_judged,
+    one_answer_by_every_path, a_run_is_refused_by_its_rule, bad_usage_is_named, a_map_is_judged);

@@ -249,7 +249,7 @@ int cli_certificate(int argc, char **argv)
     const struct cli_option option[] = {
         {"devices", CLI_INT, &c.devices, 1, DEVICES_MAX, "N", "random devices (20)"},
         {"seed", CLI_INT, &c.o.seed, 0, 1e9, "N",
-            "of the draw (1; those up to 1300 were developed with)"},
+            "of the draw (1; those up to 1400 were developed with)"},
         {"rate", CLI_INT, &c.o.rate_Hz, 100, 20000, "HZ", "loop rate (2000)"},
         {"repeats", CLI_INT, &c.o.repeats, 2, 100, "N", "rounds (the scene's)"},
         {"grid", CLI_INT, &c.grid, 0, 40, "N",

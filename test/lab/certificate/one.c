@@ -84,13 +84,16 @@ static int tell(struct one *r, const struct one_opt *o, const struct sim_device 
 static int rests(const struct one_opt *o, const struct sim_device *d, uint64_t seed, double k,
     double b, double place)
 {
-    /* Behind the place from which the bench counts a contact, wherever the first fall began: what
-     * rested between the two would never have been seen to. */
+    /* The mass falls as far as the advisor was asked for. The bench counts a contact from a place
+     * in front of the wall on, wherever the first fall began: what rested before that place would
+     * never be seen to. */
     const double step_m = d->step_m / d->decode;
-    const double deeper = (double)sim_floor(2 * d->height_jitter_m / step_m) + 1;
-    const struct run_setting wall = {"q_lim", sim_wall_m(d, place) + deeper * step_m};
+    const double before = (double)sim_floor(2 * d->height_jitter_m / step_m) + 1;
+    const struct run_setting wall = {"q_lim", sim_wall_m(d, place)};
+    struct sim_device nearer = *d;
     struct run_cfg c;
     struct table2_result t;
+    nearer.height_m -= before * step_m;
     memset(&c, 0, sizeof c);
     c.setting = &wall;
     c.settings = 1;
@@ -98,7 +101,7 @@ static int rests(const struct one_opt *o, const struct sim_device *d, uint64_t s
     c.k_Npm = k;
     c.b_Nspm = b;
     c.board = posix_config_default();
-    c.board.device = *d;
+    c.board.device = nearer;
     c.board.seed = seed;
     c.board.falls = FALLS;
     t = table2_measure(&c, NULL, TABLE2_REST);
@@ -110,9 +113,11 @@ static void run_at(struct one *r, const struct one_opt *o, const struct sim_devi
     const struct gains_rate *x, struct sim_random *chance, double b, double share, int where)
 {
     const double k = share * gains_k_max(&x->rule, b);
+    uint64_t seed;
     int n;
     if (!gains_allows(&x->rule, k, b)) { return; }
-    n = rests(o, d, sim_random_u64(chance) >> 1, k, b, sim_random_unit(chance));
+    seed = sim_random_u64(chance) >> 1;
+    n = rests(o, d, seed, k, b, sim_random_unit(chance));
     r->runs[where]++;
     r->single[where] += n == FALLS - 1;
     r->unstable[where] += n < FALLS - 1;
@@ -141,12 +146,12 @@ static int places(const struct one_opt *o, const struct sim_device *d, struct si
 {
     static const int in_turn[] = {0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
     const int most = (int)(sizeof in_turn / sizeof in_turn[0]);
-    int n = 0;
-    while (n < most && rests(o, d, sim_random_u64(chance) >> 1, k, b,
-                           (in_turn[n] + sim_random_unit(chance)) / most) == FALLS) {
-        n++;
+    for (int n = 0; n < most; n++) {
+        const uint64_t seed = sim_random_u64(chance) >> 1;
+        const double place = (in_turn[n] + sim_random_unit(chance)) / most;
+        if (rests(o, d, seed, k, b, place) < FALLS) { return n; }
     }
-    return n;
+    return most;
 }
 
 /* The stable area, and what of it the rule allows. */

@@ -11,7 +11,7 @@
 
 #define K_MAX_NPM  1e6 /* what a scene takes */
 #define B_MAX_NSPM 1e3
-#define FEW        5    /* cases on the way up */
+#define FEW        4    /* cases on the way up */
 #define COARSE     1.19 /* k from pair to pair on the way up: a quarter of an octave */
 #define FINE       1.02 /* and at the end of a row */
 #define SEARCH     16   /* octaves of k above the first in which something has to hold */
