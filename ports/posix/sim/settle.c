@@ -47,7 +47,7 @@ static double part_of(int i, uint64_t axis)
 {
     struct sim_random order = {(uint64_t)(i / BLOCK) << 8 | axis},
                       within = {(uint64_t)i << 8 | axis};
-    int part[BLOCK];
+    int part[BLOCK] = {0};
     for (int n = 0; n < BLOCK; n++) {
         const int other = (int)(sim_random_u64(&order) >> 33) % (n + 1);
         part[n] = part[other];
