@@ -29,8 +29,8 @@ static int rests(const struct sim_device *d, double rate_Hz, double k, double b,
     return n;
 }
 
-/* The device was fitted so that the paper's points come to rest; twice their gains do not, nor do
- * they without friction where the linear test says so. */
+/* The device was fitted so that 95 % of falls come to rest at the paper's points; twice their gains
+ * do not, nor do they without friction where the linear test says so. */
 TEST(the_papers_points)
 {
     static const double row[][3] = {{90, 1500, 0}, {100, 2000, 0}, {200, 2000, 15}, {500, 6000, 20},
@@ -40,7 +40,7 @@ TEST(the_papers_points)
     smooth.mu_motor = smooth.mu_mass = smooth.coulomb_n = 0;
     for (int i = 0; i < 6; i++) {
         const double *r = row[i];
-        CHECK(rests(&d, r[0], r[1], r[2], 96) >= 91, "%g Hz", r[0]);
+        CHECK(rests(&d, r[0], r[1], r[2], 1000) >= 950, "%g Hz", r[0]);
         CHECK(rests(&d, r[0], 2 * r[1], 2 * r[2], 10) < 10, "%g Hz, twice", r[0]);
         CHECK(rests(&smooth, r[0], r[1], r[2], 10) < 10, "%g Hz, no friction", r[0]);
     }
