@@ -11,6 +11,7 @@ coverage:
 ## Compare the drop experiment with a model and an analysis that share no code with it.
 .PHONY: gate gate-sample gate-mutants
 gate: all
+	@test/closed/model/mutants.py --texts
 	@test/closed/model/gate.py check $(exhand) $(ARGS)
 
 ## Make the model's sample anew: 60 runs a rate (test/closed/model/falls.csv; 14 min of a core).

@@ -3,6 +3,7 @@
 """Small errors of simulator and analysis, planted one at a time: each must be told by its check.
 
     mutants.py DIR [NUMBER...]    in a copy of the tree in DIR; all, or these
+    mutants.py --texts            can each still be planted? (`make gate`)
 
 None of the checks is a digest, and none compares printed digits with a document. Exit status: 0 all
 told, 1 not, or one that cannot be planted. Standard library only; `make gate-mutants`.
@@ -29,7 +30,7 @@ MUTANTS = [
      "a band to 4.45 N"),
     ("ports/posix/falls/rest.c", ".travel_m = 0.25e-3", ".travel_m = 0.26e-3", test("rest"),
      "the_limits_are_those_that_are_told", "rest within 0.26 mm"),
-    ("ports/posix/sim/plant.c", "half_mass * d->mu_mass * T)", "half_mass * d->mu_motor * T)",
+    ("ports/posix/sim/step.h", "half_mass * d->mu_mass * T)", "half_mass * d->mu_motor * T)",
      test("plant"), "friction_is_of_second_order", "the mass has the motor's friction"),
     ("ports/posix/sim/codes.h", "d->mon_noise_a * sim_random_bell(r)",
      "0.95 * d->mon_noise_a * sim_random_bell(r)", test("chance"),
@@ -96,7 +97,20 @@ def try_one(tree, mutant):
     return 0 if told else 1
 
 
+def texts():
+    """1 if one of them is no text of its source any more: then nothing could be planted."""
+    lost = 0
+    for source, old, _, _, _, what in MUTANTS:
+        with open(os.path.join(ROOT, source)) as f:
+            if f.read().count(old) != 1:
+                print("CANNOT be planted: %s: %s" % (source, what))
+                lost = 1
+    return lost
+
+
 def main():
+    if sys.argv[1] == "--texts":
+        return texts()
     tree = os.path.join(os.path.abspath(sys.argv[1]), "tree")
     some = [MUTANTS[int(n) - 1] for n in sys.argv[2:]] or MUTANTS
     shutil.rmtree(tree, ignore_errors=True)
