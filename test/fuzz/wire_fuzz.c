@@ -110,12 +110,15 @@ static void tick(struct box *b, const struct exh_precontact_cfg *cfg, int on_the
             {at[0], at[1], at[2]}, {0, 0, 0}, at[0] / 2, 0, 0, 1, at[1]};
         const struct exh_precontact was = *s;
         const uint32_t bits = exh_precontact_step(s, cfg, &in);
-        if (bits & EXH_PRECONTACT_STANDS) {
+        const uint32_t froze_late = bits & EXH_PRECONTACT_LATE ? bits & EXH_PRECONTACT_FREEZE : 0;
+        if (froze_late) { /* at once, and where the finger is inside */
+            MUST(s->late && s->lim_m_q30 <= in.pos_m_q30);
+        } else if (bits & EXH_PRECONTACT_STANDS) {
             MUST(s->lim_m_q30 == was.lim_m_q30);
         } else {
             MUST(in.pos_m_q30 < s->lim_m_q30);
         }
-        MUST(!(bits & EXH_PRECONTACT_FREEZE) || was.phase == EXH_PRECONTACT_TRACK);
+        MUST(!(bits & EXH_PRECONTACT_FREEZE) || froze_late || was.phase == EXH_PRECONTACT_TRACK);
     }
 }
 
