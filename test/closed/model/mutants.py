@@ -99,13 +99,13 @@ def try_one(tree, mutant):
 
 def texts():
     """1 if one of them is no text of its source any more: then nothing could be planted."""
-    lost = 0
+    lost = []
     for source, old, _, _, _, what in MUTANTS:
         with open(os.path.join(ROOT, source)) as f:
-            if f.read().count(old) != 1:
-                print("CANNOT be planted: %s: %s" % (source, what))
-                lost = 1
-    return lost
+            lost += [(source, what)] if f.read().count(old) != 1 else []
+    for where in lost:
+        print("CANNOT be planted: %s: %s" % where)
+    return 1 if lost else 0
 
 
 def main():
