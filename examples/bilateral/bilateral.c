@@ -253,10 +253,9 @@ int bilateral_stage_cal(const struct exh_glove_cal *cal, struct exh_glove_error 
 
 static int setup(struct exh_scene_board board)
 {
-    static const struct bilateral power_on;
     static const struct bilateral_signals silence;
     int err;
-    state = power_on;
+    state = (struct bilateral){0};
     signals = silence;
     untold = 0;
     mail_in.packets = mail_out.packets = 0;

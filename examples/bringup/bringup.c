@@ -3,8 +3,7 @@
 
 void bringup_start(struct bringup *s)
 {
-    static const struct bringup power_on;
-    *s = power_on;
+    *s = (struct bringup){0};
 }
 
 /* --- doubt, while current flows --- */

@@ -321,8 +321,7 @@ static int32_t go_on(struct calibrate *s, const struct calibrate_cfg *cfg, struc
 
 void calibrate_start(struct calibrate *s, const struct calibrate_cfg *cfg)
 {
-    static const struct calibrate power_on;
-    *s = power_on;
+    *s = (struct calibrate){0};
     begin_wait(s, cfg);
 }
 

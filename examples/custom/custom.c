@@ -99,11 +99,10 @@ static int plug_in(struct exh_period T)
 
 static int setup(struct exh_scene_board board)
 {
-    static const struct custom power_on;
     static const struct custom_inputs no_inputs;
     int err;
     end();
-    state = power_on;
+    state = (struct custom){0};
     inputs = no_inputs;
     answered = 0;
     err = exh_calib_set_load(&calib, &params, &active.calib, 1u);

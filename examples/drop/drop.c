@@ -146,9 +146,8 @@ static void defaults(void)
 
 static int setup(struct exh_scene_board board)
 {
-    static const struct drop power_on;
     int err;
-    state = power_on;
+    state = (struct drop){0};
     err = exh_calib_set_load(&calib, &params, &active.calib, 1u);
     if (err == 0) { err = drop_setup(&cfg, &active, board, &calib); }
     exh_params_slew_setup(&params, &active.tune, board.T);

@@ -166,8 +166,7 @@ int glove_stage_cal(const struct exh_glove_cal *cal, struct exh_glove_error *bad
 static int setup(struct exh_scene_board board)
 {
     const uint64_t num = (uint64_t)board.T.num * (uint32_t)active.own.every;
-    static const struct glove power_on;
-    state = power_on;
+    state = (struct glove){0};
     shut = (struct exh_safety){.fingers = 1};
     if (num > UINT32_MAX) { return -EXH_E_RATE; }
     return glove_setup(&cfg, &active, (struct exh_period){(uint32_t)num, board.T.den});

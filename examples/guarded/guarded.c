@@ -85,9 +85,8 @@ static void defaults(void)
 
 static int setup(struct exh_scene_board board)
 {
-    static const struct guarded power_on;
     int err;
-    state = power_on;
+    state = (struct guarded){0};
     exh_params_slew_setup(&params, &active.drop.tune, board.T);
     exh_gains_enable(&params, active.own.rule_on);
     err = exh_calib_set_load(&calib, &params, &active.drop.calib, 1u);

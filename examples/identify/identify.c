@@ -155,8 +155,7 @@ static void begin_wait(struct identify *s, const struct identify_cfg *cfg)
 
 void identify_start(struct identify *s, const struct identify_cfg *cfg)
 {
-    static const struct identify power_on;
-    *s = power_on;
+    *s = (struct identify){0};
     begin_wait(s, cfg);
 }
 
