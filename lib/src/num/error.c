@@ -9,16 +9,16 @@ const char *exh_error_text(int code)
         "value outside its range",
         "no such signal, record or command",
         "not allowed in this state",
-        "checksum wrong, bytes damaged",
+        "checksum wrong",
         "another version or table",
         "ends too early, or buffer too small",
-        "table does not rise strictly",
+        "table does not rise",
         "loop rate not possible",
-        "device answered wrongly or too late",
+        "device answered wrongly or late",
         "device not found",
         "calibration too old, or made before a change",
         "cut-off at or above half the rate",
-        "stiffness and damping outside the rule of gains",
+        "stiffness, damping outside the rule of gains",
     };
     if (code <= -EXH_E_COUNT || code >= EXH_E_COUNT) { return "unknown error"; }
     return text[code < 0 ? -code : code];
