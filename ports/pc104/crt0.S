@@ -41,6 +41,7 @@ _start:
     call pc104_trap_open
     call pc104_cmdline_open         /* may lie anywhere, so before the guard */
     call pc104_guard_open
+    call pc104_mce_open             /* says what the run before ended with */
     call main
 2:  cli                             /* main() does not return; if it does, stop */
     hlt

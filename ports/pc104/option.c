@@ -7,7 +7,7 @@
 #include "exhand/exhand.h"
 
 #define TICKS_MAX 2000000000
-#define WORDS_MAX 16
+#define WORDS_MAX 17
 
 static const struct exh_signal rows[] = {
     {0xA001, 0, EXH_WHEN_SETUP, 0, 20000, 0, "rate", "hz", "ticks a second; 0: the scene's"},
@@ -22,7 +22,7 @@ static const struct exh_signal rows[] = {
     {0xA008, 0, EXH_WHEN_SETUP, 0, 1000000, 0, "budget", "us",
         "stated cost of a tick; 0: measured"},
     {0xA009, 0, EXH_WHEN_SETUP, 0, 1000, 25, "headroom", "percent", "left free above that cost"},
-    {0xA00A, 0, EXH_WHEN_SETUP, 0, 15, 0, "provoke", "", "a failure to be seen ending safe"},
+    {0xA00A, 0, EXH_WHEN_SETUP, 0, 16, 0, "provoke", "", "a failure to be seen ending safe"},
     {0xA00B, 0, EXH_WHEN_SETUP, 0, TICKS_MAX, 100, "provoke_at", "", "in this tick"},
     {0xA00C, 0, EXH_WHEN_SETUP, 0, 1, 0, "idle", "", "what the processor does between ticks"},
     {0xA00D, 0, EXH_WHEN_SETUP, 0, 3, 0, "dump", "", "where the black box goes after a fault"},
@@ -42,7 +42,7 @@ static const struct {
     {"dump", {"off", "serial", "debug", "udp"}},
     {"idle", {"halt", "spin"}},
     {"provoke", {"none", "divide", "opcode", "null", "write", "stack", "nmi", "spurious", "hang",
-                    "slow", "timer", "assert", "mask", "idle", "twice", "reset"}},
+                    "slow", "timer", "assert", "mask", "idle", "twice", "reset", "mce"}},
 };
 
 /* Of a program that takes no options: nothing is too much. */

@@ -52,7 +52,8 @@ enum pc104_provoke {
     PC104_PROVOKE_MASK,
     PC104_PROVOKE_IDLE,
     PC104_PROVOKE_TWICE, /* CARDS=none alone: an NMI into what makes safe */
-    PC104_PROVOKE_RESET  /* as a watchdog does, if the run before did end */
+    PC104_PROVOKE_RESET, /* as a watchdog does, if the run before did end */
+    PC104_PROVOKE_MCE    /* exception 18, by an instruction */
 };
 enum pc104_log { PC104_LOG_OFF, PC104_LOG_SERIAL, PC104_LOG_DEBUG, PC104_LOG_UDP };
 enum pc104_source { PC104_TIMER_AUTO, PC104_TIMER_HPET, PC104_TIMER_PIT };
@@ -227,6 +228,11 @@ void pc104_modbus_report(void);
 /* --- trap.c: interrupts, and processor exceptions that say their name. Opened, as
  * the UART, before main() --- */
 void pc104_trap_open(void);
+
+/* --- mce.c: machine checks --- */
+void pc104_mce_open(void);            /* they come as an exception from here on */
+void pc104_mce_taken(void);           /* another may come */
+void pc104_mce_say(const char *what); /* a line of each bank that has a cause */
 
 /* For a scene in floats: the FPU, or a halt without one that can; for all others nothing. */
 void pc104_fpu_open(void);

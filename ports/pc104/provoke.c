@@ -32,6 +32,8 @@ static void processor(int32_t what)
         __asm__ volatile("1: pushl %eax; jmp 1b");
     } else if (what == PC104_PROVOKE_NMI) {
         __asm__ volatile("int $2");
+    } else if (what == PC104_PROVOKE_MCE) {
+        __asm__ volatile("int $18");
     } else if (what == PC104_PROVOKE_SPURIOUS) {
         __asm__ volatile("int $39; int $47"); /* lines 7 and 15 of the 8259 pair */
     }

@@ -11,6 +11,7 @@
 #define FAULT_TASK     0x20u
 #define DOUBLE_FAULT   8u
 #define PAGE_FAULT     14u
+#define MACHINE_CHECK  18u
 
 enum { PIC1 = 0x20, PIC1_MASK = 0x21, PIC2 = 0xA0, PIC2_MASK = 0xA1 };
 
@@ -111,8 +112,10 @@ static void say_where(const char *what, uint32_t vector, uint32_t error, uint32_
 
 void pc104_fault(struct pc104_frame frame)
 {
+    if (frame.vector == MACHINE_CHECK) { pc104_mce_taken(); }
     stop_first();
     say_where(name_of(frame.vector), frame.vector, frame.error, frame.eip);
+    if (frame.vector == MACHINE_CHECK) { pc104_mce_say("machine check"); }
     pc104_halt(PC104_EXIT_FAULT, "processor exception");
 }
 

@@ -53,6 +53,31 @@ safe()
         fail "said something before the outputs were safe"
 }
 
+# monitored STATUS PATTERN COMMANDS OPTION...: as safe, with commands for QEMU's monitor in the
+# loop; its answers are in $out/monitor
+monitored()
+{
+    local want=$1 pattern=$2 commands=$3 feeder reader
+    shift 3
+    mkfifo "$out/m.in" "$out/m.out"
+    (
+        for _ in {1..300}; do
+            grep -aqs '^budget measured' "$out/said" && break
+            sleep 0.2
+        done
+        sleep 1
+        printf '%s\n' "$commands"
+    ) >"$out/m.in" & # opened when QEMU opens it
+    feeder=$!
+    tr -d '\r' <"$out/m.out" >"$out/monitor" &
+    reader=$!
+    QEMU_FLAGS="$virtual -chardev pipe,id=m,path=$out/m -mon chardev=m" \
+        safe "$want" "$pattern" ticks=0 "$@"
+    kill "$feeder" "$reader" 2>"$out/err"
+    wait "$feeder" "$reader" 2>"$out/err"
+    rm "$out/m.in" "$out/m.out"
+}
+
 # Well.
 boots 0 '^rate 2000 Hz asked, timer HPET of 100000000 Hz, period 1/2000 s, 0 ppm off$' ticks=4000 \
     uncalibrated=1 idle=spin
@@ -169,6 +194,11 @@ safe 5 '^page fault, vector 14, error 0x00000000, .* address 0x00000010, tick 10
 safe 5 '^page fault, vector 14, error 0x00000003, ' provoke=write
 safe 5 '^stack overflow, vector 8, ' provoke=stack
 safe 5 '^NMI, vector 2, ' provoke=nmi
+safe 5 '^machine check, vector 18, ' provoke=mce
+# One that the processor itself raises, and what its bank says.
+monitored 5 '^machine check, vector 18, ' 'mce 0 1 0xb200000000000123 0x4 0 0'
+says '^machine check bank 1: status 0xb2000000 0x00000123$'
+QEMU_CPU=n270,-mca safe 5 '^machine check, vector 18, ' provoke=mce
 boots 0 '^irq_spurious 2$' provoke=spurious ticks=300
 safe 7 '^overload: a tick hangs$' provoke=hang
 safe 7 '^overload: more ticks late than overload_max allows$' provoke=slow
