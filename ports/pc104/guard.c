@@ -90,13 +90,14 @@ void pc104_guard_open(void)
     open_tasks();
 }
 
-/* Firmware may put a card below DEVICES where there is little memory. */
+/* Firmware may put a card below DEVICES where there is little memory. What caches hold of it is
+ * written back: it would overwrite later what goes past them. */
 int pc104_guard_device(uint32_t address)
 {
     const uint32_t i = address / LARGE_B;
     if (i == 0) { return -EXH_E_RANGE; }
     directory[i] |= UNCACHED;
-    __asm__ volatile("movl %0, %%cr3" : : "r"(directory) : "memory");
+    __asm__ volatile("movl %0, %%cr3; wbinvd" : : "r"(directory) : "memory");
     return 0;
 }
 

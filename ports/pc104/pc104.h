@@ -196,7 +196,8 @@ const int32_t *pc104_load_signals(void); /* values of that table, as they are no
 
 /* --- guard.c: paging with a guard below the stack; a stack of its own for double faults --- */
 void pc104_guard_open(void);
-/* The 4 MiB around it are a card's, not to be cached: 0, or -EXH_E_RANGE where our memory is. */
+/* The 4 MiB around it are a card's or the mark's (restart.c), not to be cached: 0, or -EXH_E_RANGE
+ * where our memory is. */
 int pc104_guard_device(uint32_t address);
 int pc104_guard_hit(uint32_t address);
 uint32_t pc104_guard_eip(void); /* where the double fault came from */

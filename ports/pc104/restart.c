@@ -2,7 +2,10 @@
 /* Did the run before this boot end? A mark in memory is set while ticks run and taken away when
  * they end in order; a reset by the watchdog, or by whoever found the box crashed, leaves it.
  * Memory outlives a reset and no power-off; some firmware clears it, and then this boot looks like
- * the first of all: what is certain is the watchdog's own contact (docs/CARDS.md). */
+ * the first of all: what is certain is the watchdog's own contact (docs/CARDS.md).
+ *
+ * The mark's page is not cached. A reset drops what caches have not written back, and in a cache as
+ * large as the image's data nothing pushes the mark out: it would be lost, or what took it away. */
 #include "pc104.h"
 
 /* 14 MiB: above the image and what was loaded behind it, below what firmware and GRUB take, which
@@ -30,7 +33,7 @@ static uint8_t kept, fired;
 /* Both words: memory at power-on is anything. */
 void pc104_restart_look(void)
 {
-    kept = (uint8_t)is_there();
+    kept = (uint8_t)(is_there() && pc104_guard_device(MARK_AT) == 0);
     fired = kept && mark()[0] == (uint32_t)RUNS && mark()[1] == (uint32_t)NOT_RUNS;
     if (fired) {
         pc104_say("restart: the run before did not end: the watchdog fired, or it crashed; "

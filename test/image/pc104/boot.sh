@@ -196,8 +196,12 @@ safe 5 '^stack overflow, vector 8, ' provoke=stack
 safe 5 '^NMI, vector 2, ' provoke=nmi
 safe 5 '^machine check, vector 18, ' provoke=mce
 # One that the processor itself raises, and what its bank says.
-monitored 5 '^machine check, vector 18, ' 'mce 0 1 0xb200000000000123 0x4 0 0'
+# The page of restart.c's mark is uncached and written through (C, T); that of the image is not.
+monitored 5 '^machine check, vector 18, ' 'info tlb
+mce 0 1 0xb200000000000123 0x4 0 0'
 says '^machine check bank 1: status 0xb2000000 0x00000123$'
+grep -qE '^0+c00000: .*CT' "$out/monitor" || fail "the page of the mark at 14 MiB is cached"
+grep -E '^0+100000: ' "$out/monitor" | grep -q CT && fail "the page of the image is not cached"
 QEMU_CPU=n270,-mca safe 5 '^machine check, vector 18, ' provoke=mce
 boots 0 '^irq_spurious 2$' provoke=spurious ticks=300
 safe 7 '^overload: a tick hangs$' provoke=hang
