@@ -15,7 +15,7 @@ static const struct exh_signal rows[] = {
     {0xA003, 0, EXH_WHEN_SETUP, 0, 2, 0, "timer", "", "which makes the ticks"},
     {0xA004, 0, EXH_WHEN_SETUP, 0, 3, 0, "log", "", "where records go"},
     {0xA005, 0, EXH_WHEN_SETUP, 0, TICKS_MAX, 100, "overload_max", "",
-        "late ticks tolerated in all"},
+        "late ticks tolerated; one is forgotten in 10 s"},
     {0xA006, 0, EXH_WHEN_SETUP, 0, TICKS_MAX, 64, "grace", "",
         "first ticks, in which they do not count"},
     {0xA007, 0, EXH_WHEN_SETUP, 2, 10000, 20, "hang", "", "periods after which a tick is hung"},

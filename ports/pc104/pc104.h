@@ -64,7 +64,7 @@ struct pc104_par {
     int32_t ticks;        /* then stop; 0: never */
     int32_t timer;        /* enum pc104_source */
     int32_t log;          /* enum pc104_log */
-    int32_t overload_max; /* missed ticks tolerated in all, after the grace */
+    int32_t overload_max; /* late ticks tolerated, after the grace; one is forgotten in 10 s */
     int32_t grace_ticks;  /* first ticks in which they do not count */
     int32_t hang_ticks;   /* periods after which a tick counts as hung */
     int32_t budget_us;    /* stated cost of a tick; 0: measured */
@@ -181,6 +181,14 @@ void pc104_timer_hang(void); /* what is done between ticks never ends: a test */
 
 /* --- module.c: calibrations of fingers that the loader brought, into the scene --- */
 void pc104_modules(const struct exh_scene *sc);
+
+/* --- overload.c: late ticks, of which one is forgotten each leak_ticks --- */
+struct pc104_overload {
+    uint32_t most, leak_ticks; /* tolerated; leak_ticks below 2^31 */
+    uint32_t n, since_ticks;
+};
+/* passed_ticks: since the last call, those missed with them. 1: more than `most` are late. */
+int pc104_overload_step(struct pc104_overload *o, uint32_t passed_ticks, uint32_t late);
 
 /* --- load.c: what a tick costs, and too much of it --- */
 void pc104_load_stop(void);                        /* no tick runs any more */

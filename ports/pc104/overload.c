@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT */
+/* Are too many ticks late? They leak: firmware that takes the processor once a minute never adds
+ * up to a halt, a loop that is too slow for its rate does at once. Portable:
+ * test/closed/sim/pc104_overload_test.c. */
+#include "pc104.h"
+
+int pc104_overload_step(struct pc104_overload *o, uint32_t passed_ticks, uint32_t late)
+{
+    o->since_ticks = passed_ticks > o->leak_ticks ? o->leak_ticks : o->since_ticks + passed_ticks;
+    if (o->since_ticks >= o->leak_ticks) {
+        o->since_ticks = 0;
+        if (o->n > 0) { o->n--; }
+    }
+    o->n = late > UINT32_MAX - o->n ? UINT32_MAX : o->n + late;
+    return o->n > o->most;
+}
