@@ -20,7 +20,9 @@
 
 /* All in counts of the timer until somebody asks. */
 static struct {
-    uint32_t began, last, least, most, ticks;
+    uint32_t began, last, least, most, ticks, wake;
+    uint32_t skipped; /* ticks, between the one that it slept for and this one */
+    uint8_t slept;    /* that one did not become due while the one before ran */
     uint64_t sum;
     uint32_t bin_per_count_q32;
     uint32_t bin[BINS + 1];
@@ -31,7 +33,7 @@ static uint32_t second_ticks;            /* periods in a second, 2 at least */
 static uint32_t scene_counts, io_counts; /* of dry ticks */
 
 /* The signals of this table are shown to people; no record holds them. */
-static int32_t signal[4 + BINS + 1 + 3];
+static int32_t signal[4 + BINS + 1 + 3 + 1];
 static const struct exh_signal rows[] = {
     {0xA101, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "tick_last", "ns", "time the last tick took"},
     {0xA102, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "tick_min", "ns", "shortest"},
@@ -49,9 +51,13 @@ static const struct exh_signal count_rows[] = {
     {0xA108, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "tick_late", "",
         "ticks due while the one before still ran"},
 };
+static const struct exh_signal wake_rows[] = {
+    {0xA109, 0, EXH_WHEN_OUTPUT, 0, INT32_MAX, 0, "tick_wake", "ns",
+        "longest from a tick's instant to its waking"},
+};
 static const struct exh_signal_group groups[] = {
-    {rows, 4, 1}, {bin_rows, 1, BINS + 1}, {count_rows, 3, 1}};
-const struct exh_signal_table pc104_load_table = {groups, 3};
+    {rows, 4, 1}, {bin_rows, 1, BINS + 1}, {count_rows, 3, 1}, {wake_rows, 1, 1}};
+const struct exh_signal_table pc104_load_table = {groups, 4};
 
 /* By the instruction: reports are also made when an assertion of the library has failed. */
 static uint64_t divided(uint64_t num, uint32_t den)
@@ -80,6 +86,7 @@ const int32_t *pc104_load_signals(void)
     signal[5 + BINS] = capped(missed_in_all);
     signal[6 + BINS] = capped(pc104_spurious);
     signal[7 + BINS] = capped(late_in_all);
+    signal[8 + BINS] = ns(spent.wake);
     return signal;
 }
 
@@ -101,6 +108,11 @@ void pc104_load_begin(void)
     pc104_tick_began = pc104_ticks;
     pc104_hang_ticks = hang_ticks(); /* no grace: currents flow in the first, too */
     spent.began = pc104_timer_now();
+    if (spent.slept) {
+        const uint64_t n =
+            (uint64_t)spent.skipped * pc104_timer_counts() + (spent.began - pc104_timer_due());
+        if (n > spent.wake) { spent.wake = n < UINT32_MAX ? (uint32_t)n : UINT32_MAX; }
+    }
 }
 
 void pc104_load_end(void)
@@ -122,6 +134,8 @@ void pc104_load_missed(uint32_t tick, uint32_t missed, uint32_t late)
     static struct pc104_overload overload; /* after the grace */
     missed_in_all = add_sat(missed_in_all, missed);
     late_in_all = add_sat(late_in_all, late);
+    spent.skipped = missed;
+    spent.slept = late == 0;
     if (tick < (uint32_t)pc104_par.grace_ticks) { return; }
     overload.most = (uint32_t)pc104_par.overload_max;
     overload.leak_ticks = LEAK_S * second_ticks;
@@ -262,6 +276,24 @@ static void divide(void)
         (uint32_t)exh_udiv64((uint64_t)BINS << 32, pc104_timer_counts(), NULL);
 }
 
+/* Before anything moves, for a person who looks at this machine. */
+static void say_gap(uint32_t left)
+{
+    const uint32_t asked_s_q10 = (uint32_t)pc104_par.gap_s_q10;
+    struct pc104_gap g;
+    if (asked_s_q10 == 0) { return; }
+    g = pc104_gap_look(pc104_timer_now, (uint64_t)asked_s_q10 * pc104_timer_Hz() >> 10, left);
+    pc104_say("gap longest ");
+    say_us(g.longest);
+    pc104_say(" in ");
+    pc104_say_fixed(asked_s_q10, 10);
+    pc104_say(" s, a tick of this rate leaves ");
+    say_us(left);
+    pc104_say(", longer ");
+    pc104_say_u32(g.beyond);
+    pc104_say("\n");
+}
+
 int pc104_load_fits(uint32_t rate_Hz)
 {
     uint64_t cost;
@@ -284,7 +316,10 @@ int pc104_load_fits(uint32_t rate_Hz)
     pc104_say(", with headroom ");
     say_us(need);
     pc104_say("\n");
-    if (need <= pc104_timer_counts()) { return 0; }
+    if (need <= pc104_timer_counts()) {
+        say_gap(pc104_timer_counts() - need);
+        return 0;
+    }
     pc104_say("rate ");
     pc104_say_u32(rate_Hz);
     pc104_say(" Hz: a tick costs more than its period: take at most ");

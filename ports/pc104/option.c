@@ -27,6 +27,8 @@ static const struct exh_signal rows[] = {
     {0xA00C, 0, EXH_WHEN_SETUP, 0, 1, 0, "idle", "", "what the processor does between ticks"},
     {0xA00D, 0, EXH_WHEN_SETUP, 0, 3, 0, "dump", "", "where the black box goes after a fault"},
     {0xA00E, 0, EXH_WHEN_SETUP, 0, 1 << 20, 0, "dump_kib", "", "of its memory in use; 0: all"},
+    {0xA00F, 10, EXH_WHEN_SETUP, 0, 86400 << 10, 0, "gap", "s",
+        "so long the longest gap is looked for; 0: not"},
 };
 static const struct exh_signal_group groups[] = {{rows, sizeof rows / sizeof rows[0], 1}};
 const struct exh_signal_table pc104_option_table = {groups, 1};

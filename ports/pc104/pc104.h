@@ -74,6 +74,7 @@ struct pc104_par {
     int32_t spin;         /* 1: the processor never sleeps */
     int32_t dump;         /* enum pc104_log: where the black box goes after a fault */
     int32_t dump_KiB;     /* of its memory that is used; 0: all */
+    int32_t gap_s_q10;    /* so long the longest gap is looked for; 0: not */
 };
 extern struct pc104_par pc104_par;
 extern const struct exh_signal_table pc104_option_table;
@@ -174,6 +175,7 @@ void pc104_timer_start(void);
  * or the want of its interrupts (-2). */
 int pc104_timer_wait(int (*idle)(void), uint32_t *missed, uint32_t *late);
 uint32_t pc104_timer_now(void);    /* counts, modulo 2^32 */
+uint32_t pc104_timer_due(void);    /* the instant of the last tick that it waited for */
 uint32_t pc104_timer_counts(void); /* in a period */
 uint32_t pc104_timer_Hz(void);
 void pc104_timer_kill(void); /* stops it behind everybody's back: a test */
@@ -189,6 +191,12 @@ struct pc104_overload {
 };
 /* passed_ticks: since the last call, those missed with them. 1: more than `most` are late. */
 int pc104_overload_step(struct pc104_overload *o, uint32_t passed_ticks, uint32_t late);
+
+/* --- gap.c: how long the processor is not ours --- */
+struct pc104_gap {
+    uint32_t longest, beyond; /* counts between two reads; how often more than `most` */
+};
+struct pc104_gap pc104_gap_look(uint32_t (*now)(void), uint64_t counts, uint32_t most);
 
 /* --- load.c: what a tick costs, and too much of it --- */
 void pc104_load_stop(void);                        /* no tick runs any more */

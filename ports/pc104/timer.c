@@ -244,6 +244,8 @@ int pc104_timer_wait(int (*idle)(void), uint32_t *missed, uint32_t *late)
 
 /* --- time --- */
 
+uint32_t pc104_timer_due(void) { return is_hpet ? next - counts : seen * counts; }
+
 uint32_t pc104_timer_counts(void) { return counts; }
 
 uint32_t pc104_timer_Hz(void) { return timer.Hz; }

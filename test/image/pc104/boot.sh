@@ -86,6 +86,7 @@ says '^second clock local APIC$'
 says '^budget measured: scene [0-9.]+ us, cards and link [0-9.]+ us, with headroom [0-9.]+ us$'
 says '^ticks 4000 run, 0 missed$'
 says '^tick_max [0-9]+ ns$'
+says '^tick_wake [0-9]+ ns$'
 says '^tick_bin 4000( 0){16}$'
 says ', enable 0x00000001$' # the dead-man switch was taken: it ran
 says '^done$'
@@ -94,6 +95,12 @@ boots 0 '^ticks 2000 run, 0 missed$' rate=20000 ticks=2000 idle=spin
 boots 0 'timer 8254 of 1193182 Hz, period 1193/1193182 s, 152' timer=pit rate=1000 ticks=1000 \
     idle=spin
 says '^ticks 1000 run, 0 missed$'
+
+boots 0 '^gap longest [0-9.]+ us in 0.25 s, a tick of this rate leaves 9[0-9.]+ us, longer 0$' \
+    gap=0.25 rate=1000 ticks=100
+boots 0 '^gap longest [0-9.]+ us in 0.125 s, a tick of this rate leaves 0 us, longer [1-9][0-9]*$' \
+    gap=0.125 rate=1000 ticks=100 budget=1000 headroom=0
+boots 0 '^gap longest [0-9.]+ us in 0.125 s,' gap=0.125 rate=1000 ticks=100 timer=pit
 
 # Records of bare metal, replayed here bit for bit.
 if [ -x "$exhand" ]; then
