@@ -67,6 +67,41 @@ void pc104_box_config(const struct exh_scene *sc, struct exh_box_config *c)
     c->s526.turns = (uint8_t)p->turns;
 }
 
+static void say_ports(uint32_t first, uint32_t last)
+{
+    pc104_say_hex(first);
+    pc104_say("..");
+    pc104_say_hex(last);
+}
+
+void pc104_box_leave(const struct exh_scene *sc, const char *option, uint32_t first, uint32_t last)
+{
+    struct exh_box_config c;
+    pc104_box_config(sc, &c);
+    const struct {
+        const char *name;
+        uint32_t base, size;
+    } card[] = {{"s526_a", c.s526_base[0], 0x40},
+        {"s526_b", c.s526_base[1], c.fingers > 1 || c.full ? 0x40 : 0},
+        {"mm32xat", c.mm32xat_base, c.glove != EXH_BOX_NEVER ? 0x10 : 0}};
+    for (unsigned i = 0; i < sizeof card / sizeof card[0]; i++) {
+        if (card[i].base > last || first >= card[i].base + card[i].size) { continue; }
+        pc104_refuse(option, NULL);
+        pc104_say("its ports ");
+        say_ports(first, last);
+        pc104_say(" are also those of ");
+        pc104_say(card[i].name);
+        pc104_say(", ");
+        say_ports(card[i].base, card[i].base + card[i].size - 1);
+        pc104_say(": give that card another base, by its jumpers and by ");
+        pc104_say(card[i].name);
+        pc104_say("= (576 is 0x240), or leave ");
+        pc104_say(option);
+        pc104_say("= out\n");
+        pc104_halt(PC104_EXIT_OPTION, "option refused: nothing was started");
+    }
+}
+
 static void say_signature(const struct exh_box_report *r, unsigned card)
 {
     if (card < EXH_BOX_GLOVE) {

@@ -111,4 +111,5 @@ void pc104_options(const struct exh_scene *sc)
         pc104_say(value ? "no such parameter of image, box or scene\n" : "not name=value\n");
         pc104_halt(PC104_EXIT_OPTION, "option refused: nothing was started");
     }
+    if (sc) { pc104_scene_check(sc); }
 }

@@ -8,6 +8,7 @@
  * transmitter is stands nowhere: it is counted, a little too full. */
 #include "pc104.h"
 
+#include "box.h"
 #include "io.h"
 #include "uart.h"
 
@@ -100,6 +101,12 @@ int pc104_modbus_option(const char *name, const char *value)
     }
     par.asked_for = 1;
     return 1;
+}
+
+/* Each would take what is meant for the other. */
+void pc104_modbus_check(const struct exh_scene *sc)
+{
+    if (par.asked_for) { pc104_box_leave(sc, "modbus", UART_COM2, COM2(UART_SCRATCH)); }
 }
 
 /* --- start --- */

@@ -9,6 +9,8 @@ int pc104_modbus_option(const char *name, const char *value)
     return 0;
 }
 
+void pc104_modbus_check(const struct exh_scene *sc) { (void)sc; }
+
 void pc104_modbus_open(const struct exh_scene *sc) { (void)sc; }
 
 void pc104_modbus_start(struct exh_scene_board board) { (void)board; }

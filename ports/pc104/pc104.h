@@ -118,6 +118,7 @@ uint32_t pc104_fifo_flush(struct pc104_fifo *f, int32_t where);
 /* --- scene_full.c, or scene_rom.c for a scene of constants without log --- */
 int pc104_scene_option(
     const struct exh_scene *sc, const char *name, const char *value); /* 0: not one of its */
+void pc104_scene_check(const struct exh_scene *sc); /* all options are known: halts on bad ones */
 void pc104_scene_ready(const struct exh_scene *sc);
 void pc104_scene_dry(const struct exh_scene *sc, uint32_t tick, const struct exh_scene_in *in,
     const struct exh_drive_out *out);
@@ -233,7 +234,8 @@ void pc104_link_log_new(void); /* what comes now is another stream */
 
 /* --- modbus.c: the scene's registers on COM2, where asked for --- */
 int pc104_modbus_option(const char *name, const char *value); /* 0: not its; halts on bad ones */
-void pc104_modbus_open(const struct exh_scene *sc);           /* finds the UART; says so */
+void pc104_modbus_check(const struct exh_scene *sc);   /* halts where a card has COM2's ports */
+void pc104_modbus_open(const struct exh_scene *sc);    /* finds the UART; says so */
 void pc104_modbus_start(struct exh_scene_board board); /* halts where the rate does not hold it */
 void pc104_modbus_poll(const struct exh_scene_in *in); /* behind a tick's outputs: bounded work */
 uint8_t pc104_modbus_command(void); /* enum exh_command asked for since the last call */

@@ -50,6 +50,8 @@ int pc104_scene_option(const struct exh_scene *sc, const char *name, const char 
     return found;
 }
 
+void pc104_scene_check(const struct exh_scene *sc) { pc104_modbus_check(sc); }
+
 /* Before anything is timed: the parameters are part of what a tick costs. */
 void pc104_scene_ready(const struct exh_scene *sc)
 {

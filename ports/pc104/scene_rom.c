@@ -10,6 +10,8 @@ int pc104_scene_option(const struct exh_scene *sc, const char *name, const char 
     return 0;
 }
 
+void pc104_scene_check(const struct exh_scene *sc) { (void)sc; }
+
 void pc104_scene_ready(const struct exh_scene *sc) { (void)sc; }
 
 void pc104_scene_dry(const struct exh_scene *sc, uint32_t tick, const struct exh_scene_in *in,

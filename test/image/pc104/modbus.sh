@@ -43,12 +43,19 @@ boot() # STATUS LINE OPTION...
 }
 
 form='com2,ADDRESS,BAUD\[,remote\]$'
-boot 0 '^modbus: no 16550 with a FIFO at COM2: goes on without$' ticks=100 modbus=com2,1,57600
+beside="s526_a=576" # the default base has COM2's ports
+boot 0 '^modbus: no 16550 with a FIFO at COM2: goes on without$' ticks=100 $beside \
+    modbus=com2,1,57600
+boot 2 '^option modbus: its ports 0x000002f8\.\.0x000002ff are also those of s526_a, '\
+'0x000002c0\.\.0x000002ff: give that card another base, .* or leave modbus= out$' \
+    ticks=100 modbus=com2,1,57600
+boot 2 '^option modbus: .* are also those of s526_b, ' modbus=com2,1,57600 $beside s526_b=704 full=1
+boot 0 '^done$' ticks=100 modbus=com2,1,57600 $beside s526_b=704 # one finger: that card is not used
 boot 2 '^option modbus: baud 115200: its FIFO overflows in a tick of this rate: '\
 'take at most 57600, or a rate of at least 823 Hz$' \
-    ticks=100 rate=500 modbus=com2,1,115200
+    ticks=100 rate=500 modbus=com2,1,115200 $beside
 boot 2 '^option modbus: baud 9600: .*: take at most 7200, or a rate of at least 69 Hz$' ticks=100 \
-    rate=60 modbus=com2,1,9600
+    rate=60 modbus=com2,1,9600 $beside
 boot 2 "^option modbus=com1,1,9600: $form" modbus=com1,1,9600
 boot 2 "^option modbus=com2,1: $form" modbus=com2,1
 boot 2 "^option modbus=com2,1,9600,far: $form" modbus=com2,1,9600,far
@@ -74,7 +81,7 @@ master()
     QEMU_FLAGS="-icount shift=2,sleep=on -serial tcp:127.0.0.1:$port,server=on,wait=on" \
         RECORDS=$dir/log TIMEOUT_s=300 \
         $run "$image" "ticks=$ticks" "rate=$rate" idle=spin log=debug uncalibrated=1 \
-        "modbus=com2,1,$baud${remote:+,$remote}" \
+        "modbus=com2,1,$baud${remote:+,$remote}" $beside \
         >"$dir/said" 2>"$dir/err" &
     pid=$!
     python3 test/image/pc104/modbus.py "$port" "$reads" $remote >"$dir/client" 2>&1
@@ -101,7 +108,7 @@ gains='rule_on=1 rule_rate=500 rule_b1=30 rule_k0=9000 rule_k1=2000 k=5000 b=15'
 # shellcheck disable=SC2086 # one option a word
 QEMU_FLAGS="-icount shift=3,sleep=on -serial tcp:127.0.0.1:$port,server=on,wait=on" TIMEOUT_s=120 \
     $run "$b/pc104/guarded-none.elf" ticks=10000 rate=500 idle=spin uncalibrated=1 \
-    modbus=com2,1,57600 $gains \
+    modbus=com2,1,57600 $beside $gains \
     >"$dir/said" 2>"$dir/err" &
 pid=$!
 python3 test/image/pc104/modbus.py "$port" rule >"$dir/client" 2>&1
