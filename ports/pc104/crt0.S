@@ -37,6 +37,7 @@ _start:
     rep stosl
     movl %edx, pc104_boot_magic
     movl %ebx, pc104_boot_info
+    call pc104_i686                 /* before any C; does not return on another processor */
     call pc104_uart_open            /* from here on an exception can say its name */
     call pc104_trap_open
     call pc104_cmdline_open         /* may lie anywhere, so before the guard */

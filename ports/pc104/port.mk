@@ -10,8 +10,8 @@ cards_none    := ports/pc104/cards_none.c
 $(if $(cards_$(CARDS)),,$(error CARDS=$(CARDS): one of real, none))
 PORT_SUFFIX   := $(if $(filter-out real,$(CARDS)),-$(CARDS))
 PORT_MAIN     := ports/pc104/main.c lib/src/run/deadman.c
-pc104_parts   := crt0.S vectors.S board.c box.c timer.c hpet.c pit.c second.c load.c overload.c gap.c guard.c \
-                 trap.c mce.c uart.c say.c \
+pc104_parts   := crt0.S i686.S vectors.S board.c box.c timer.c hpet.c pit.c second.c load.c \
+                 overload.c gap.c guard.c trap.c mce.c uart.c say.c \
                  number.c cmdline.c option.c provoke.c restart.c halt.c mem.c
 pc104_link    := link.c net.c nic.c pci.c
 # MODBUS=no: an image without registers on a second serial line.

@@ -241,6 +241,10 @@ says '^timer HPET: not there$'
 QEMU_FLAGS="$virtual -no-hpet" boots 8 '^timer HPET: not there$' timer=hpet
 QEMU_FLAGS="$virtual -M isapc" boots 0 '^ticks 500 run, 0 missed$' ticks=500 idle=spin
 QEMU_CPU=n270,-apic boots 0 '^second clock none: ' ticks=500
+for cpu in 486 pentium n270,-cmov; do
+    QEMU_CPU=$cpu boots 2 '^this image needs an i686 processor \(CMOV'
+done
+QEMU_CPU=pentium2 boots 0 '^done$' ticks=100
 
 # Nothing there: every card that the scene uses is named with its address.
 image=$1/drop.elf
