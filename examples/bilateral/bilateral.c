@@ -92,7 +92,8 @@ static uint32_t sense(struct bilateral *s, const struct bilateral_cfg *cfg,
     return din;
 }
 
-/* The gate's codes from places back to fingers. */
+/* The gate's codes from places back to fingers. It knows no drive that is not in use: what it gives
+ * those is 0 A of the first. */
 static void out_by_finger(
     const struct bilateral_cfg *cfg, const struct exh_drive_out *placed, struct exh_drive_out *out)
 {
@@ -102,6 +103,10 @@ static void out_by_finger(
         const unsigned f = bilateral_at(cfg, k);
         out->dac_raw[f] = placed->dac_raw[k];
         out->enable = (uint8_t)(out->enable | (placed->enable >> k & 1u) << f);
+    }
+    for (unsigned k = bilateral_n(cfg); k < BILATERAL_FINGERS; k++) {
+        const unsigned f = bilateral_at(cfg, k);
+        out->dac_raw[f] = (uint16_t)cfg->par->drive[f].dac_zero_raw;
     }
 }
 

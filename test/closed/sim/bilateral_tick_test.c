@@ -18,6 +18,7 @@ static struct bilateral_cfg cfg;
 static struct bilateral box;
 static struct exh_scene_mail in, out;
 static struct exh_scene_in from_board;
+static struct exh_drive_out drive;
 static struct bilateral_signals sig;
 static struct exh_wire_tx world;
 static uint32_t tick_n;
@@ -73,7 +74,6 @@ static void planes(void)
 /* Packets of a kind in what goes out. */
 static int tick(int glove_new, int type)
 {
-    static struct exh_drive_out drive;
     const int codes = tick_n ? drive.dac_raw[F] - par.drive[F].dac_zero_raw : 0;
     int n = 0;
     from_board.drive.mon_raw[F] = (int16_t)(codes * 105 / 100); /* the current follows */
@@ -88,6 +88,23 @@ static int tick(int glove_new, int type)
 }
 
 static int phase(void) { return box.finger[F].precontact.phase; }
+
+/* The cards see a drive that is off by how far its code is from 0 A. */
+TEST(no_current_is_each_fingers_own_code)
+{
+    for (uint32_t mask = 1; mask < 1u << EXH_FINGERS; mask++) {
+        start();
+        par.own.fingers = (int32_t)mask;
+        for (unsigned f = 0; f < EXH_FINGERS; f++) { par.drive[f].dac_zero_raw = (int)f * 9000; }
+        CHECK_EQ_I64(
+            bilateral_setup(&cfg, &box, &par, (struct exh_scene_board){{1, RATE_HZ}, 16}, NULL), 0);
+        (void)tick(0, 0);
+        for (unsigned f = 0; f < EXH_FINGERS; f++) {
+            CHECK(drive.dac_raw[f] == f * 9000, "fingers %u, finger %u: %u", (unsigned)mask, f,
+                drive.dac_raw[f]);
+        }
+    }
+}
 
 TEST(a_plane_told_before_the_first_glove_frame_is_not_kept)
 {
@@ -618,7 +635,8 @@ TEST(a_trace_goes_on_from_bytes)
     for (int k = 0; k < 300; k++) { (void)tick(1, 0); }
 }
 
-TEST_MAIN("bilateral, tick by tick", a_plane_told_before_the_first_glove_frame_is_not_kept,
+TEST_MAIN("bilateral, tick by tick", no_current_is_each_fingers_own_code,
+    a_plane_told_before_the_first_glove_frame_is_not_kept,
     a_finger_whose_sensor_is_not_believed_has_no_contact, a_frozen_contact_outlives_a_sensor,
     a_wall_that_the_glove_denies_does_not_pull_for_ever, an_old_glove_frame,
     missed_ticks_make_planes_older, a_world_that_has_started_anew_is_greeted_at_once,

@@ -110,6 +110,7 @@ static const char *const moved[] = {
     "out->dac_raw[0] = out->dac_raw[1]; /* that of 0 A */", /* the gate's, of a finger not in use */
     "out->dac_raw[finger] = code;",                         /* the gate's, of finger 0 */
     "out->dac_raw[0] = (uint16_t)par->drive.dac_zero_raw;",
+    "out->dac_raw[f] = (uint16_t)cfg->par->drive[f].dac_zero_raw;", /* 0 A of one not in use */
 };
 
 /* 1 if dac_raw is assigned to in this line. */
