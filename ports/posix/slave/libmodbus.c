@@ -13,6 +13,7 @@
 
 #include "base/option.h"
 #include "base/thread.h"
+#include "base/until.h"
 
 #include <arpa/inet.h>
 #include <errno.h>
@@ -40,8 +41,7 @@
 
 struct client {
     int fd;
-    int waits;           /* rounds for the rest of a request */
-    unsigned long heard; /* the round of its last request, or of its coming */
+    int waits; /* rounds for the rest of a request */
 };
 
 static struct {
@@ -49,8 +49,8 @@ static struct {
     int rtu, listener;
     int stop[2]; /* a pipe: closed, it ends the thread */
     struct client client[CLIENTS];
+    struct place place[CLIENTS]; /* of the same */
     int clients;
-    unsigned long round;
     pthread_t thread;
     int serves;
 } server = {.listener = -1, .stop = {-1, -1}};
@@ -61,6 +61,7 @@ static void drop(int i)
 {
     close(server.client[i].fd);
     server.client[i] = server.client[--server.clients];
+    server.place[i] = server.place[server.clients];
 }
 
 /* One request of client i, if all of it is there: 1 answered, 0 not yet, -1 the connection ends. */
@@ -77,7 +78,8 @@ static int one_request(int i)
     if (request_be16(req + 2) != 0 || len < MBAP_B + 1 || len > MBAP_B + PDU_MAX_B) { return -1; }
     if (got < len) { return 0; }
     c->waits = 0;
-    c->heard = server.round;
+    server.place[i].asked = 1;
+    server.place[i].heard_s = until_now_s();
     modbus_set_socket(server.ctx, c->fd);
     if (request_shape(req + MBAP_B, (unsigned)(len - MBAP_B)) !=
         0) { /* nothing that libmodbus could measure */
@@ -90,22 +92,15 @@ static int one_request(int i)
     return request_answer(&q) < 0 ? -1 : 1;
 }
 
-/* Whoever vanished without a word holds his place else for ever. */
-static void drop_longest_silent(void)
-{
-    int which = 0;
-    for (int i = 1; i < server.clients; i++) {
-        if (server.client[i].heard < server.client[which].heard) { which = i; }
-    }
-    drop(which);
-}
-
 /* Never blocking: an answer that a client does not fetch would hold up all others, and the end of
  * the program. */
 static void accept_one(void)
 {
     const int on = 1;
-    int fd = accept(server.listener, NULL, NULL);
+    struct sockaddr_in from = {.sin_family = AF_INET};
+    socklen_t len = sizeof from;
+    const double now_s = until_now_s();
+    int fd = accept(server.listener, (struct sockaddr *)&from, &len), out;
     if (fd < 0) { return; }
     if (fd >= FD_SETSIZE ||
         fcntl(fd, F_SETFL, O_NONBLOCK) < 0) { /* libmodbus would write beyond its set */
@@ -113,8 +108,16 @@ static void accept_one(void)
         return;
     }
     (void)setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-    if (server.clients == CLIENTS) { drop_longest_silent(); }
-    server.client[server.clients++] = (struct client){fd, 0, server.round};
+    if (server.clients == CLIENTS) {
+        out = place_to_clear(server.place, CLIENTS, from.sin_addr.s_addr, now_s);
+        if (out < 0) {
+            close(fd);
+            return;
+        }
+        drop(out);
+    }
+    server.place[server.clients] = (struct place){from.sin_addr.s_addr, 0, now_s};
+    server.client[server.clients++] = (struct client){fd, 0};
 }
 
 /* In turn, one request each, so that none keeps the others waiting. */
@@ -134,7 +137,6 @@ static void *serve_tcp(void *unused)
     (void)unused;
     for (;;) {
         int partial = 0, n = server.clients;
-        server.round++;
         for (int i = 0; i < n; i++) {
             f[i] = (struct pollfd){server.client[i].fd, POLLIN, 0};
             partial |= server.client[i].waits > 0;

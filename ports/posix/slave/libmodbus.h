@@ -11,6 +11,15 @@
  * is cut off at that colon. */
 long modbus_cut_number(char *text, long most);
 
+/* A connection, for who needs its place. */
+struct place {
+    uint32_t address; /* its source, in network order */
+    int asked;        /* 1: a whole request has come */
+    double heard_s;   /* when the last came, or the connection */
+};
+/* Of n, the one that makes room for one more from `address`; -1: none, that one is turned away. */
+int place_to_clear(const struct place *p, int n, uint32_t address, double now_s);
+
 struct request {
     modbus_t *ctx;
     uint8_t *adu; /* MODBUS_MAX_ADU_LENGTH bytes */
