@@ -40,18 +40,19 @@ static int parse(const char *text, uint64_t *digits, int *exponent)
     return *text == '\0' ? 0 : -EXH_E_UNKNOWN;
 }
 
-/* digits * 10^exponent * 2^frac, rounded half up; 2^32 stands for anything larger. */
+/* digits * 10^exponent * 2^frac, rounded half up; 2^62 stands for anything larger. */
 static uint64_t scaled(uint64_t digits, int exponent, unsigned frac)
 {
-    const uint64_t too_large = UINT64_C(1) << 32;
+    const uint64_t too_large = UINT64_C(1) << 62;
     uint64_t den = 1, rest, whole;
+    int behind = 0; /* places beyond those of den */
 
     if (digits == 0) { return 0; }
     for (; exponent > 0; exponent--) {
         if (digits > UINT32_MAX) { return too_large; }
         digits *= 10;
     }
-    for (; exponent < -EXPONENT_MAX; exponent++) { digits = exh_udiv64(digits, 10, NULL); }
+    for (; exponent < -EXPONENT_MAX; exponent++) { behind++; }
     for (; exponent < 0; exponent++) { den *= 10; }
     whole = exh_udiv64(digits, den, &rest);
     for (; frac > 0; frac--) { /* long division, a bit at a time: rest < 10^18 */
@@ -60,7 +61,10 @@ static uint64_t scaled(uint64_t digits, int exponent, unsigned frac)
         whole = 2 * whole + (rest >= den);
         if (rest >= den) { rest -= den; }
     }
-    return whole + (2 * rest >= den);
+    if (behind == 0) { return whole + (2 * rest >= den); }
+    /* Half a unit of the last of them is a whole number: what is cut before it decides nothing. */
+    for (; behind > 1; behind--) { whole = exh_udiv64(whole, 10, NULL); }
+    return exh_udiv64(whole + 5, 10, NULL);
 }
 
 int pc104_number(const char *text, unsigned frac, int32_t *raw)

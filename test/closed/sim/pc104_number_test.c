@@ -60,6 +60,26 @@ TEST(takes_random_numbers_alike)
     }
 }
 
+/* Just above a half, with more than 18 places: exact, which a double is not. */
+TEST(rounds_once_however_small)
+{
+    static const struct {
+        const char *text;
+        unsigned frac;
+        int32_t raw;
+    } row[] = {{"1136869e-19", 42, 1}, {"1136868e-19", 42, 0}, {"3410606e-19", 42, 2},
+        {"-3410606e-19", 42, -2}, {"37257559597493e-19", 30, 4001},
+        {"37257559597492e-19", 30, 4000}, {"38151741027832032e-19", 20, 4001},
+        {"909608388610650e-24", 42, 4001}, {"909608388610649e-24", 42, 4000},
+        {"341060513164848090e-30", 42, 2}, {"341060513164848089e-30", 42, 1},
+        {"999999999999999999e-19", 31, 214748365}, {"5e-19", 0, 0}, {"1e-1000", 42, 0}};
+    for (unsigned i = 0; i < sizeof row / sizeof row[0]; i++) {
+        int32_t raw = -1;
+        CHECK(pc104_number(row[i].text, row[i].frac, &raw) == 0 && raw == row[i].raw,
+            "%s q%u: %" PRId32, row[i].text, row[i].frac, raw);
+    }
+}
+
 TEST(refuses_what_is_no_number)
 {
     static const char *const text[] = {"", "-", "+", ".", "e3", "1e", "1e+", "1x", "0x10", "1 2",
@@ -72,4 +92,4 @@ TEST(refuses_what_is_no_number)
 }
 
 TEST_MAIN("pc104_number", takes_what_the_host_takes, takes_random_numbers_alike,
-    refuses_what_is_no_number);
+    rounds_once_however_small, refuses_what_is_no_number);
