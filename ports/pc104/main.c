@@ -42,10 +42,11 @@ static void before(uint32_t tick, struct exh_scene_in *in)
     pc104_scene_before(tick, in);
 }
 
-/* Which module set-up did not take, and what of it. */
+/* Which module set-up did not take, and what of it: an option that is refused. */
 static void say_refused(const struct exh_scene_calib *k)
 {
     if (k == NULL || k->refused == 0) { return; }
+    pc104_exit_code = PC104_EXIT_OPTION;
     say_version("calibration ", k->image_at + 1u);
     pc104_say(": ");
     pc104_say(k->what);

@@ -16,7 +16,7 @@ static uint8_t ring[RING_B];
 static struct pc104_fifo fifo = {ring, RING_B, 0, 0};
 static uint32_t unsent; /* bytes given up at the end */
 static uint32_t last_tick;
-static uint8_t started, dry, boxed;
+static uint8_t started, dry, boxed, begun;
 static const struct exh_scene *scene;
 
 /* --- the log --- */
@@ -105,6 +105,7 @@ void pc104_scene_start(const struct exh_scene *sc, struct exh_scene_board board)
 {
     boxed = (uint8_t)pc104_dump_open();
     started = pc104_par.log != PC104_LOG_OFF;
+    begun = 1;
     pc104_modbus_start(board);
     start_records(sc, board);
 }
@@ -138,10 +139,11 @@ void pc104_log_flush(void)
     pc104_dump_pause();
 }
 
-/* The step at which the last arming was refused. */
+/* The step at which the last arming was refused. Where no tick ran it was that of the dry ones, and
+ * whatever kept the loop from beginning has been told. */
 static void say_refusal(const struct exh_safety *s)
 {
-    for (unsigned k = 0; k < EXH_ARMS; k++) {
+    for (unsigned k = 0; begun && k < EXH_ARMS; k++) {
         if (s->refused == 1u << k) {
             pc104_say("arming refused at ");
             pc104_say(exh_arm_name(k));

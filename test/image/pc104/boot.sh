@@ -44,6 +44,11 @@ says()
     tr -d '\r' <"$out/said" | grep -aqE "$1" || fail "no line '$1'"
 }
 
+says_not() # PATTERN
+{
+    tr -d '\r' <"$out/said" | grep -aqE "$1" && fail "a line '$1'"
+}
+
 # safe STATUS PATTERN OPTION...: nothing was said in the loop before the outputs were safe
 safe()
 {
@@ -127,15 +132,15 @@ if [ -x "$exhand" ]; then
     export MODULES=$out/0/calibration.bin
     boots 0 '^module 1: calibration, 132 bytes$' ticks=1000 device_id=1 day=20090
     says ', enable 0x00000001$'
-    boots 1 '^calibration 1: device: refused$' ticks=1000 day=20000
-    boots 1 '^calibration 1: age: refused$' ticks=1000 device_id=1
-    boots 1 '^calibration 1: age: refused$' ticks=1000 device_id=1 day=20091
-    boots 1 '^calibration 1: scale or zero of D/A or monitor: refused$' ticks=1000 device_id=1 \
+    boots 2 '^calibration 1: device: refused$' ticks=1000 day=20000
+    boots 2 '^calibration 1: age: refused$' ticks=1000 device_id=1
+    boots 2 '^calibration 1: age: refused$' ticks=1000 device_id=1 day=20091
+    boots 2 '^calibration 1: scale or zero of D/A or monitor: refused$' ticks=1000 device_id=1 \
         day=20000 dac_zero=32700
     says '^calibration too old, or made before a change$'
     MODULES=$out/1.bin
     head -c 100 "$out/0/calibration.bin" >"$MODULES"
-    boots 1 '^calibration 1: image: refused$' ticks=1000 device_id=1 day=20000 uncalibrated=1
+    boots 2 '^calibration 1: image: refused$' ticks=1000 device_id=1 day=20000 uncalibrated=1
     image=$1/bilateral-none.elf
     MODULES=$out/0/calibration.bin
     # of the index finger there is none
@@ -147,7 +152,7 @@ if [ -x "$exhand" ]; then
     says ', enable 0x00000003$'
     image=$1/drop-none.elf
     MODULES=$out/1/calibration.bin
-    boots 1 '^calibration 1: finger: refused$' ticks=1000 device_id=1 day=20000
+    boots 2 '^calibration 1: finger: refused$' ticks=1000 device_id=1 day=20000
     unset MODULES
 fi
 
@@ -249,6 +254,7 @@ QEMU_CPU=pentium2 boots 0 '^done$' ticks=100
 # Nothing there: every card that the scene uses is named with its address.
 image=$1/drop.elf
 boots 4 '^card S526 A at 0x02C0: detect: no answer' ticks=10
+says_not '^arming refused' # dry ticks', and no cause
 boots 4 '^card S526 A at 0x0240: detect: no answer' s526_a=576
 image=$1/bilateral.elf
 boots 4 '^card S526 A at 0x02C0: detect: no answer' ticks=10
