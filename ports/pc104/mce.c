@@ -4,9 +4,9 @@
  * is set exception 18 comes, which ends as every other does: outputs safe first.
  *
  * A bank reports what its control register enables; these are set up as Intel's manual says
- * (Software Developer's Manual, volume 3, "Machine-Check Initialization"). Every core and thread
- * gets a machine check, and one that was never started shuts the machine down all the same: so
- * docs/BRINGUP.md wants one of them alone. */
+ * (Software Developer's Manual, volume 3, "Machine-Check Initialization"). Intel's
+ * processors give it to each core and thread, and one that was never started shuts the machine down
+ * all the same: so docs/BRINGUP.md wants one of them alone. */
 #include "pc104.h"
 
 #define CPUID_MCE    (1u << 7)
