@@ -139,9 +139,8 @@ static void heard(
     const int same = is->session == was->session;
     MUST(is->session != 0 && is->seq == seq && is->open == 0 && is->quiet_us == 0);
     if (same && ahead - 1 < EXH_WIRE_AHEAD) { return; }
-    MUST(type == EXH_WIRE_HELLO && (was->open || !same));
+    MUST(type == EXH_WIRE_HELLO && (was->open || was->session == 0));
     MUST(!same || ahead != 0);
-    MUST(was->open || is->session != was->former);
     MUST(is->former == (same ? was->former : was->session));
 }
 

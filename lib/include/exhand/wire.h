@@ -3,7 +3,8 @@
  *
  * A packet may be lost, late, twice, out of order or damaged; nothing is sent again but
  * parameters, by who set them. So each stands alone, and a receiver takes it only if it is
- * newer than all before; after a silence a HELLO begins anew. Little-endian, byte by byte:
+ * newer than all before; after a silence, and only then, a HELLO begins anew. Byte by byte,
+ * little-endian:
  *
  *    0  u16 magic 0x5758    2  u8 version    3  u8 type    4  u16 payload length
  *    6  u32 session        10  u32 sequence 14  u32 time stamp, us
@@ -28,6 +29,7 @@ extern "C" {
 #define EXH_WIRE_VERSION  3       /* 2: HELLO had no pulls */
 #define EXH_WIRE_MAGIC    0x5758u /* first bytes of every packet, "XW" */
 #define EXH_WIRE_OVERHEAD 22      /* bytes around a payload */
+#define EXH_WIRE_SEAL_B   24      /* behind a packet of a link with a key (keyed.h) */
 #define EXH_WIRE_MAX_B    256     /* no packet is longer */
 #define EXH_WIRE_NEVER_MS 65535u  /* age: never, or so old */
 #define EXH_WIRE_FRAMES   11      /* of a trace in a packet, at most */
@@ -187,9 +189,9 @@ struct exh_wire_rx {
     uint32_t duplicate;       /* came before, or was sent before its session's HELLO */
     uint32_t reordered;       /* late: a newer one had come */
     uint32_t old;             /* more than 63 late, or of the session before */
-    uint32_t stranger;        /* of a session that has not said HELLO */
+    uint32_t stranger;        /* of a session that has not begun */
     uint32_t corrupt;         /* magic, length, CRC, or a value that cannot be */
-    uint32_t version;         /* another than ours */
+    uint32_t version;         /* another than ours; or with a key, and we have none */
     uint32_t unknown;         /* type */
     uint32_t far;             /* more than EXH_WIRE_AHEAD ahead */
     uint32_t silences;        /* how often it became open */
@@ -205,10 +207,11 @@ int exh_wire_poll(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us)
 /* One datagram. Its type, > 0, when it was accepted. Only then *p is written, and of its u what
  * that type has; and more changes than a counter (and, of a reordered one, that it came). Else
  * -EXH_E_SHORT, -EXH_E_CRC (also a value that cannot be), -EXH_E_VERSION, -EXH_E_UNKNOWN,
- * -EXH_E_STATE (stranger), -EXH_E_STALE (duplicate, reordered, old), -EXH_E_RANGE (far). A HELLO of
- * a new session is taken whatever its sequence number: the peer has started anew. A PARAM or ACK
- * that came late, but not before, is taken, too, once. So is, of an open receiver, any HELLO but
- * the newest packet itself once more. Reads len_B bytes at most. */
+ * -EXH_E_STATE (stranger), -EXH_E_STALE (duplicate, reordered, old), -EXH_E_RANGE (far). The first
+ * HELLO begins. Then another session is a stranger, be it HELLO, as long as this one is heard: only
+ * an open receiver takes any HELLO but the newest packet itself once more: the peer has started
+ * anew. A PARAM or ACK that came late, but not before, is taken, too, once. Reads len_B bytes at
+ * most. */
 int exh_wire_decode(
     struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf, size_t len_B);
 

@@ -199,9 +199,10 @@ static int read_packet(struct exh_wire_rx *rx, struct head *h, struct exh_wire_p
     const uint8_t *buf, size_t len_B)
 {
     struct exh_bytes c = exh_bytes_reader(buf, len_B);
-    uint32_t crc = 0;
+    uint32_t crc = 0, whole_B;
     head_bytes(&c, h);
-    if (!exh_bytes_ok(&c) || len_B != HEAD_B + h->len_B + CRC_B) {
+    whole_B = HEAD_B + h->len_B + CRC_B;
+    if (!exh_bytes_ok(&c) || (len_B != whole_B && len_B != whole_B + EXH_WIRE_SEAL_B)) {
         rx->corrupt++;
         return -EXH_E_SHORT;
     }
@@ -212,7 +213,7 @@ static int read_packet(struct exh_wire_rx *rx, struct head *h, struct exh_wire_p
         rx->corrupt++;
         return -EXH_E_CRC;
     }
-    if (h->version != EXH_WIRE_VERSION) {
+    if (h->version != EXH_WIRE_VERSION || len_B != whole_B) { /* longer: with a key; we have none */
         rx->version++;
         return -EXH_E_VERSION;
     }
@@ -245,12 +246,13 @@ static int is_next(const struct exh_wire_rx *rx, const struct head *h)
     return h->session == rx->session && h->seq - rx->seq - 1u < EXH_WIRE_AHEAD;
 }
 
-/* The peer has started anew; or none has been heard for long, and this one is there. */
+/* The first; or the peer was not heard for long, and this one is there. While it is heard no other
+ * session begins: who sends HELLOs of fresh ones would keep it out. */
 static int begins(const struct exh_wire_rx *rx, const struct head *h)
 {
     if (h->type != EXH_WIRE_HELLO) { return 0; }
     if (h->session == rx->session) { return rx->open && h->seq != rx->seq; }
-    return rx->open || h->session != rx->former;
+    return rx->open || rx->session == 0;
 }
 
 /* Of the session, and not next: the error, counted. */

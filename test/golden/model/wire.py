@@ -13,7 +13,7 @@ LENGTH = {HELLO: 29, TELL: 214, PLANES: 209, PARAM: 8, ACK: 14, TRACE_ASK: 12, T
 MASKS = {TELL: (4, 6, 7), PLANES: (8,)}
 COUNTS = ("accepted missing duplicate reordered old stranger corrupt version unknown far "
           "silences").split()
-AHEAD, QUIET = 1 << 16, 1000000
+AHEAD, QUIET, SEAL = 1 << 16, 1000000, 24
 
 
 def sealed(head):
@@ -71,12 +71,14 @@ class Receiver:
 
     def take(self, p):
         """The type, or the negative error."""
-        if len(p) < 18 or len(p) != 22 + unpack_from("<H", p, 4)[0]:
+        more = len(p) - 22 - unpack_from("<H", p, 4)[0] if len(p) >= 18 else -1
+        if more not in (0, SEAL):
             return self.wrong("corrupt", SHORT)
+        p = p[:len(p) - more]
         magic, version, kind, n, session, seq = unpack_from("<HBBHII", p)
         if magic != 0x5758 or session == 0 or sealed(p[:-4]) != p:
             return self.wrong("corrupt", CRC)
-        if version != 3:
+        if version != 3 or more:
             return self.wrong("version", VERSION)
         if kind not in LENGTH:
             return self.wrong("unknown", UNKNOWN)
@@ -87,8 +89,7 @@ class Receiver:
             self.seq, self.seen = seq, (self.seen << min(ahead, 64) | 1) & (1 << 64) - 1
             self.count["missing"] = self.count["missing"] + ahead - 1 & M32
             return self.accepted(kind)
-        if kind == HELLO and (self.open and not (same and ahead == 0) or
-                              session not in (self.session, self.former)):
+        if kind == HELLO and (self.open and not (same and ahead == 0) or self.session == 0):
             if not same:
                 self.former = self.session
             self.session, self.seq, self.seen = session, seq, (1 << 64) - 1

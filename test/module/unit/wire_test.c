@@ -319,8 +319,8 @@ static void recovers(struct exh_wire_rx *rx)
 
 TEST(no_packet_makes_it_deaf_for_good)
 {
-    struct exh_wire_rx rx = met(8, 5);
-    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 9, 100)), EXH_WIRE_HELLO);
+    struct exh_wire_rx rx = met(9, 100);
+    (void)exh_wire_poll(&rx, LIMIT_US, LIMIT_US);
     CHECK_EQ_I64(
         take(&rx, write_as(EXH_WIRE_HELLO, 7, 3)), EXH_WIRE_HELLO); /* long gone, and late */
     recovers(&rx);
@@ -406,6 +406,7 @@ TEST(a_restart_is_seen_by_its_hello)
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 9, 1)), EXH_WIRE_HELLO);
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 9, 50000)), EXH_WIRE_PLANES);
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 10, 1)), -EXH_E_STATE);
+    (void)exh_wire_poll(&rx, LIMIT_US, LIMIT_US);
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 10, 0)), EXH_WIRE_HELLO);
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 9, 50001)), -EXH_E_STALE);
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 9, 50002)), -EXH_E_STALE);
@@ -413,6 +414,48 @@ TEST(a_restart_is_seen_by_its_hello)
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 10, 1)), EXH_WIRE_PLANES);
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 10, 0)), -EXH_E_STALE);
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 10, 2)), EXH_WIRE_HELLO);
+}
+
+/* One HELLO of a fresh session every 0.1 ms, and the peer goes on: none begins. It starts again,
+ * in the same flood: it is heard as soon as a second is over, if its HELLO is the first then. */
+TEST(a_flood_of_sessions_keeps_nobody_out)
+{
+    struct exh_wire_rx rx = met(9, 0);
+    uint32_t fresh = 1000, anew = 0, us = 0;
+    for (uint32_t k = 1; k <= 20000; k++) {
+        (void)exh_wire_poll(&rx, 100, LIMIT_US);
+        CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, fresh++, k)), -EXH_E_STATE);
+        if (k % 20 == 0) {
+            CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 9, k / 20)), EXH_WIRE_PLANES);
+        }
+    }
+    CHECK(rx.session == 9 && rx.stranger == 20000 && rx.silences == 0, "kept out");
+    while (take(&rx, write_as(EXH_WIRE_HELLO, 8, anew++)) < 0) {
+        CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, fresh++, 1)), -EXH_E_STATE);
+        (void)exh_wire_poll(&rx, 100, LIMIT_US);
+        us += 100;
+    }
+    CHECK(us == LIMIT_US && rx.session == 8 && rx.silences == 1, "after %" PRIu32 " us", us);
+    CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 8, anew)), EXH_WIRE_PLANES);
+}
+
+/* Whole, and 24 bytes behind it: of a link with a key. */
+TEST(a_packet_with_a_key_is_another_form)
+{
+    const struct exh_wire_rx was = met(9, 0);
+    uint8_t longer[EXH_WIRE_MAX_B + 64] = {0};
+    const uint32_t n = write_as(EXH_WIRE_PLANES, 9, 1);
+    memcpy(longer, buf, n);
+    for (uint32_t more = 0; more < 64; more++) {
+        struct exh_wire_rx rx = was;
+        struct exh_wire_packet p;
+        const int r = exh_wire_decode(&rx, &p, longer, n + more);
+        CHECK(r == (more == 0                    ? EXH_WIRE_PLANES
+                       : more == EXH_WIRE_SEAL_B ? -EXH_E_VERSION
+                                                 : -EXH_E_SHORT),
+            "%" PRIu32 " more", more);
+        CHECK(rx.version == (more == EXH_WIRE_SEAL_B), "%" PRIu32 " more", more);
+    }
 }
 
 TEST(writing_refuses)
@@ -500,5 +543,6 @@ TEST_MAIN("unit/wire", bytes_are_those_of_the_document, there_and_back,
     parameters_and_answers_may_be_late_but_once, sequence_numbers_wrap, far_ahead_is_not_believed,
     no_packet_makes_it_deaf_for_good, silence_is_only_what_is_heard_of_nobody,
     what_differs_is_said_by_name, a_step_over_all_that_is_remembered,
-    a_restart_is_seen_by_its_hello, writing_refuses, planes_and_round_trip,
+    a_restart_is_seen_by_its_hello, a_flood_of_sessions_keeps_nobody_out,
+    a_packet_with_a_key_is_another_form, writing_refuses, planes_and_round_trip,
     parameters_are_staged_and_answered, state_round_trip);
