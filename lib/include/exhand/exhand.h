@@ -78,6 +78,7 @@
 #include "exhand/probe.h"
 
 /* talking */
+#include "exhand/keyed.h"
 #include "exhand/mac.h"
 #include "exhand/modbus.h"
 #include "exhand/modbus_rtu.h"

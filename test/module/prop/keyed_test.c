@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: MIT */
+/* keyed.h against who records, holds back, repeats, reorders, damages and makes up packets, of runs
+ * of both ends that come and go: not one of them acts that the model does not hold for said now. */
+#include "exhand/keyed.h"
+
+#include "check.h"
+
+#define KEPT 256 /* recorded packets, the oldest are written over now and then */
+
+struct kept {
+    uint8_t byte[EXH_KEYED_MAX_B];
+    size_t len_B;
+    uint32_t world, box; /* runs of who said it, and of whom it had heard last */
+    uint64_t number;     /* of what was said in this run; 0: by the box */
+    uint8_t touched;
+};
+
+static struct kept kept[KEPT];
+static struct exh_keyed box, world;
+static uint32_t worlds, boxes; /* runs so far */
+static uint32_t heard_box;     /* run of the box that the world heard last */
+static struct exh_mac_key key, other;
+
+static void start(struct exh_keyed *s, enum exh_wire_role role, uint32_t *runs)
+{
+    exh_keyed_setup(s, &key, role, check_u64());
+    ++*runs;
+}
+
+static struct kept *any(void) { return &kept[check_u64() % KEPT]; }
+
+static struct kept *say(struct exh_keyed *s, const struct exh_mac_key *by, uint64_t number)
+{
+    struct exh_wire_tx tx = {5, (uint32_t)check_u64()};
+    struct exh_wire_packet p = {.type = EXH_WIRE_PARAM};
+    struct kept *k = any();
+    const struct exh_mac_key was = s->key;
+    k->len_B = (size_t)exh_wire_encode(&tx, &p, 0, k->byte, sizeof k->byte);
+    s->key = *by;
+    k->len_B = (size_t)exh_keyed_encode(s, k->byte, k->len_B, sizeof k->byte);
+    s->key = was;
+    k->world = worlds;
+    k->box = heard_box;
+    k->number = number;
+    k->touched = by != &key;
+    return k;
+}
+
+/* One change of any kind. */
+static void spoil(struct kept *k)
+{
+    const struct kept was = *k, *const from = any();
+    const size_t at = (size_t)(check_u64() % k->len_B);
+    const size_t tail_B = EXH_KEYED_B - check_u64() % 2 * EXH_MAC_B;
+    switch (check_u64() % 4) {
+    case 0: k->byte[at] = (uint8_t)(k->byte[at] ^ 1u << check_u64() % 8); break;
+    case 1: k->len_B = at; break;
+    case 2: /* another packet's number, echo and perhaps tag behind this one */
+        if (from->len_B < EXH_KEYED_B) { break; }
+        memcpy(k->byte + k->len_B - EXH_KEYED_B, from->byte + from->len_B - EXH_KEYED_B, tail_B);
+        break;
+    default: k->len_B -= EXH_KEYED_B; break;
+    }
+    k->touched |= k->len_B != was.len_B || memcmp(k->byte, was.byte, k->len_B) != 0;
+}
+
+static void listen(const struct kept *k)
+{
+    if (exh_keyed_decode(&world, k->byte, k->len_B) >= 0) { heard_box = boxes; }
+}
+
+TEST(nothing_recorded_acts)
+{
+    uint64_t acted = 0, tried = 0;
+    const uint8_t a[EXH_MAC_KEY_B] = {1}, b[EXH_MAC_KEY_B] = {2};
+    key = exh_mac_key(a);
+    other = exh_mac_key(b);
+    while (check_case(100)) {
+        uint32_t believed = 0; /* run of the world */
+        uint64_t said = 0, seen[4096 / 64] = {0};
+        memset(kept, 0, sizeof kept);
+        worlds = boxes = heard_box = 0;
+        start(&box, EXH_WIRE_CONTROLLER, &boxes);
+        start(&world, EXH_WIRE_WORLD, &worlds);
+        for (int step = 0; step < 100; step++) {
+            const unsigned what = (unsigned)(check_u64() % 64);
+            struct kept k;
+            int32_t r;
+            if (what == 0) { start(&box, EXH_WIRE_CONTROLLER, &boxes), believed = 0; }
+            if (what == 1) { start(&world, EXH_WIRE_WORLD, &worlds), heard_box = 0, said = 0; }
+            if (what < 16) { listen(say(&box, &key, 0)); }
+            if (what < 24) {
+                k = *say(&world, check_u64() % 8 ? &key : &other, ++said);
+            } else {
+                k = *any();
+            }
+            if (k.len_B > EXH_KEYED_B && check_u64() % 4 == 0) { spoil(&k); }
+            tried++;
+            r = exh_keyed_decode(&box, k.byte, k.len_B);
+            if (r <= 0) { continue; }
+            acted++;
+            CHECK(!k.touched && k.number > 0, "spoilt, or of the box itself");
+            CHECK(k.box == boxes, "said to a run of the box that is over");
+            CHECK(k.world >= believed, "run %" PRIu32 " after %" PRIu32, k.world, believed);
+            if (k.world != believed) { memset(seen, 0, sizeof seen); }
+            believed = k.world;
+            CHECK(!(seen[k.number / 64] >> k.number % 64 & 1), "twice");
+            seen[k.number / 64] |= UINT64_C(1) << k.number % 64;
+        }
+    }
+    CHECK(tried == 0 || acted > tried / 1000, "nothing was said: %d of %d", (int)acted, (int)tried);
+}
+
+/* Whatever was thrown at both, two that are there find each other in three packets. */
+TEST(those_that_are_there_are_heard)
+{
+    const uint8_t a[EXH_MAC_KEY_B] = {1};
+    key = exh_mac_key(a);
+    while (check_case(1000)) {
+        memset(kept, 0, sizeof kept);
+        worlds = boxes = 0;
+        start(&box, EXH_WIRE_CONTROLLER, &boxes);
+        start(&world, EXH_WIRE_WORLD, &worlds);
+        for (int step = 0; step < 60; step++) {
+            const struct kept *k = any();
+            if (check_u64() % 16 == 0) { start(&world, EXH_WIRE_WORLD, &worlds); }
+            if (check_u64() % 16 == 0) { start(&box, EXH_WIRE_CONTROLLER, &boxes); }
+            (void)exh_keyed_decode(&world, say(&box, &key, 0)->byte, any()->len_B);
+            (void)exh_keyed_decode(&box, say(&world, &key, 1)->byte, any()->len_B);
+            if (k->len_B > 0) { (void)exh_keyed_decode(&box, k->byte, k->len_B); }
+        }
+        for (int k = 0; k < 2; k++) {
+            const struct kept *d = say(&world, &key, 1);
+            (void)exh_keyed_decode(&box, d->byte, d->len_B);
+            d = say(&box, &key, 0);
+            (void)exh_keyed_decode(&world, d->byte, d->len_B);
+        }
+        {
+            const struct kept *d = say(&world, &key, 1);
+            CHECK(exh_keyed_decode(&box, d->byte, d->len_B) > 0, "the box is deaf");
+            d = say(&box, &key, 0);
+            CHECK(exh_keyed_decode(&world, d->byte, d->len_B) > 0, "the world is deaf");
+        }
+    }
+}
+
+TEST_MAIN("prop/keyed", nothing_recorded_acts, those_that_are_there_are_heard);
