@@ -19,6 +19,7 @@ static struct {
     uint64_t frames;
     struct exh_wire_rx rx; /* what comes to the socket, for whom it comes from */
     double heard_s;
+    struct exh_keyed keyed;
 } line;
 
 struct posix_line posix_line_default(void)
@@ -41,6 +42,10 @@ int line_start(const struct posix_line *cfg, uint64_t seed)
     line.cfg = *cfg;
     line.frames = 0;
     memset(&line.rx, 0, sizeof line.rx);
+    if (cfg->key) {
+        exh_keyed_setup(&line.keyed, cfg->key, EXH_WIRE_CONTROLLER,
+            line.keyed.next ? line.keyed.next : cfg->key_start);
+    }
     line.heard_s = 0;
     if (!cfg->on) { return 0; }
     for (unsigned k = 0; k < SIM_LINK_WAYS; k++) {
@@ -54,6 +59,11 @@ int line_start(const struct posix_line *cfg, uint64_t seed)
     return 0;
 }
 
+const struct exh_keyed *posix_line_keyed(void)
+{
+    return line.udp_open && line.cfg.key ? &line.keyed : NULL;
+}
+
 uint64_t posix_line_strangers(void) { return line.udp_open ? line.udp.strangers : 0; }
 
 struct sim_link *posix_link(void) { return &line.link; }
@@ -65,17 +75,34 @@ static void learn(const void *buf, size_t len_B)
     if (exh_wire_decode(&line.rx, &p, buf, len_B) > 0) { udp_learn(&line.udp); }
 }
 
+/* What a socket with a key brings: > 0 bytes that go on. Whoever has the key and begins is answered
+ * while nobody else is heard, or neither would ever have heard of the other. */
+static int opened(const void *buf, int n)
+{
+    const int r = line.cfg.key ? (int)exh_keyed_decode(&line.keyed, buf, (size_t)n) : n;
+    if (r == 0 && (line.rx.session == 0 || line.rx.open)) { udp_learn(&line.udp); }
+    return r;
+}
+
+static void put(uint8_t *buf, int n, size_t cap_B)
+{
+    if (line.cfg.key) { n = (int)exh_keyed_encode(&line.keyed, buf, (size_t)n, cap_B); }
+    (void)udp_send(&line.udp, buf, (size_t)n);
+}
+
 /* Between the ways and the socket. */
 static void pump(double now_s)
 {
-    uint8_t buf[SIM_LINK_PACKET_B];
+    uint8_t buf[SIM_LINK_PACKET_B + EXH_KEYED_B];
     int n;
     (void)exh_wire_poll(&line.rx, (uint32_t)fmin(1e6 * (now_s - line.heard_s), 4e9), QUIET_US);
     line.heard_s = now_s;
-    while ((n = sim_link_recv(&line.link.way[SIM_LINK_OUT], now_s, buf, sizeof buf)) > 0) {
-        (void)udp_send(&line.udp, buf, (size_t)n);
+    while ((n = sim_link_recv(&line.link.way[SIM_LINK_OUT], now_s, buf, SIM_LINK_PACKET_B)) > 0) {
+        put(buf, n, sizeof buf);
     }
     for (int k = 0; k < PUMP && (n = udp_recv(&line.udp, buf, sizeof buf)) > 0; k++) {
+        n = opened(buf, n);
+        if (n <= 0) { continue; }
         if (line.udp.learns) { learn(buf, (size_t)n); }
         (void)sim_link_send(&line.link.way[SIM_LINK_IN], now_s, buf, (size_t)n);
     }

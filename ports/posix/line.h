@@ -6,6 +6,8 @@
 
 #include "sim/link.h"
 
+#include "exhand/keyed.h"
+
 #include <stdint.h>
 
 struct posix_line {
@@ -21,6 +23,10 @@ struct posix_line {
     /* Or a socket: "127.0.0.1:4747" and where the peer is, NULL: whoever sends. Real time:
      * for runs that follow the wall clock. */
     const char *udp_local, *udp_peer;
+    /* Of the socket; NULL: none. key_start: where numbers begin (key_start()); they go on from run
+     * to run. */
+    const struct exh_mac_key *key;
+    uint64_t key_start;
 };
 
 struct posix_line posix_line_default(void);
@@ -37,6 +43,9 @@ int line_recv(double now_s, void *buf, size_t cap_B);
 
 /* Packets that came to the socket from elsewhere than its peer. */
 uint64_t posix_line_strangers(void);
+
+/* What came to a socket with a key, counted; NULL: there is no key. */
+const struct exh_keyed *posix_line_keyed(void);
 
 /* The ways, for their counts and for changes on the way. */
 struct sim_link *posix_link(void);

@@ -23,7 +23,7 @@ struct bilateral_options {
     int speeds;
     int64_t approaches, seed, seeds, jobs;
     int study, cards; /* study: the lab runs many */
-    const char *scene, *out, *udp, *link, *record, *columns;
+    const char *scene, *out, *udp, *key, *link, *record, *columns;
     double record_Hz;
     struct run_setting setting[BILATERAL_SETTINGS_MAX];
     int settings;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "box/world_line.h"
 
+#include "base/key.h"
 #include "base/option.h"
 #include "box/hand.h"
 
@@ -20,6 +21,7 @@ enum presence { AWAITED, ABSENT, THERE, SILENT };
 
 static const char *given; /* by --udp */
 static char address[INET_ADDRSTRLEN + 8];
+static struct exh_mac_key secret;
 
 static struct {
     enum presence is;
@@ -53,7 +55,16 @@ static int resolve(const char *host, struct in_addr *to)
     return 0;
 }
 
-int world_line_use(const char *text, struct posix_line *line)
+static int use_key(const char *path, struct posix_line *line)
+{
+    const int err = path ? key_read(path, &secret) : 0;
+    if (path == NULL || err) { return err; }
+    line->key = &secret;
+    line->key_start = key_start();
+    return 0;
+}
+
+static int use_address(const char *text, struct posix_line *line)
 {
     const char *colon = strrchr(text, ':');
     const size_t len = colon ? (size_t)(colon - text) : 0;
@@ -81,6 +92,18 @@ int world_line_use(const char *text, struct posix_line *line)
     return 0;
 }
 
+int world_line_use(const char *text, const char *key, struct posix_line *line)
+{
+    int err;
+    if (text == NULL && key == NULL) { return 0; }
+    if (text == NULL) {
+        cli_complain("--key: %s: goes with --udp: a world in this process needs none", key);
+        return 2;
+    }
+    err = use_address(text, line);
+    return err ? err : use_key(key, line);
+}
+
 /* --- whether it is there --- */
 
 void world_line_start(void)
@@ -89,10 +112,25 @@ void world_line_start(void)
     world.anew_s = -AGAIN_S;
 }
 
+/* Packets come, and the keys do not fit. */
+static const char *misfit(const struct bilateral_box *box)
+{
+    const struct exh_keyed *k = posix_line_keyed();
+    if (k == NULL) { return box->version ? "of another version, or with a key: give --key" : NULL; }
+    if (k->other_key) { return "with another key: give both the same file"; }
+    if (k->no_key) { return "without a key: start it with --key, or leave --key out here"; }
+    return NULL;
+}
+
 static void absent(const struct bilateral_box *box)
 {
     const int odd = box->corrupt + box->version + box->unknown;
+    const char *const keys = misfit(box);
     world.is = ABSENT;
+    if (keys) {
+        cli_complain("--udp %s: no world answers: packets come %s", given, keys);
+        return;
+    }
     if (odd) {
         cli_complain("--udp %s: no world answers: %d packets came that no world of this version "
                      "sends: build both of one source",
@@ -173,10 +211,16 @@ const char *world_line_word(void)
 
 void world_line_print(FILE *f, const struct bilateral_box *box)
 {
+    const struct exh_keyed *const k = posix_line_keyed();
     fprintf(f,
         "world %s: %" PRId32 " packets came, %" PRId32 " missing, %" PRId32
         " refused; %lu sessions; %" PRIu64 " packets of other senders\n",
         given, box->accepted, box->missing,
         box->corrupt + box->version + box->unknown + box->stranger + box->far, world.sessions,
         posix_line_strangers());
+    if (k == NULL) { return; }
+    fprintf(f,
+        "key: %" PRIu32 " packets taken; %" PRIu32 " without a key, %" PRIu32
+        " of another key, %" PRIu32 " not proved, %" PRIu32 " again, %" PRIu32 " damaged\n",
+        k->taken, k->no_key, k->other_key, k->unproved, k->again, k->damaged);
 }

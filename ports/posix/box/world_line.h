@@ -11,8 +11,9 @@
 struct bilateral_box;
 
 /* What --udp gives: HOST:PORT, a name or numbers. The board's line leads there, from any port of
- * ours. 0, or 2 after a line on stderr. */
-int world_line_use(const char *given, struct posix_line *line);
+ * ours, with the key in the file that --key gives (NULL: none). Without --udp none goes with it. 0,
+ * or 2 after a line on stderr. */
+int world_line_use(const char *given, const char *key, struct posix_line *line);
 
 /* The device is simulated, so a tick that another program delayed is made up for: both ends are to
  * be tried, not this machine. */

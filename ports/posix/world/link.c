@@ -88,6 +88,12 @@ void link_close(struct link *l)
     l->fd = -1;
 }
 
+void link_key(struct link *l, const struct exh_mac_key *key, uint64_t start)
+{
+    exh_keyed_setup(&l->keyed, key, EXH_WIRE_WORLD, start);
+    l->has_key = 1;
+}
+
 static int same_peer(const struct sockaddr_storage *a, const struct sockaddr_storage *b)
 {
     const struct sockaddr_in *a4 = (const void *)a, *b4 = (const void *)b;
@@ -139,6 +145,42 @@ static void say_what_differs(const struct link *l)
     }
 }
 
+/* Once each: packets come, and the keys do not fit. */
+static void say_misfit(struct link *l)
+{
+    const struct {
+        uint32_t n;
+        const char *text;
+    } what[] = {
+        {l->keyed.no_key, "--key: packets come without a key: start the controller with --key, or "
+                          "leave --key out here"},
+        {l->keyed.other_key, "--key: packets come with another key: give both the same file"},
+        {l->has_key ? 0 : l->rx.version,
+            "packets come of another version, or with a key: build both of one source, or give "
+            "--key"}};
+    for (unsigned i = 0; i < sizeof what / sizeof what[0]; i++) {
+        if (what[i].n == 0 || l->misfits >> i & 1) { continue; }
+        l->misfits |= 1u << i;
+        if (l->say) { l->say(what[i].text); }
+    }
+}
+
+static void answer_to(struct link *l, const struct sockaddr_storage *from, socklen_t from_B)
+{
+    l->peer = *from;
+    l->peer_B = from_B;
+}
+
+/* With a key; > 0: so many bytes go on. Whoever has the key and begins is answered while nobody
+ * else is heard, or neither would ever have heard of the other. */
+static int32_t opened(struct link *l, const unsigned char *buf, ssize_t n,
+    const struct sockaddr_storage *from, socklen_t from_B)
+{
+    const int32_t r = exh_keyed_decode(&l->keyed, buf, (size_t)n);
+    if (r == 0 && (l->rx.session == 0 || l->rx.open)) { answer_to(l, from, from_B); }
+    return r;
+}
+
 static void let_pass(struct link *l, int64_t now_us)
 {
     const int64_t us = now_us - l->heard_us;
@@ -157,15 +199,16 @@ int link_receive(struct link *l, struct exh_wire_state *state, int64_t now_us)
         socklen_t from_B = sizeof from;
         struct exh_wire_packet p;
         const uint32_t session = l->rx.session, was_open = l->rx.open;
-        const ssize_t n = recvfrom(l->fd, buf, sizeof buf, 0, (struct sockaddr *)&from, &from_B);
+        ssize_t n = recvfrom(l->fd, buf, sizeof buf, 0, (struct sockaddr *)&from, &from_B);
         if (n < 0) { break; }
         if (l->fixed && !same_peer(&from, &l->peer)) {
             l->strangers++;
             continue;
         }
+        if (l->has_key) { n = opened(l, buf, n, &from, from_B); }
+        if (l->has_key && n <= 0) { continue; }
         if (exh_wire_decode(&l->rx, &p, buf, (size_t)n) <= 0) { continue; }
-        l->peer = from;
-        l->peer_B = from_B;
+        answer_to(l, &from, from_B);
         if (p.type == EXH_WIRE_HELLO) { take_hello(l, &p.u.hello); }
         if (l->rx.session != session || (p.type == EXH_WIRE_HELLO && was_open)) {
             say_what_differs(l);
@@ -180,6 +223,7 @@ int link_receive(struct link *l, struct exh_wire_state *state, int64_t now_us)
         l->echo_stamp_us = p.stamp_us;
         newer = 1;
     }
+    say_misfit(l);
     return newer;
 }
 

@@ -6,6 +6,7 @@
 
 #include "scene_text.h"
 
+#include "exhand/keyed.h"
 #include "exhand/signal.h"
 #include "exhand/wire.h"
 
@@ -54,6 +55,9 @@ struct link {
     int fixed;        /* peer was given, and only it is listened to */
     struct exh_wire_tx tx;
     struct exh_wire_rx rx;
+    int has_key;
+    struct exh_keyed keyed;
+    unsigned misfits; /* of keys that were said, bits */
     uint32_t echo_seq, echo_stamp_us;
     int64_t hello_us; /* when the last HELLO went out */
     int64_t heard_us; /* when it was last looked what came */
@@ -76,6 +80,9 @@ struct link {
 int link_open(struct link *l, const char *listen, const char *peer, uint32_t session, char *error,
     size_t error_B);
 void link_close(struct link *l);
+
+/* From now on: only who has this key is heard. start: key_start(). */
+void link_key(struct link *l, const struct exh_mac_key *key, uint64_t start);
 
 /* The scene's materials, each checked against its row, are what the controller is to have: asked
  * for when it has said HELLO and till it answers, and again of one that has started anew. Planes

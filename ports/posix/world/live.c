@@ -10,6 +10,7 @@
 
 #include "bilateral/bilateral.h"
 #include "base/ends.h"
+#include "base/key.h"
 #include "base/option.h"
 #include "base/outfile.h"
 
@@ -309,6 +310,12 @@ static void report(const struct live *l)
             (unsigned long)rx->corrupt + rx->version + rx->unknown + rx->stranger + rx->far,
             l->link.refused);
     }
+    if (l->link.has_key) {
+        const struct exh_keyed *const k = &l->link.keyed;
+        printf("  no key %lu  another key %lu  not proved %lu  again %lu  damaged %lu",
+            (unsigned long)k->no_key, (unsigned long)k->other_key, (unsigned long)k->unproved,
+            (unsigned long)k->again, (unsigned long)k->damaged);
+    }
     putchar('\n');
 }
 
@@ -328,6 +335,15 @@ static int go(struct live *l)
 }
 
 static void complain(const char *text) { cli_complain("%s", text); }
+
+static int use_key(const struct run *r, struct link *l)
+{
+    struct exh_mac_key key;
+    const int err = r->key ? key_read(r->key, &key) : 0;
+    if (err) { link_close(l); }
+    if (r->key && !err) { link_key(l, &key, key_start()); }
+    return err;
+}
 
 static int open_trace(const struct run *r, struct link *l)
 {
@@ -365,7 +381,8 @@ int run_live(struct run *r)
         l.link.say = complain;
         l.link.table_crc = exh_signal_crc(&bilateral_params);
         link_materials(&l.link, world_scene(r->world));
-        status = open_trace(r, &l.link);
+        status = use_key(r, &l.link);
+        if (status == 0) { status = open_trace(r, &l.link); }
         if (status) { return status; }
     }
     pthread_mutex_init(&l.lock, NULL);

@@ -17,6 +17,8 @@
             "wait for a controller there (UDP); 127.0.0.1"}, \
         {"peer", CLI_TEXT, &(r).peer, 0, 0, "HOST:PORT", \
             "the controller is there; no other is listened to"}, \
+        {"key", CLI_TEXT, &(r).key, 0, 0, "FILE", \
+            "of both, 32 hexadecimal digits; a controller that lacks it is not heard"}, \
         {"fps", CLI_REAL, &(r).fps, 1, 2000, "N", "frames a second, each an exchange; 400"}, \
         {"frames", CLI_INT, &(r).frames, 1, 1e12, "N", "end after so many"}, \
         {"seconds", CLI_REAL, &(r).seconds, 0, 1e9, "S", "end after so long"}, \
@@ -66,6 +68,10 @@ static int check(struct run *r)
         cli_complain(
             "--video: works with --headless and without --listen and --peer: use --png, or leave "
             "the link away");
+        return 2;
+    }
+    if (r->key && !r->listen && !r->peer) {
+        cli_complain("--key: is a link's: give --listen or --peer");
         return 2;
     }
     if (r->trace && !r->listen && !r->peer) {

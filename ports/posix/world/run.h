@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 struct run {
-    const char *scene, *listen, *peer, *png, *list, *video, *trace, *trace_signals;
+    const char *scene, *listen, *peer, *key, *png, *list, *video, *trace, *trace_signals;
     double fps, seconds, video_fps;
     int64_t frames, width, height, samples; /* frames 0: no end */
     int64_t trace_every;

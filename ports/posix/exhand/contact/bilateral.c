@@ -179,8 +179,8 @@ static int go(struct bilateral_options *o, double rate_Hz, const struct bilatera
     if (err) { return err; }
     o->run.rate_Hz = (uint32_t)(rate_Hz + 0.5);
     own_gains(o);
+    if (world_line_use(o->udp, o->key, &o->run.board.line)) { return 2; }
     if (o->udp) {
-        if (world_line_use(o->udp, &o->run.board.line)) { return 2; }
         o->run.board.pace = 1;
         o->run.board.slack_s = WORLD_LINE_SLACK_S;
     }
@@ -239,6 +239,8 @@ static const struct cli_option option[] = {
     {"world-until", CLI_REAL, &is.run.until_s, 0, 1e30, "S", "it dies then (never)"},
     {"udp", CLI_TEXT, &is.udp, 0, 0, "HOST:PORT",
         "the world is another process there; in real time"},
+    {"key", CLI_TEXT, &is.key, 0, 0, "FILE",
+        "with --udp: of both, 32 hexadecimal digits; who lacks it is not heard"},
     {"cards", CLI_FLAG, &is.cards, 0, 0, NULL,
         "through the drivers and emulated cards: the same bits"},
     {"seed", CLI_INT, &is.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},

@@ -82,8 +82,8 @@ static int hand_of(struct live_options *o, const struct exh_scene *sc)
     struct sim_exo_par *const exo = &o->hand.run.board.exo;
     const struct {
         const char *name, *value;
-    } own[] = {
-        {"udp", o->udp}, {"record", o->record}, {"fingers", o->fingers}, {"speed", o->speed}};
+    } own[] = {{"udp", o->udp}, {"key", o->hand.key}, {"record", o->record},
+        {"fingers", o->fingers}, {"speed", o->speed}};
     int err = 0;
     if (o->hand.columns && o->record == NULL) {
         cli_complain("--record-columns: goes with --record");
@@ -96,10 +96,8 @@ static int hand_of(struct live_options *o, const struct exh_scene *sc)
         return 2;
     }
     if (o->slack_s < 0) { o->slack_s = o->udp && !o->gpio.given ? WORLD_LINE_SLACK_S : 0; }
-    if (o->udp) {
-        o->pace = 1;
-        err = world_line_use(o->udp, &o->hand.run.board.line);
-    }
+    o->pace |= o->udp != NULL;
+    err = world_line_use(o->udp, o->hand.key, &o->hand.run.board.line);
     if (err || o->record == NULL) { return err; }
     err = hand_record_read(&o->recorded, o->record, o->hand.columns, o->record_Hz, exo);
     if (err == 0) { err = hand_record_again(&o->recorded); }
@@ -262,6 +260,8 @@ int cli_run(int argc, char **argv)
             "of bilateral: slow, natural, fast or m/s (natural)"},
         {"udp", CLI_TEXT, &o.udp, 0, 0, "HOST:PORT",
             "of bilateral: the world is another process there; with --pace"},
+        {"key", CLI_TEXT, &o.hand.key, 0, 0, "FILE",
+            "with --udp: of both, 32 hexadecimal digits; who lacks it is not heard"},
         {"record", CLI_TEXT, &o.record, 0, 0, "FILE", "of bilateral: fingers do this recording"},
         {"record-rate", CLI_REAL, &o.record_Hz, 0.1, 10000, "HZ",
             "of its rows, if they have no clock (100)"},
