@@ -173,7 +173,7 @@ static void datagrams(const struct bytes *b)
 {
     static struct pieces p;
     struct pieces_part part;
-    pieces_open(&p, NULL);
+    pieces_open(&p, NULL, NULL);
     for (size_t at = 0; at + 2 <= b->n;) {
         const size_t asked = (size_t)b->byte[at] | (size_t)(b->byte[at + 1] & 0x7F) << 8;
         const size_t left = b->n - at - 2, n = asked < left ? asked : left;

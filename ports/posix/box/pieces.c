@@ -12,9 +12,10 @@
 
 #define HALF UINT32_C(0x80000000) /* of the numbers modulo 2^32 */
 
-void pieces_open(struct pieces *p, const struct sockaddr_in *peer)
+void pieces_open(struct pieces *p, const struct sockaddr_in *peer, const struct exh_mac_key *key)
 {
     memset(p, 0, sizeof *p);
+    p->key = key;
     p->given = peer != NULL;
     if (peer) { p->peer = *peer; }
 }
@@ -223,7 +224,7 @@ int pieces_take(struct pieces *p, const struct sockaddr_in *from, const uint8_t 
 {
     const int may = !(p->given || p->begun) || same(from, &p->peer);
     struct stream_piece s;
-    const enum stream_is is = stream_read(&s, datagram, n);
+    const enum stream_is is = stream_read(&s, datagram, n, p->key);
     p->datagrams++;
     if (is == STREAM_NONE || !may || (is == STREAM_PIECE && p->begun && s.session != p->session)) {
         strange(p, from, 1);
@@ -231,8 +232,25 @@ int pieces_take(struct pieces *p, const struct sockaddr_in *from, const uint8_t 
     }
     p->damaged += is == STREAM_DAMAGED;
     p->old += is == STREAM_OLD;
+    p->keyed += is == STREAM_KEYED;
+    p->no_key += is == STREAM_NO_KEY;
+    p->other_key += is == STREAM_OTHER_KEY;
     if (is != STREAM_PIECE) { return 0; }
     return p->begun ? follow(p, &s, part) : try_to_begin(p, from, &s, part);
+}
+
+static void complain_of_keys(const struct pieces *p)
+{
+    const struct {
+        uint64_t n;
+        const char *what;
+    } misfit[] = {{p->keyed, "have a key: give it as --key"},
+        {p->no_key, "have no key: give the box key=, or leave --key out here"},
+        {p->other_key, "have another key: give both the same"}};
+    for (unsigned i = 0; i < sizeof misfit / sizeof misfit[0]; i++) {
+        if (misfit[i].n == 0) { continue; }
+        cli_complain("%" PRIu64 " pieces %s", misfit[i].n, misfit[i].what);
+    }
 }
 
 void pieces_complain(const struct pieces *p)
@@ -256,6 +274,7 @@ void pieces_complain(const struct pieces *p)
                      "be: none of them was taken",
             p->damaged, p->beyond);
     }
+    complain_of_keys(p);
     if (p->old > 0) {
         cli_complain("%" PRIu64 " pieces are of version 1, this program's is 2: give the box the "
                      "image of the same release",

@@ -30,7 +30,8 @@ struct pieces_source {
 };
 
 struct pieces {
-    struct sockaddr_in peer; /* of the log, or that alone may be it */
+    struct sockaddr_in peer;       /* of the log, or that alone may be it */
+    const struct exh_mac_key *key; /* NULL: none */
     int given, begun, ended;
     uint32_t session, next; /* number */
     uint32_t place;         /* in the stream, of byte `end` of the log */
@@ -42,6 +43,7 @@ struct pieces {
         uint32_t n;
     } was[PIECES_BACK]; /* of pieces seen, by number */
     uint64_t datagrams, pieces, missing, late, twice, beyond, damaged, old, foreign;
+    uint64_t keyed, no_key, other_key; /* whose key does not fit ours */
     struct pieces_source source[PIECES_SOURCES];
     struct pieces_try who[PIECES_TRIES];
 };
@@ -56,8 +58,8 @@ struct pieces_part {
     uint32_t more_n;
 };
 
-/* peer NULL: whoever sends the first header. */
-void pieces_open(struct pieces *p, const struct sockaddr_in *peer);
+/* peer NULL: whoever sends the first header. key: the caller's, it stays; NULL: none. */
+void pieces_open(struct pieces *p, const struct sockaddr_in *peer, const struct exh_mac_key *key);
 /* A datagram as it came: 1, *part is the log's, or 0. */
 int pieces_take(struct pieces *p, const struct sockaddr_in *from, const uint8_t *datagram, size_t n,
     struct pieces_part *part);

@@ -6,9 +6,14 @@
  *  12  u32 place of its first byte in the stream, modulo 2^32
  *  16  u32 1: the last one            20  bytes, then u32 CRC-32 of all before
  *
+ * With a key the first word is "EXL3", and behind the CRC a u64 tag of all before (mac.h). There is
+ * no way back, so no proof that it is said now: a log recorded under the same key can be played to
+ * who waits for one to begin, and no byte of it can be changed.
  * Little-endian. Portable: the host's `exhand listen` reads them by the same file. */
 #ifndef EXHAND_RUN_STREAM_H
 #define EXHAND_RUN_STREAM_H
+
+#include "exhand/mac.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -16,12 +21,15 @@
 #define STREAM_HEAD_B  20u
 #define STREAM_DATA_B  1408u
 #define STREAM_CRC_B   4u
-#define STREAM_PIECE_B (STREAM_HEAD_B + STREAM_DATA_B + STREAM_CRC_B)
+#define STREAM_PIECE_B (STREAM_HEAD_B + STREAM_DATA_B + STREAM_CRC_B + EXH_MAC_B)
 #define STREAM_MAGIC   0x324C5845u
 #define STREAM_MAGIC_1 0x4C485845u /* "EXHL": version 1, without CRC */
+#define STREAM_MAGIC_K 0x334C5845u /* "EXL3": with a tag */
 
 /* --- out: one stream --- */
 void stream_open(uint32_t session);
+/* All pieces from now on have its tag; NULL: none. It is copied. */
+void stream_key(const struct exh_mac_key *key);
 /* The next piece with these n <= STREAM_DATA_B bytes: its length. It is the next until
  * stream_sent(). */
 size_t stream_piece(uint8_t to[STREAM_PIECE_B], const uint8_t *byte, unsigned n, int last);
@@ -35,7 +43,17 @@ struct stream_piece {
     size_t n;
 };
 /* What a datagram is. */
-enum stream_is { STREAM_NONE, STREAM_PIECE, STREAM_DAMAGED, STREAM_OLD };
-enum stream_is stream_read(struct stream_piece *p, const uint8_t *datagram, size_t len_B);
+enum stream_is {
+    STREAM_NONE,
+    STREAM_PIECE,
+    STREAM_DAMAGED,
+    STREAM_OLD,
+    STREAM_KEYED,    /* has a tag, and we have no key */
+    STREAM_NO_KEY,   /* has none, and we have one */
+    STREAM_OTHER_KEY /* a tag that is wrong, of a piece that is whole */
+};
+/* key NULL: none. */
+enum stream_is stream_read(
+    struct stream_piece *p, const uint8_t *datagram, size_t len_B, const struct exh_mac_key *key);
 
 #endif

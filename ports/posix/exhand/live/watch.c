@@ -22,7 +22,7 @@
 #define LATE_S   0.05 /* Ctrl-C and --seconds wait no longer */
 
 static struct {
-    const char *modbus, *listen, *peer, *names, *finger, *csv, *plot;
+    const char *modbus, *listen, *peer, *key, *names, *finger, *csv, *plot;
     double hz, seconds, last_s;
     int64_t trace; /* ticks from frame to frame; 0: none */
     struct watch_box box;
@@ -215,7 +215,7 @@ static int prepare(void)
     }
     if (w.plot) { err = watch_plot_open(w.plot, w.last_s); }
     if (err == 0) {
-        err = w.modbus ? watch_modbus_open(w.modbus) : watch_stream_open(w.listen, w.peer);
+        err = w.modbus ? watch_modbus_open(w.modbus) : watch_stream_open(w.listen, w.peer, w.key);
     }
     if (err == 0) { err = outfile_try(leaves, sizeof leaves / sizeof leaves[0]); }
     if (err == 0 && w.csv) {
@@ -234,6 +234,8 @@ int cli_watch(int argc, char **argv)
             "a box that sends its log there (pc104: log=udp)"},
         {"peer", CLI_TEXT, &w.peer, 0, 0, "ADDRESS:PORT",
             "with --listen: the box, as it sends (whoever sends the first whole header)"},
+        {"key", CLI_TEXT, &w.key, 0, 0, "FILE",
+            "with --listen: of the box, 32 hexadecimal digits (pc104: key=)"},
         {"trace", CLI_INT, &w.trace, 0, 1e6, "N",
             "of Modbus: every N-th tick, four signals, what is lost is told"},
         {"signals", CLI_TEXT, &w.names, 0, 0, "A[,B[I]...]",

@@ -45,7 +45,7 @@ int watch_scene(struct watch_box *b, const char *name, uint32_t crc, uint32_t co
 
 /* Pieces of a log that come to ADDRESS:PORT, of this peer alone (NULL: of whose header comes
  * first). Takes what comes until then. */
-int watch_stream_open(const char *at, const char *peer);
+int watch_stream_open(const char *at, const char *peer, const char *key);
 int watch_stream_look(struct watch_box *b, double until_s, watch_fresh fresh);
 void watch_stream_close(void);
 

@@ -2,6 +2,7 @@
 /* The log of a box, as it comes over the network: each frame has every signal. */
 #include "live/watch.h"
 
+#include "base/key.h"
 #include "base/option.h"
 #include "udp.h"
 #include "base/until.h"
@@ -22,14 +23,16 @@ static struct {
     struct udp udp;
     struct pieces pieces;
     struct sockaddr_in peer;
+    struct exh_mac_key key;
     uint64_t end; /* of the log, of the byte behind the last */
     double heard_s;
     uint8_t byte[BUFFER_B]; /* not yet records */
     uint32_t n;
 } in;
 
-int watch_stream_open(const char *at, const char *peer)
+int watch_stream_open(const char *at, const char *peer, const char *key)
 {
+    if (key && key_read(key, &in.key)) { return 2; }
     if (peer != NULL && udp_open(&in.udp, "0.0.0.0:0", peer) < 0) {
         cli_complain("--peer: %s: %s: give ADDRESS:PORT of the box", peer, strerror(errno));
         return 2;
@@ -38,7 +41,7 @@ int watch_stream_open(const char *at, const char *peer)
         in.peer = in.udp.peer;
         udp_close(&in.udp);
     }
-    pieces_open(&in.pieces, peer ? &in.peer : NULL);
+    pieces_open(&in.pieces, peer ? &in.peer : NULL, key ? &in.key : NULL);
     if (udp_open(&in.udp, at, NULL) == 0) { return 0; }
     cli_complain("--listen: %s: %s: give ADDRESS:PORT of this machine", at, strerror(errno));
     return 2;
@@ -154,7 +157,7 @@ static void let_others(void)
     struct pieces_source source[PIECES_SOURCES];
     if (!p->begun || until_now_s() - in.heard_s < NEW_S) { return; }
     memcpy(source, p->source, sizeof source);
-    pieces_open(p, p->given ? &in.peer : NULL);
+    pieces_open(p, p->given ? &in.peer : NULL, p->key);
     memcpy(p->source, source, sizeof source);
     p->foreign = foreign;
 }

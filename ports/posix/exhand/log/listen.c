@@ -3,6 +3,7 @@
 /* exhand listen: the log of a box that sends it over UDP (log=udp), as a file. */
 #include "base/cli.h"
 
+#include "base/key.h"
 #include "base/option.h"
 #include "base/outfile.h"
 #include "udp.h"
@@ -20,7 +21,8 @@
 #define END_B (EXH_RECORD_OVERHEAD + 4u) /* the record that ends a log */
 
 struct listen {
-    const char *at, *peer, *out;
+    const char *at, *peer, *key, *out;
+    struct exh_mac_key secret;
     double silence_s, wait_s, heard_s;
     FILE *file;
     uint64_t bytes;
@@ -107,7 +109,7 @@ static int report(const struct listen *l, int ended)
     printf("%s: %" PRIu64 " bytes in %" PRIu64 " pieces; missing %" PRIu64 ", late %" PRIu64
            ", twice %" PRIu64 ", not the log's %" PRIu64 "; %s%s\n",
         l->out, l->bytes, p->pieces, p->missing, p->late, p->twice,
-        p->foreign + p->damaged + p->old + p->beyond,
+        p->foreign + p->damaged + p->old + p->beyond + p->keyed + p->no_key + p->other_key,
         l->in_mid ? "it begins in mid-run, at a keyframe; " : "",
         !p->ended ? "its end did not come"
         : ended   ? "its end came"
@@ -125,7 +127,8 @@ static int open_line(struct listen *l, struct udp *u)
         }
         udp_close(&to);
     }
-    pieces_open(&l->pieces, l->peer ? &to.peer : NULL);
+    if (l->key && key_read(l->key, &l->secret)) { return 2; }
+    pieces_open(&l->pieces, l->peer ? &to.peer : NULL, l->key ? &l->secret : NULL);
     if (udp_open(u, l->at, NULL) == 0) { return 0; }
     cli_complain("--at: %s: %s: give ADDRESS:PORT of this machine", l->at, strerror(errno));
     return 2;
@@ -138,6 +141,8 @@ int cli_listen(int argc, char **argv)
         {"at", CLI_TEXT, &l.at, 0, 0, "ADDRESS:PORT", "where the box sends its log (0.0.0.0:4748)"},
         {"peer", CLI_TEXT, &l.peer, 0, 0, "ADDRESS:PORT",
             "the box, as it sends (whoever sends the first whole header)"},
+        {"key", CLI_TEXT, &l.key, 0, 0, "FILE",
+            "of the box, 32 hexadecimal digits (pc104: key=): no other's pieces are taken"},
         {"out", CLI_TEXT, &l.out, 0, 0, "FILE", "the log, for `exhand replay` and `exhand csv`"},
         {"silence", CLI_REAL, &l.silence_s, 0.1, 1e6, "S",
             "once it began, so much of it is its end (5)"},
