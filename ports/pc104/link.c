@@ -8,6 +8,8 @@
 #include "nic.h"
 #include "exhand/run/stream.h"
 
+#include "exhand/keyed.h"
+
 #include "cards/io.h"
 #include "cards/wait.h"
 
@@ -28,6 +30,9 @@ static struct {
     int32_t port, log_port;
 } par = {.port = PORT, .log_port = LOG_PORT};
 
+static struct exh_mac_key key;
+static int has_key;
+static struct exh_keyed keyed;
 static struct net net;
 static uint8_t mac[NET_MAC_B];
 static uint8_t open, asked_for;
@@ -65,6 +70,26 @@ static void take_port(int32_t *to, const char *name, const char *value)
     }
 }
 
+/* What was given is not said again, right or wrong. */
+static void take_key(const char *value)
+{
+    uint8_t byte[EXH_MAC_KEY_B] = {0};
+    unsigned n = 0;
+    for (; value[n] && n < 2 * EXH_MAC_KEY_B; n++) {
+        const char c = value[n], low = (char)(c | 0x20);
+        const int digit = c >= '0' && c <= '9'       ? c - '0'
+                          : low >= 'a' && low <= 'f' ? low - 'a' + 10
+                                                     : -1;
+        if (digit < 0) { break; }
+        byte[n / 2] = (uint8_t)(byte[n / 2] << 4 | digit);
+    }
+    if (n != 2 * EXH_MAC_KEY_B || value[n]) {
+        refuse("key", "(not shown)", "32 hexadecimal digits");
+    }
+    key = exh_mac_key(byte);
+    has_key = 1;
+}
+
 int pc104_link_option(const char *name, const char *value)
 {
     if (pc104_same_text(name, "ip")) {
@@ -75,6 +100,8 @@ int pc104_link_option(const char *name, const char *value)
         take_port(&par.port, name, value);
     } else if (pc104_same_text(name, "log_port")) {
         take_port(&par.log_port, name, value);
+    } else if (pc104_same_text(name, "key")) {
+        take_key(value);
     } else {
         return 0;
     }
@@ -119,6 +146,21 @@ static void wait_for_peer(void)
         net.known ? "link: the peer answers\n" : "link: the peer does not answer yet: goes on\n");
 }
 
+/* Year to second of the machine's clock, which goes on while the power is off, and the processor's
+ * cycles: no number of another start. */
+static void open_key(void)
+{
+    static const uint8_t at[] = {9, 8, 7, 4, 2, 0};
+    uint64_t start = 0;
+    for (unsigned i = 0; i < sizeof at; i++) {
+        exh_io_out8(0x70, at[i]);
+        start = start << 6 | (exh_io_in8(0x71) & 0x3Fu);
+    }
+    exh_keyed_setup(&keyed, &key, EXH_WIRE_CONTROLLER, start << 26 | exh_board_cycles() >> 6);
+    stream_key(&key);
+    pc104_say("link: with a key\n");
+}
+
 void pc104_link_open(const struct exh_scene *sc)
 {
     asked_for = par.ip != 0 || par.peer != 0;
@@ -137,11 +179,12 @@ void pc104_link_open(const struct exh_scene *sc)
         struct net_cfg cfg = {.ip = par.ip,
             .peer_ip = par.peer,
             .port = (uint16_t)par.port,
-            .longest_B = EXH_SCENE_PACKET_B};
+            .longest_B = has_key ? EXH_KEYED_MAX_B : EXH_SCENE_PACKET_B};
         memcpy(cfg.mac, mac, sizeof cfg.mac);
         net_open(&net, &cfg);
     }
     open = 1;
+    if (has_key) { open_key(); }
     stream_open(exh_board_cycles());
     wait_for_peer();
 }
@@ -176,7 +219,12 @@ static void take(const uint8_t *frame, size_t len_B, uint32_t now_us, unsigned *
     const uint8_t *at;
     size_t n;
     const enum net_take what = net_take(&net, frame, len_B, now_us, &at, &n);
-    if (what == NET_DATAGRAM) { keep(at, n); }
+    if (what == NET_DATAGRAM && has_key) {
+        const int32_t whole_B = exh_keyed_decode(&keyed, at, n);
+        if (whole_B > 0) { keep(at, (size_t)whole_B); }
+    } else if (what == NET_DATAGRAM) {
+        keep(at, n);
+    }
     if (what == NET_ANSWER && (*answers)++ == 0) { answer(); }
 }
 
@@ -223,7 +271,14 @@ static int send_to(uint16_t port, const void *buf, size_t len_B)
 
 int exh_board_link_send(const void *buf, size_t len_B)
 {
-    if (len_B > 0 && send_to((uint16_t)par.port, buf, len_B)) { return (int)len_B; }
+    static uint8_t room[EXH_KEYED_MAX_B];
+    size_t all_B = len_B;
+    if (has_key && open && len_B <= EXH_SCENE_PACKET_B) {
+        memcpy(room, buf, len_B);
+        all_B = (size_t)exh_keyed_encode(&keyed, room, len_B, sizeof room);
+        buf = room;
+    }
+    if (len_B > 0 && send_to((uint16_t)par.port, buf, all_B)) { return (int)len_B; }
     unsent += open;
     return 0;
 }
@@ -251,6 +306,21 @@ void pc104_link_log_new(void) { stream_open(exh_board_cycles()); }
 
 /* --- what it costs --- */
 
+/* With a key: what goes out has a tag, and what comes has a wrong one, which is dearest. */
+static void dry_key(void)
+{
+    static uint8_t longest[EXH_KEYED_MAX_B] = {
+        [4] = (EXH_SCENE_PACKET_B - EXH_WIRE_OVERHEAD) & 0xFF};
+    struct exh_keyed twin = keyed;
+    for (unsigned i = 0; has_key && i < EXH_SCENE_PACKETS; i++) {
+        (void)exh_keyed_encode(&twin, longest, EXH_SCENE_PACKET_B, sizeof longest);
+    }
+    twin.key.k[0]++;
+    for (unsigned i = 0; has_key && i < IN_A_TICK; i++) {
+        (void)exh_keyed_decode(&twin, longest, sizeof longest);
+    }
+}
+
 /* As much as a tick can bring and take, for the clock: the longest datagrams that are taken, as
  * many as the scene sends. The card sees none of it. */
 void pc104_link_dry(void)
@@ -267,6 +337,7 @@ void pc104_link_dry(void)
     for (unsigned i = 0; i < EXH_SCENE_PACKETS; i++) {
         n = net_datagram(&twin, frame, cfg.port, longest, sizeof longest);
     }
+    dry_key();
     twin.cfg.ip = cfg.peer_ip;
     twin.cfg.peer_ip = cfg.ip;
     got = put; /* room */
@@ -308,6 +379,11 @@ void pc104_link_report(void)
         say_count("link drop_", net_drop_text((enum net_drop)i), net.counts.drop[i]);
     }
     say_count("link ", "arp_unanswered", unanswered);
+    say_count("link ", "no_key", keyed.no_key);
+    say_count("link ", "other_key", keyed.other_key);
+    say_count("link ", "unproved", keyed.unproved);
+    say_count("link ", "again", keyed.again);
+    say_count("link ", "damaged", keyed.damaged);
     say_count("link ", "overrun", overrun);
     say_count("link ", "unsent", unsent);
     say_count("log ", "pieces", stream_pieces());
