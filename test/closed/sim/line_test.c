@@ -307,7 +307,14 @@ TEST(the_peer_is_whose_packet_was_good)
         CHECK(udp_recv(&world, buf, sizeof buf) == sizeof ours, "tick %d: no answer", n);
         CHECK_EQ_I64(udp_recv(&other, buf, sizeof buf), 0);
     }
-    post(&other, &bad, EXH_WIRE_HELLO, 0); /* the world has started anew, elsewhere */
+    post(&other, &bad, EXH_WIRE_HELLO, 0); /* while the world is heard nobody else begins */
+    CHECK_EQ_I64(exh_board_wait(), 0);
+    while (exh_board_link_recv(buf, sizeof buf) > 0) {}
+    CHECK_EQ_I64(exh_board_link_send(&ours, sizeof ours), sizeof ours);
+    CHECK(
+        udp_recv(&other, buf, sizeof buf) == 0 && udp_recv(&world, buf, sizeof buf) > 0, "turned");
+    for (int n = 0; n < 2100; n++) { CHECK_EQ_I64(exh_board_wait(), 0); }
+    post(&other, &bad, EXH_WIRE_HELLO, 0); /* it has started anew, elsewhere */
     CHECK_EQ_I64(exh_board_wait(), 0);
     while (exh_board_link_recv(buf, sizeof buf) > 0) {}
     CHECK_EQ_I64(exh_board_link_send(&ours, sizeof ours), sizeof ours);

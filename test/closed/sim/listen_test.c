@@ -350,7 +350,43 @@ TEST(bad_usage)
     CHECK_EQ_I64(call(4, who), 2);
 }
 
-TEST_MAIN("listen", a_whole_log_in_whatever_order, what_is_missing_is_told_and_leaves_a_hole,
-    silence_ends_it_and_is_told, an_end_is_a_record, what_is_not_the_logs_changes_nothing,
-    a_stranger_who_is_first_is_not_the_box, a_peer_is_the_box_alone,
-    who_comes_late_has_a_log_all_the_same, nothing_in_time_is_told, bad_usage);
+/* What a piece is to who has this key, or none. */
+static enum stream_is is_to(const uint8_t *piece, size_t len_B, const struct exh_mac_key *key)
+{
+    struct stream_piece p;
+    return stream_read(&p, piece, len_B, key);
+}
+
+TEST(with_a_key_no_other_piece_is_taken)
+{
+    static const uint8_t byte[STREAM_DATA_B] = {7}, a[EXH_MAC_KEY_B] = {1}, b[EXH_MAC_KEY_B] = {2};
+    const struct exh_mac_key ours = exh_mac_key(a), others = exh_mac_key(b);
+    uint8_t plain[STREAM_PIECE_B], tagged[STREAM_PIECE_B];
+    size_t plain_B, tagged_B;
+    stream_open(9);
+    stream_key(NULL);
+    plain_B = stream_piece(plain, byte, STREAM_DATA_B, 0);
+    stream_key(&ours);
+    tagged_B = stream_piece(tagged, byte, STREAM_DATA_B, 0);
+    stream_key(NULL);
+    CHECK_EQ_I64((int64_t)tagged_B, (int64_t)plain_B + EXH_MAC_B);
+    CHECK_EQ_I64(is_to(plain, plain_B, NULL), STREAM_PIECE);
+    CHECK_EQ_I64(is_to(tagged, tagged_B, &ours), STREAM_PIECE);
+    CHECK_EQ_I64(is_to(plain, plain_B, &ours), STREAM_NO_KEY);
+    CHECK_EQ_I64(is_to(tagged, tagged_B, NULL), STREAM_KEYED);
+    CHECK_EQ_I64(is_to(tagged, tagged_B, &others), STREAM_OTHER_KEY);
+    for (size_t bit = 0; bit < 8 * tagged_B; bit++) {
+        tagged[bit / 8] = (uint8_t)(tagged[bit / 8] ^ 1u << bit % 8);
+        CHECK(is_to(tagged, tagged_B, &ours) != STREAM_PIECE, "bit %zu", bit);
+        tagged[bit / 8] = (uint8_t)(tagged[bit / 8] ^ 1u << bit % 8);
+    }
+    for (size_t n = 0; n < tagged_B; n++) {
+        CHECK(is_to(tagged, n, &ours) != STREAM_PIECE, "%zu bytes", n);
+    }
+}
+
+TEST_MAIN("listen", with_a_key_no_other_piece_is_taken, a_whole_log_in_whatever_order,
+    what_is_missing_is_told_and_leaves_a_hole, silence_ends_it_and_is_told, an_end_is_a_record,
+    what_is_not_the_logs_changes_nothing, a_stranger_who_is_first_is_not_the_box,
+    a_peer_is_the_box_alone, who_comes_late_has_a_log_all_the_same, nothing_in_time_is_told,
+    bad_usage);

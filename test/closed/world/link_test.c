@@ -121,7 +121,10 @@ TEST(either_end_may_start_anew)
     CHECK(!frame(&s, 1000), "of a stranger");
     say(&c, EXH_WIRE_HELLO, 0);
     say(&c, EXH_WIRE_STATE, 8);
-    CHECK(frame(&s, 2000) && s.joint_turn_q32[0][0] == 8,
+    CHECK(!frame(&s, 500000), "the one before was heard half a second ago");
+    say(&c, EXH_WIRE_HELLO, 0);
+    say(&c, EXH_WIRE_STATE, 8);
+    CHECK(frame(&s, 1000001) && s.joint_turn_q32[0][0] == 8,
         "the controller's second life is not heard");
     hear(&c);
     CHECK(c.answers > 0, "nor answered");
@@ -130,6 +133,7 @@ TEST(either_end_may_start_anew)
     CHECK(link_open(&world, port, NULL, 9, why, sizeof why) == 0, "%s", why);
     say(&c, EXH_WIRE_HELLO, 0);
     say(&c, EXH_WIRE_STATE, 9);
+    (void)exh_wire_poll(&c.rx, UINT32_MAX, 1); /* it has heard nothing for long */
     CHECK(frame(&s, 0) && s.joint_turn_q32[0][0] == 9, "the world's second life does not hear");
     c.answers = 0;
     hear(&c);
@@ -453,12 +457,12 @@ TEST(a_trace_is_asked_for_and_written)
     close(c.fd);
     open_controller(&c, 3);
     say(&c, EXH_WIRE_HELLO, 0);
-    (void)frame(&s, 910000);
+    (void)frame(&s, 2000000);
     hear_asks(&c);
     CHECK(asks == 4 && ask_seq != before, "another controller is not asked");
     send_trace(&c, before, 55, 1, 0);
     send_trace(&c, ask_seq, 0, 1, 0);
-    (void)frame(&s, 920000);
+    (void)frame(&s, 2010000);
     CHECK_EQ_I64(link_trace_close(&world), 0);
     read_all(path, text, sizeof text);
     CHECK(strcmp(text, want) == 0, "%s", text);
@@ -523,9 +527,65 @@ TEST(bad_addresses_are_refused_in_words)
     }
 }
 
-TEST_MAIN("world: the link", a_state_is_taken_and_answered_with_its_own_number,
-    either_end_may_start_anew, without_planes_it_says_hello_alone,
-    materials_are_asked_for_until_answered, who_answers_nothing_gets_planes_all_the_same,
-    a_peer_that_differs_is_named, it_is_not_deaf_for_good, noise_changes_nothing,
-    a_trace_is_asked_for_and_written, a_trace_that_cannot_be_is_refused_in_words,
-    a_given_peer_is_the_only_one_listened_to, bad_addresses_are_refused_in_words);
+/* --- with a key --- */
+
+static struct exh_keyed box_key;
+
+static struct exh_mac_key key_of(uint8_t first)
+{
+    const uint8_t byte[EXH_MAC_KEY_B] = {first};
+    return exh_mac_key(byte);
+}
+
+/* One packet of a controller with this key; what the world sends is heard. */
+static void say_keyed(struct controller *c, int type, int32_t joint)
+{
+    unsigned char buf[EXH_KEYED_MAX_B];
+    struct exh_wire_packet p;
+    int32_t n;
+    memset(&p, 0, sizeof p);
+    p.type = (uint8_t)type;
+    if (type == EXH_WIRE_HELLO) { p.u.hello = said_hello; }
+    if (type == EXH_WIRE_STATE) { p.u.state.joint_turn_q32[0][0] = joint; }
+    while ((n = (int32_t)recv(c->fd, buf, sizeof buf, MSG_DONTWAIT)) > 0) {
+        (void)exh_keyed_decode(&box_key, buf, (size_t)n);
+    }
+    n = exh_wire_encode(&c->tx, &p, 1234, buf, sizeof buf);
+    n = exh_keyed_encode(&box_key, buf, (size_t)n, sizeof buf);
+    CHECK(n > 0 && sendto(c->fd, buf, (size_t)n, 0, (struct sockaddr *)&c->to, sizeof c->to) == n,
+        "%d", (int)n);
+}
+
+/* Recorded from the socket, a stranger without a key, another key: none of them acts. */
+TEST(only_who_has_the_key_is_heard)
+{
+    const struct exh_mac_key ours = key_of(1), other = key_of(2);
+    struct exh_wire_state s = {0};
+    struct controller c;
+    open_world(1);
+    link_key(&world, &ours, 77);
+    open_controller(&c, 2);
+    say(&c, EXH_WIRE_HELLO, 0);
+    say(&c, EXH_WIRE_STATE, 1);
+    CHECK(!frame(&s, 1000) && world.keyed.no_key == 2 && world.sent == 0, "without a key");
+    exh_keyed_setup(&box_key, &other, EXH_WIRE_CONTROLLER, 5);
+    say_keyed(&c, EXH_WIRE_HELLO, 0);
+    say_keyed(&c, EXH_WIRE_STATE, 2);
+    CHECK(!frame(&s, 2000) && world.keyed.other_key == 2 && world.sent == 0, "another key");
+    exh_keyed_setup(&box_key, &ours, EXH_WIRE_CONTROLLER, 6);
+    say_keyed(&c, EXH_WIRE_HELLO, 0);
+    CHECK(!frame(&s, 3000) && world.keyed.unproved == 1 && world.sent == 1, "it begins");
+    say_keyed(&c, EXH_WIRE_HELLO, 0);
+    say_keyed(&c, EXH_WIRE_STATE, 3);
+    CHECK(frame(&s, 4000) && s.joint_turn_q32[0][0] == 3, "it is heard");
+    CHECK(world.rx.accepted == 2 && world.keyed.taken == 2, "that alone");
+    close(c.fd), link_close(&world);
+}
+
+TEST_MAIN("world: the link", only_who_has_the_key_is_heard,
+    a_state_is_taken_and_answered_with_its_own_number, either_end_may_start_anew,
+    without_planes_it_says_hello_alone, materials_are_asked_for_until_answered,
+    who_answers_nothing_gets_planes_all_the_same, a_peer_that_differs_is_named,
+    it_is_not_deaf_for_good, noise_changes_nothing, a_trace_is_asked_for_and_written,
+    a_trace_that_cannot_be_is_refused_in_words, a_given_peer_is_the_only_one_listened_to,
+    bad_addresses_are_refused_in_words);
