@@ -43,8 +43,11 @@ static void confuse(struct udp *udp, const struct peer *peer)
 static void one_frame(struct udp *udp, struct peer *peer, struct sim_link *link, double t_s)
 {
     static struct exh_wire_rx rx;
+    static double before_s;
     uint8_t buf[SIM_LINK_PACKET_B];
     int n;
+    (void)exh_wire_poll(&rx, (uint32_t)(1e6 * (t_s - before_s)), 1000000);
+    before_s = t_s;
     while ((n = udp_recv(udp, buf, sizeof buf)) > 0) {
         struct exh_wire_packet p;
         if (exh_wire_decode(&rx, &p, buf, (size_t)n) > 0) { udp_learn(udp); }
@@ -147,7 +150,7 @@ static struct bilateral_run meet(struct bilateral_run_cfg c, long die_at, long r
     c.board.line.udp_local = "127.0.0.1:0";
     c.board.line.udp_peer = world.cfg.at;
     r = run(&c);
-    world.before_s = world.t_s;
+    world.before_s = world.t_s + 1.5; /* another is heard when this one was silent for 1 s */
     return r;
 }
 
@@ -178,7 +181,8 @@ static void put_up(const struct bilateral_run_cfg *c, int confuse_at)
  * seed. */
 TEST(two_processes_survive_each_others_restart)
 {
-    struct bilateral_run_cfg c = plain(1u << EXH_INDEX, 0.87, 1);
+    struct bilateral_run_cfg c =
+        plain(1u << EXH_INDEX, 0.87, 2); /* heard again 1 s later, before the second */
     struct bilateral_run alone;
     c.board.exo.path[EXH_INDEX].hold_s = 0.3;
     alone = run(&c); /* with a world in this process */
