@@ -49,7 +49,8 @@ const struct freeze_type freeze_velocity_window = TYPE(exh_velocity_window_cfg,
     F(exh_velocity_window_cfg, gain, GAIN), F(exh_velocity_window_cfg, n, U8));
 const struct freeze_type freeze_drive = TYPE(exh_drive_cfg, F(exh_drive_cfg, par, PAR),
     F(exh_drive_cfg, force_to_cur, TABLE), F(exh_drive_cfg, cur_to_force, TABLE),
-    F(exh_drive_cfg, f_top_N_q20, I32), F(exh_drive_cfg, tick_N_q20, GAIN),
+    F(exh_drive_cfg, f_top_N_q20, I32), F(exh_drive_cfg, i_top_A_q26, I32),
+    F(exh_drive_cfg, top_limit, U32), F(exh_drive_cfg, tick_N_q20, GAIN),
     F(exh_drive_cfg, i2t_budget_q32, I64), F(exh_drive_cfg, i2t_fold, GAIN),
     F(exh_drive_cfg, i2t_shift, U8), F(exh_drive_cfg, dac_A_q26, GAIN));
 const struct freeze_type freeze_track =

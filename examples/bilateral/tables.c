@@ -4,7 +4,7 @@
 #define MASK ((1 << BILATERAL_FINGERS) - 1)
 
 static const struct exh_signal kf_rows[] = {
-    {0x8601, EXH_Q_FORCE, EXH_WHEN_SETUP, EXH_Q(1, 10, EXH_Q_FORCE), EXH_Q(100, 1, EXH_Q_FORCE),
+    {0x8601, EXH_Q_FORCE, EXH_WHEN_PERSON, EXH_Q(1, 10, EXH_Q_FORCE), EXH_Q(100, 1, EXH_Q_FORCE),
         EXH_Q(3339, 1000, EXH_Q_FORCE), "kf", "n_per_a",
         "string force per motor current, without a calibration"},
 };

@@ -34,8 +34,8 @@ static const struct exh_signal own_rows[] = {
     ROW(0x8702, 0, 0, BRINGUP_FINGERS - 1, 0, "finger", "", "thumb 0 .. little 4"),
     ROW(0x8703, 0, 0, INT32_MAX, 0, "shown", "", "the number that the stage before printed"),
     ROW(0x8704, 0, 0, 1, 1, "loop", "", "stage 1: 1 the D/A is wired to the monitor's input"),
-    ROW(0x8705, EXH_Q_FORCE, EXH_Q(1, 1, EXH_Q_FORCE), EXH_Q(50, 1, EXH_Q_FORCE),
-        EXH_Q(3339, 1000, EXH_Q_FORCE), "kf", "n_per_a", "string force per motor current"),
+    {0x8705, EXH_Q_FORCE, EXH_WHEN_PERSON, EXH_Q(1, 1, EXH_Q_FORCE), EXH_Q(50, 1, EXH_Q_FORCE),
+        EXH_Q(3339, 1000, EXH_Q_FORCE), "kf", "n_per_a", "string force per motor current"},
     ROW_A(0x8706, "da_max", 100, 540, 528,
         "stage 1: highest code, as a current; a drive that is off may be given 1000"),
     ROW_A(0x8707, "load_max", 100, 1000, 300, "stage 2: highest current"),
@@ -148,7 +148,8 @@ static uint32_t number_of(int32_t stage, const struct bringup_par *par)
     uint64_t rest;
     uint32_t crc = crc_word(crc_word(0, stage), par->own.finger);
     for (size_t i = 0; i < EXH_QUAD_ROWS; i++) { crc = crc_word(crc, quad[i]); }
-    for (size_t i = 0; i < EXH_DRIVE_ROWS; i++) { crc = crc_word(crc, drive[i]); }
+    /* Not the person's ceiling, the last two: a stage shows nothing of it. */
+    for (size_t i = 0; i < EXH_DRIVE_ROWS - 2; i++) { crc = crc_word(crc, drive[i]); }
     crc = crc_limits(crc, stage, &par->own);
     (void)exh_udiv64(crc, 999999, &rest);
     return (uint32_t)rest + 1;

@@ -70,8 +70,9 @@ static const struct exh_contact_par wall = {EXH_Q(800, 1, EXH_Q_K), EXH_Q(2, 1, 
 static const int32_t wall_m_q30 = EXH_Q(2, 100, EXH_Q_POS);
 static const struct exh_drive_par drive_par = {EXH_Q(10, 1, EXH_Q_FORCE), 1000, 1000, /* N, N/s */
     EXH_Q(33, 10, EXH_Q_CUR), EXH_Q(33, 10, EXH_Q_CUR), 2700,                         /* A, ms */
-    32768, 12184, EXH_Q(324900, 176, EXH_Q_DAC), /* zero, span, codes/A */
-    0, EXH_Q(5164, 10000000, EXH_Q_MON)};        /* zero, A/code */
+    32768, 12184, EXH_Q(324900, 176, EXH_Q_DAC),          /* zero, span, codes/A */
+    0, EXH_Q(5164, 10000000, EXH_Q_MON),                  /* zero, A/code */
+    EXH_Q(10, 1, EXH_Q_FORCE), EXH_Q(33, 10, EXH_Q_CUR)}; /* the person's ceiling: N, A */
 static const struct exh_tracking_par track_par = {EXH_Q(1, 4, EXH_Q_CUR), 20};
 static const struct exh_safety_par safety_par = {1, EXH_Q(1, 1, EXH_Q_FORCE), 50, 500, 15};
 static struct exh_knot knot[2] = {

@@ -18,7 +18,9 @@ static const struct exh_drive_par drive_par = {.f_max_N_q20 = EXH_Q(5, 1, EXH_Q_
     .dac_zero_raw = 32768,
     .dac_span_raw = 12184,
     .dac_rawpA_q16 = EXH_Q(324900, 176, EXH_Q_DAC),
-    .mon_A_q40 = EXH_Q(5164, 10000000, EXH_Q_MON)};
+    .mon_A_q40 = EXH_Q(5164, 10000000, EXH_Q_MON),
+    .person_N_q20 = EXH_Q(5, 1, EXH_Q_FORCE),
+    .person_A_q26 = EXH_Q(33, 10, EXH_Q_CUR)};
 static const struct exh_tracking_par track_par = {EXH_Q(1, 4, EXH_Q_CUR), 20};
 static const struct exh_safety_par safety_par = {1, EXH_Q(1, 1, EXH_Q_FORCE), 50, 500, 15};
 /* Its parameters are constants. */

@@ -104,7 +104,7 @@ void unit_var(uint32_t i, struct unit_var *v)
     *v = (struct unit_var){
         .type = row->frac ? UNIT_FLOAT64 : UNIT_INT32, .unit = row->unit, .help = row->help};
     v->role = row->when == EXH_WHEN_OUTPUT  ? UNIT_OUTPUT
-              : row->when == EXH_WHEN_SETUP ? UNIT_FIXED
+              : exh_signal_is_fixed(row) ? UNIT_FIXED
                                             : UNIT_TUNABLE;
     (void)snprintf(
         v->name, sizeof v->name, instance ? "%s_%u" : "%s", row->name, (unsigned)instance);

@@ -115,6 +115,10 @@ void golden_drive_par(struct exh_drive_par *p, struct golden_rng *r, uint32_t ra
     p->dac_rawpA_q16 = (int32_t)golden_draw(r, 65536, INT32_MAX);
     p->mon_zero_raw = (int32_t)golden_draw(r, -32768, 32767);
     p->mon_A_q40 = (int32_t)golden_draw(r, 1, INT32_MAX);
+    p->person_N_q20 = (int32_t)golden_draw(r, INT32_C(1) << 20, INT32_C(1) << 28);
+    if (p->person_N_q20 > 104857600) { p->person_N_q20 = 104857600; }
+    p->person_A_q26 = (int32_t)golden_draw(r, 0, INT32_C(1) << 30);
+    if (p->person_A_q26 > 442918502) { p->person_A_q26 = 442918502; }
 }
 
 /* An axis with tables of its own. */

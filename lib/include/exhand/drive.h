@@ -36,9 +36,11 @@ enum exh_limit {
     EXH_LIMIT_RAMP = 1u << 7,    /* above the share of f_max that arming allows yet */
     EXH_LIMIT_RELEASE = 1u << 8, /* the release law has the force */
     EXH_LIMIT_SPEED = 1u << 9,   /* velocity into the law (motion.h) */
-    EXH_LIMIT_PASSIVITY = 1u << 10 /* contact gave out more than it took (passivity.h) */
+    EXH_LIMIT_PASSIVITY = 1u << 10, /* contact gave out more than it took (passivity.h) */
+    EXH_LIMIT_PERSON = 1u << 11     /* above person_f or person_i, where they are the lower: in the
+                                     * place of FORCE and PEAK */
 };
-#define EXH_LIMITS 11 /* bits of enum exh_limit, from 0 on */
+#define EXH_LIMITS 12 /* bits of enum exh_limit, from 0 on */
 
 /* --- permit: what the state of the box (safety.h) lets the force do in this tick --- */
 
@@ -73,8 +75,10 @@ struct exh_drive_par {
     int32_t dac_rawpA_q16; /* codes per ampere, 1 .. 32768 */
     int32_t mon_zero_raw;  /* monitor code at 0 A, -32768 .. 32767 */
     int32_t mon_A_q40;     /* ampere per monitor code, > 0 .. 1.95 mA */
+    int32_t person_N_q20;  /* the person's ceiling: no more force is asked for, N, 0.125 .. 100 */
+    int32_t person_A_q26;  /* and no code stands for more, A, 0 .. 6.6 */
 };
-#define EXH_DRIVE_ROWS 11
+#define EXH_DRIVE_ROWS 13
 extern const struct exh_signal exh_drive_rows[EXH_DRIVE_ROWS];
 
 /* One axis as it is set up; constant in the tick. */
@@ -82,7 +86,9 @@ struct exh_drive_cfg {
     const struct exh_drive_par *par; /* read at every tick */
     struct exh_table force_to_cur;   /* N q20 -> A q26 */
     struct exh_table cur_to_force;   /* monitor: A q26 -> N q20 */
-    int32_t f_top_N_q20;             /* end of that table: no force beyond it */
+    int32_t f_top_N_q20;             /* end of that table or person_f: no force beyond it */
+    int32_t i_top_A_q26;             /* person_i in whole codes; i_peak where that is no more */
+    uint32_t top_limit;              /* enum exh_limit: whose f_top_N_q20 is */
     struct exh_gain tick_N_q20;      /* N q20 per tick, per N/s */
     int64_t i2t_budget_q32;          /* A^2 ticks above i_cont^2 */
     struct exh_gain i2t_fold;        /* A q26 per (budget left >> i2t_shift) */

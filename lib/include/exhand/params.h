@@ -102,10 +102,14 @@ int exh_params_verify(struct exh_params *p);
  * little-endian. Saves what is wanted: the staged values. Bytes written, or -EXH_E_SHORT. */
 int32_t exh_params_save(const struct exh_params *p, void *buf, size_t cap_B);
 
-/* Stages a whole image or nothing. -EXH_E_SHORT, -EXH_E_VERSION (other version or
- * table), -EXH_E_CRC, -EXH_E_RANGE or -EXH_E_STATE; for the last two *bad (may be
- * NULL) is the index of the offending value. */
+/* Stages a whole image or nothing, but for values of EXH_WHEN_PERSON: those stay as they are,
+ * whatever stands in their place, since no image says what a person bears. -EXH_E_SHORT,
+ * -EXH_E_VERSION (other version or table), -EXH_E_CRC, -EXH_E_RANGE or -EXH_E_STATE; for the last
+ * two *bad (may be NULL) is the index of the offending value. */
 int exh_params_load(struct exh_params *p, const void *buf, size_t len_B, uint32_t *bad);
+
+/* The same with values of EXH_WHEN_PERSON: of a log's header, for whoever runs that run again. */
+int exh_params_restore(struct exh_params *p, const void *buf, size_t len_B, uint32_t *bad);
 
 #ifdef __cplusplus
 }

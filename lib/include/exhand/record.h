@@ -21,7 +21,7 @@
 extern "C" {
 #endif
 
-#define EXH_RECORD_VERSION  2       /* 1: keyframes had no values on their way */
+#define EXH_RECORD_VERSION  3       /* 2: keyframes had no count of the limit PERSON */
 #define EXH_RECORD_SYNC     0x5845u /* first bytes of every record, "EX" */
 #define EXH_RECORD_HEAD_B   14      /* bytes before a payload */
 #define EXH_RECORD_OVERHEAD 18      /* bytes around a payload */

@@ -26,7 +26,9 @@ enum exh_signal_when {
     EXH_WHEN_SETUP,  /* before the loop starts; refused once locked */
     EXH_WHEN_ANY,    /* between any two ticks, at once */
     EXH_WHEN_SLEWED, /* likewise, but little by little: force hangs on it */
-    EXH_WHEN_LIMIT   /* likewise, a limit of force: it rises little by little and falls at once */
+    EXH_WHEN_LIMIT,  /* likewise, a limit of force: it rises little by little and falls at once */
+    EXH_WHEN_PERSON  /* before the loop starts, by the person at the box alone: by the command line
+                      * or a boot option; by no register, packet or image */
 };
 
 /* Register of ids, 0xMMNN: MM is the module, NN the row. test/module/unit/rows_test.c has each.
@@ -48,6 +50,12 @@ struct exh_signal {
     const char *unit; /* SI in ASCII as in CSV headers: "n_per_m"; "" for none */
     const char *help; /* one line */
 };
+
+/* 1: another value is taken only before the loop starts. */
+static inline int exh_signal_is_fixed(const struct exh_signal *row)
+{
+    return row->when == EXH_WHEN_SETUP || row->when == EXH_WHEN_PERSON;
+}
 
 /* The rows of one module, once per instance (per finger). */
 struct exh_signal_group {

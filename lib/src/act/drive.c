@@ -14,6 +14,8 @@
 #define I_PEAK_MAX_A_Q26  EXH_Q(66, 10, EXH_Q_CUR)
 #define I_CONT_MAX_A_Q26  EXH_Q(33, 10, EXH_Q_CUR)
 #define PEAK_MAX_MS       2700
+/* A ceiling of no force at all would be another way to say f_max = 0. */
+#define PERSON_MIN_N_Q20 EXH_Q(1, 8, EXH_Q_FORCE)
 
 const struct exh_signal exh_drive_rows[EXH_DRIVE_ROWS] = {
     {0x0501, EXH_Q_FORCE, EXH_WHEN_LIMIT, 0, EXH_FORCE_MAX_N_Q20, EXH_Q(40, 1, EXH_Q_FORCE),
@@ -31,14 +33,19 @@ const struct exh_signal exh_drive_rows[EXH_DRIVE_ROWS] = {
     {0x0506, 0, EXH_WHEN_SETUP, 1, PEAK_MAX_MS, PEAK_MAX_MS, "peak_time", "ms",
         "peak current from cold"},
     /* Sensoray 526: offset binary, 3249 codes/V; Castanet: 1.76 A/V, +-3.75 V. */
-    {0x0507, 0, EXH_WHEN_SETUP, 0, 65535, 32768, "dac_zero", "", "D/A code of no current"},
-    {0x0508, 0, EXH_WHEN_SETUP, 0, 32767, 12184, "dac_span", "", "codes used either side of it"},
-    {0x0509, EXH_Q_DAC, EXH_WHEN_SETUP, EXH_Q(1, 1, EXH_Q_DAC), INT32_MAX,
+    {0x0507, 0, EXH_WHEN_PERSON, 0, 65535, 32768, "dac_zero", "", "D/A code of no current"},
+    {0x0508, 0, EXH_WHEN_PERSON, 0, 32767, 12184, "dac_span", "", "codes used either side of it"},
+    {0x0509, EXH_Q_DAC, EXH_WHEN_PERSON, EXH_Q(1, 1, EXH_Q_DAC), INT32_MAX,
         EXH_Q(324900, 176, EXH_Q_DAC), "dac_scale", "per_a", "D/A codes per ampere"},
     {0x050A, 0, EXH_WHEN_SETUP, -32768, 32767, 0, "mon_zero", "", "monitor code of no current"},
     /* 305.2 uV per code over 0.591 V/A. */
     {0x050B, EXH_Q_MON, EXH_WHEN_SETUP, 1, INT32_MAX, EXH_Q(5164, 10000000, EXH_Q_MON), "mon_scale",
         "a", "ampere per monitor code"},
+    {0x050C, EXH_Q_FORCE, EXH_WHEN_PERSON, PERSON_MIN_N_Q20, EXH_FORCE_MAX_N_Q20,
+        EXH_Q(40, 1, EXH_Q_FORCE), "person_f", "n",
+        "the person's ceiling of force, whatever f_max becomes"},
+    {0x050D, EXH_Q_CUR, EXH_WHEN_PERSON, 0, I_PEAK_MAX_A_Q26, I_PEAK_MAX_A_Q26, "person_i", "a",
+        "the person's ceiling of current, whatever a force table says"},
 };
 
 /* --- set-up --- */
@@ -93,7 +100,28 @@ static int par_ok(const struct exh_drive_par *par, int monitor)
            exh_inside(par->dac_zero_raw, 0, UINT16_MAX) &&
            exh_inside(par->dac_span_raw, 0, INT16_MAX) &&
            exh_inside(par->dac_rawpA_q16, EXH_Q(1, 1, EXH_Q_DAC), INT32_MAX) &&
+           exh_inside(par->person_N_q20, PERSON_MIN_N_Q20, EXH_FORCE_MAX_N_Q20) &&
+           exh_inside(par->person_A_q26, 0, I_PEAK_MAX_A_Q26) &&
            exh_inside(par->mon_zero_raw, INT16_MIN, INT16_MAX) && (!monitor || par->mon_A_q40 > 0);
+}
+
+/* The largest whole number of D/A codes within a limit: a current of at most that is rounded to no
+ * code beyond the limit. */
+static int32_t whole_codes(const struct exh_drive_cfg *cfg, int32_t limit_A_q26)
+{
+    const int64_t codes = (int64_t)limit_A_q26 * cfg->par->dac_rawpA_q16 >> (EXH_Q_CUR + EXH_Q_DAC);
+    return exh_clamp(exh_gain_floor(cfg->dac_A_q26, (int32_t)codes), 0, limit_A_q26);
+}
+
+/* The person's ceiling, made once: it costs no tick anything. */
+static void setup_top(struct exh_drive_cfg *cfg, const struct exh_drive_par *par)
+{
+    const int32_t end_N_q20 = cfg->force_to_cur.knot[cfg->force_to_cur.n - 1].x;
+    const int cut = par->person_N_q20 < end_N_q20;
+    cfg->f_top_N_q20 = cut ? par->person_N_q20 : end_N_q20;
+    cfg->top_limit = cut ? EXH_LIMIT_PERSON : EXH_LIMIT_FORCE;
+    cfg->i_top_A_q26 = par->person_A_q26 < par->i_peak_A_q26 ? whole_codes(cfg, par->person_A_q26)
+                                                             : par->i_peak_A_q26;
 }
 
 int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, struct exh_period T,
@@ -112,12 +140,12 @@ int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, 
     cfg->par = par;
     cfg->force_to_cur = force_to_cur;
     cfg->cur_to_force = cur_to_force;
-    cfg->f_top_N_q20 = force_to_cur.knot[force_to_cur.n - 1].x;
     err = exh_gain_set(&cfg->tick_N_q20, (uint64_t)T.num << EXH_Q_FORCE, T.den);
     if (err == 0) {
         err = exh_gain_set(&cfg->dac_A_q26, UINT64_C(1) << (EXH_Q_CUR + EXH_Q_DAC),
             (uint64_t)(uint32_t)par->dac_rawpA_q16);
     }
+    if (err == 0) { setup_top(cfg, par); }
     return err == 0 ? setup_i2t(cfg, par, T) : err;
 }
 
@@ -177,7 +205,9 @@ uint32_t exh_drive_force_within(struct exh_drive *s, const struct exh_drive_cfg 
     if (permit->mode == EXH_PERMIT_RELEASE) { return release(s, asked, permit, f); }
     if (permit->mode != EXH_PERMIT_OPEN) { return no_force(s, asked, permit->small_N_q20, f); }
     if (asked < 0) { limits |= EXH_LIMIT_PULL; }
-    if (asked > top) { limits |= EXH_LIMIT_FORCE; }
+    if (asked > top) {
+        limits |= own.f_max_N_q20 > cfg->f_top_N_q20 ? cfg->top_limit : EXH_LIMIT_FORCE;
+    }
     if (most < top && asked > most) { limits |= EXH_LIMIT_RAMP; }
     if (slewed != held) { limits |= EXH_LIMIT_SLEW; }
     f->clamp_N_q20 = exh_wrap_diff64(held, asked);
@@ -197,14 +227,6 @@ static int32_t i2t_limit(const struct exh_drive *s, const struct exh_drive_cfg *
     return cfg->par->i_cont_A_q26 + exh_clamp(extra, 0, span);
 }
 
-/* The largest whole number of D/A codes within a limit: a current of at most that is rounded to no
- * code beyond the limit. */
-static int32_t whole_codes(const struct exh_drive_cfg *cfg, int32_t limit_A_q26)
-{
-    const int64_t codes = (int64_t)limit_A_q26 * cfg->par->dac_rawpA_q16 >> (EXH_Q_CUR + EXH_Q_DAC);
-    return exh_clamp(exh_gain_floor(cfg->dac_A_q26, (int32_t)codes), 0, limit_A_q26);
-}
-
 /* What the code of a current stands for, as the gate makes it. */
 static int32_t coded(const struct exh_drive_cfg *cfg, int32_t cur_A_q26)
 {
@@ -219,7 +241,9 @@ uint32_t exh_drive_current_step(struct exh_drive *s, const struct exh_drive_cfg 
     const int32_t table = exh_table_at(cfg->force_to_cur, f->force_N_q20);
     const int32_t allowed = i2t_limit(s, cfg), hot = whole_codes(cfg, allowed);
     /* Without heat the two limits are one, and it is the peak's. */
-    const int32_t top = allowed < cfg->par->i_peak_A_q26 ? cfg->par->i_peak_A_q26 : hot;
+    const int32_t drive = allowed < cfg->par->i_peak_A_q26 ? cfg->par->i_peak_A_q26 : hot;
+    const int person = cfg->i_top_A_q26 < drive;
+    const int32_t top = person ? cfg->i_top_A_q26 : drive;
     const int32_t peak = exh_clamp32(table, -top, top);
     const int32_t now = exh_clamp32(peak, -hot, hot);
     const int32_t now_A_q16 = coded(cfg, now) >> (EXH_Q_CUR - 16);
@@ -236,7 +260,10 @@ uint32_t exh_drive_current_step(struct exh_drive *s, const struct exh_drive_cfg 
     i->gate_A_q26 = 0;
     i->dac_A_q26 = 0;
     i->coded_A_q26 = 0;
-    return (peak != table ? EXH_LIMIT_PEAK : 0u) | (now != peak ? EXH_LIMIT_I2T : 0u);
+    return (peak == table ? 0u
+               : person   ? EXH_LIMIT_PERSON
+                          : EXH_LIMIT_PEAK) |
+           (now != peak ? EXH_LIMIT_I2T : 0u);
 }
 
 int32_t exh_drive_monitor_A_q26(const struct exh_drive_cfg *cfg, int16_t mon_raw)

@@ -5,14 +5,16 @@
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
-/* The code for one current: within the span and the peak current of zero, no further from it than
- * `most`, and of 16 bits. */
+/* The code for one current: within the span, the peak current and the person's ceiling of zero, no
+ * further from it than `most`, and of 16 bits. */
 static uint16_t code_of(
     const struct exh_drive_par *par, int32_t cur_A_q26, uint16_t most_raw, uint32_t *limits)
 {
     const int32_t asked = (int32_t)exh_mul_shr(
         cur_A_q26, par->dac_rawpA_q16, EXH_Q_CUR + EXH_Q_DAC); /* 20 bits and a sign */
-    const int64_t peak = (int64_t)par->i_peak_A_q26 * par->dac_rawpA_q16 >> (EXH_Q_CUR + EXH_Q_DAC);
+    const int32_t top_A_q26 =
+        par->person_A_q26 < par->i_peak_A_q26 ? par->person_A_q26 : par->i_peak_A_q26;
+    const int64_t peak = (int64_t)top_A_q26 * par->dac_rawpA_q16 >> (EXH_Q_CUR + EXH_Q_DAC);
     const int32_t most = par->dac_span_raw < most_raw ? par->dac_span_raw : most_raw;
     const int32_t span = exh_clamp(peak, 0, most);
     const int32_t spanned = exh_clamp32(asked, -span, span);

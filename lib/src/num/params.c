@@ -92,8 +92,7 @@ int exh_params_validate(const struct exh_params *p, uint32_t i, int32_t raw)
     if (row == NULL) { return -EXH_E_UNKNOWN; }
     if (row->when == EXH_WHEN_OUTPUT) { return -EXH_E_STATE; }
     if (raw < row->min || raw > row->max) { return -EXH_E_RANGE; }
-    if (p->locked && row->when == EXH_WHEN_SETUP && raw != p->staged[i]) { return -EXH_E_STATE; }
-    return 0;
+    return p->locked && exh_signal_is_fixed(row) && raw != p->staged[i] ? -EXH_E_STATE : 0;
 }
 
 int exh_params_stage(struct exh_params *p, uint16_t id, uint16_t instance, int32_t raw)
@@ -281,10 +280,10 @@ int32_t exh_params_save(const struct exh_params *p, void *buf, size_t cap_B)
     return exh_bytes_ok(&c) ? (int32_t)c.at : -EXH_E_SHORT;
 }
 
-int exh_params_load(struct exh_params *p, const void *buf, size_t len_B, uint32_t *bad)
+/* Head, length and CRC: 0, or why it is no image of this table. */
+static int whole(const struct exh_params *p, const void *buf, size_t len_B)
 {
-    const uint32_t n = exh_signal_count(p->table);
-    const size_t body_B = IMAGE_HEAD_B + 4 * (size_t)n;
+    const size_t body_B = IMAGE_HEAD_B + 4 * (size_t)p->count;
     struct exh_bytes c = exh_bytes_reader(buf, len_B);
     struct exh_bytes tail;
     struct head h = {0, 0, 0, 0};
@@ -292,32 +291,46 @@ int exh_params_load(struct exh_params *p, const void *buf, size_t len_B, uint32_
 
     if (len_B < IMAGE_HEAD_B) { return -EXH_E_SHORT; }
     head_bytes(&c, &h);
-    if (h.magic != IMAGE_MAGIC || h.version != EXH_PARAMS_VERSION || h.count != n ||
+    if (h.magic != IMAGE_MAGIC || h.version != EXH_PARAMS_VERSION || h.count != p->count ||
         h.table_crc != exh_signal_crc(p->table)) {
         return -EXH_E_VERSION;
     }
     if (len_B < body_B + IMAGE_CRC_B) { return -EXH_E_SHORT; }
     tail = exh_bytes_reader((const uint8_t *)buf + body_B, IMAGE_CRC_B);
     exh_bytes_u32(&tail, &crc);
-    if (crc != exh_crc32(0, buf, body_B)) { return -EXH_E_CRC; }
+    return crc == exh_crc32(0, buf, body_B) ? 0 : -EXH_E_CRC;
+}
 
-    /* Two passes: an image is taken whole or not at all. */
+/* all: with the person's values. Two passes: an image is taken whole or not at all. */
+static int load(struct exh_params *p, const void *buf, size_t len_B, uint32_t *bad, int all)
+{
+    int err = whole(p, buf, len_B);
+    if (err < 0) { return err; }
     for (int pass = 0; pass < 2; pass++) {
-        c = exh_bytes_reader((const uint8_t *)buf + IMAGE_HEAD_B, 4 * (size_t)n);
-        for (uint32_t i = 0; i < n; i++) {
+        struct exh_bytes c =
+            exh_bytes_reader((const uint8_t *)buf + IMAGE_HEAD_B, 4 * (size_t)p->count);
+        for (uint32_t i = 0; i < p->count; i++) {
             int32_t v = 0;
             exh_bytes_i32(&c, &v);
-            if (pass == 0) {
-                const int err = exh_params_validate(p, i, v);
-                if (err < 0) {
-                    if (bad != NULL) { *bad = i; }
-                    return err;
-                }
-            } else {
-                put(p, p->staged, i, v);
+            if (!all && exh_signal_at(p->table, i, NULL)->when == EXH_WHEN_PERSON) { continue; }
+            err = pass == 0 ? exh_params_validate(p, i, v) : 0;
+            if (err < 0) {
+                if (bad != NULL) { *bad = i; }
+                return err;
             }
+            if (pass == 1) { put(p, p->staged, i, v); }
         }
     }
     p->pending = 1;
     return 0;
+}
+
+int exh_params_load(struct exh_params *p, const void *buf, size_t len_B, uint32_t *bad)
+{
+    return load(p, buf, len_B, bad, 0);
+}
+
+int exh_params_restore(struct exh_params *p, const void *buf, size_t len_B, uint32_t *bad)
+{
+    return load(p, buf, len_B, bad, 1);
 }

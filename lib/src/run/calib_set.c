@@ -8,11 +8,11 @@
 #define MON_ZERO_ID 0x050A
 
 const struct exh_signal exh_calib_set_rows[EXH_CALIB_SET_ROWS] = {
-    {0x8901, 0, EXH_WHEN_SETUP, 0, INT32_MAX, 0, "device_id", "",
+    {0x8901, 0, EXH_WHEN_PERSON, 0, INT32_MAX, 0, "device_id", "",
         "of this box: calibrations are made for one"},
-    {0x8902, 0, EXH_WHEN_SETUP, 0, INT32_MAX, 0, "day", "",
+    {0x8902, 0, EXH_WHEN_PERSON, 0, INT32_MAX, 0, "day", "",
         "today, days since 1970; 0: not known, no calibration of a day holds"},
-    {0x8903, 0, EXH_WHEN_SETUP, 0, 1, 0, "uncalibrated", "",
+    {0x8903, 0, EXH_WHEN_PERSON, 0, 1, 0, "uncalibrated", "",
         "1: a finger without a calibration arms without, by kf, polarity on trust"},
 };
 

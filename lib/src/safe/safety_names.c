@@ -7,8 +7,8 @@ static const char *const triggers[EXH_TRIGGERS] = {"refused", "cut", "latched", 
     "off", "armed", "limited", "run", "clear", "none"};
 static const char *const faults[EXH_FAULTS] = {"estop", "drive", "overrun", "encoder", "deadman",
     "tracking", "stuck", "speed", "glove", "card", "link", "supply", "watchdog", "config", "logic"};
-static const char *const limits[EXH_LIMITS] = {
-    "pull", "force", "slew", "peak", "i2t", "dac", "gate", "ramp", "release", "speed", "passivity"};
+static const char *const limits[EXH_LIMITS] = {"pull", "force", "slew", "peak", "i2t", "dac",
+    "gate", "ramp", "release", "speed", "passivity", "person"};
 static const char *const arms[EXH_ARMS] = {
     "selftest", "calibration", "polarity", "encoder", "deadman", "small_force", "ramp"};
 

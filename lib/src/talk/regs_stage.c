@@ -35,7 +35,8 @@ static int from_float(
 /* May value i be staged as raw? 0 or exception 3. */
 static int judge(const struct exh_regs *r, const struct exh_signal *row, uint32_t i, int32_t raw)
 {
-    const int fixed = row->when == EXH_WHEN_OUTPUT || (r->locked && row->when == EXH_WHEN_SETUP);
+    const int fixed = row->when == EXH_WHEN_OUTPUT || row->when == EXH_WHEN_PERSON ||
+                      (r->locked && row->when == EXH_WHEN_SETUP);
     if (raw < row->min || raw > row->max) { return EXH_MODBUS_VALUE; }
     return fixed && raw != r->wanted[i] ? EXH_MODBUS_VALUE : 0;
 }

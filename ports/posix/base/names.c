@@ -20,7 +20,7 @@ static const char *const faults[EXH_FAULTS] = {"emergency stop", "a drive is not
 static const char *const limits[EXH_LIMITS] = {"a string only pulls", "the force limit",
     "how fast force may change", "the peak current", "the motor's heat",
     "the end of the D/A's range", "the gate is closed", "the ramp after arming", "the release law",
-    "velocity into the law", "the passivity controller"};
+    "velocity into the law", "the passivity controller", "the person's ceiling"};
 static const char *const arms[EXH_ARMS] = {"known answers come out", "calibration valid",
     "polarity of motor and encoder", "encoders plausible",
     "dead-man switch held, no cause of a fault", "the law asks for a small force only",

@@ -97,7 +97,7 @@ int cli_param_set_by(struct exh_params *p, const char *by, const char *name, dou
 
 void cli_signal_print(FILE *f, const struct exh_signal_table *t, const int32_t *raw)
 {
-    static const char *const when[] = {"output", "set-up", "any time", "slewed", "limit"};
+    static const char *const when[] = {"output", "set-up", "any time", "slewed", "limit", "person"};
     const uint32_t n = exh_signal_count(t);
     for (uint32_t i = 0; i < n; i++) {
         uint16_t instance;

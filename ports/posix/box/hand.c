@@ -231,10 +231,6 @@ int bilateral_stage(const struct bilateral_run_cfg *c)
     if (err == 0 && c->k_Npm >= 0) { err = cli_param_set_by(p, "--k: ", "mat_k", c->k_Npm); }
     if (err == 0 && c->b_Nspm >= 0) { err = cli_param_set_by(p, "--b: ", "mat_b", c->b_Nspm); }
     if (err == 0) { err = run_image(&c->live, p); }
-    /* Today is not the day on which that was saved, and what was waived then is not now. */
-    if (err == 0 && c->images && c->images->n) {
-        err = images_give(c->images, &exh_scene_bilateral);
-    }
     /* Who is there now, whatever was there when that was saved. */
     for (size_t i = sizeof known / sizeof known[0] - 2;
          err == 0 && i < sizeof known / sizeof known[0]; i++) {

@@ -238,8 +238,6 @@ static int set_parameters(const struct run_cfg *c)
     }
     if (err == 0) { err = run_image(&c->live, p); }
     if (err == 0 && image_wall(c)) { err = cli_param_set(p, "q_lim", wall_m(c)); }
-    /* Today is not the day on which that was saved, and what was waived then is not now. */
-    if (err == 0 && c->images && c->images->n) { err = images_give(c->images, scene_of(c)); }
     if (err == 0 && c->live.gains) {
         err = cli_param_set_by(p, "--k: ", "k", c->k_Npm);
         if (err == 0) { err = cli_param_set_by(p, "--b: ", "b", c->b_Nspm); }

@@ -71,7 +71,7 @@ static int start_scene(const struct logfile *l)
     uint32_t bad = 0;
     int err;
     exh_scene_identify.defaults();
-    err = exh_params_load(exh_scene_identify.params, l->params, l->params_len, &bad);
+    err = exh_params_restore(exh_scene_identify.params, l->params, l->params_len, &bad);
     if (err == 0) {
         (void)exh_params_apply(exh_scene_identify.params);
         err = exh_scene_identify.setup(

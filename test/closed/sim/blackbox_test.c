@@ -412,7 +412,7 @@ TEST(the_header_has_the_parameters_of_the_fault)
     CHECK_EQ_I64(logfile_open(&l, path), 0);
     exh_scene_drop.defaults();
     CHECK_EQ_I64(p->active[index], dflt);
-    CHECK_EQ_I64(exh_params_load(p, l.params, l.params_len, NULL), 0);
+    CHECK_EQ_I64(exh_params_restore(p, l.params, l.params_len, NULL), 0);
     CHECK_EQ_I64(p->staged[index], dflt + 4711);
     logfile_close(&l);
     exh_blackbox_memory(NULL, 0, 0);

@@ -70,7 +70,7 @@ static void check_head(struct rig *r, const struct exh_scene *sc, int32_t period
 static void write_one(struct rig *r, const struct exh_signal *row, unsigned i, int32_t now)
 {
     const unsigned at = RIG_RAW + 2 * i, at_f = RIG_FLOAT + 2 * i;
-    const int fixed = row->when == EXH_WHEN_SETUP;
+    const int fixed = exh_signal_is_fixed(row);
     const int32_t end[2] = {row->min, row->max};
     uint16_t word[2];
     for (int e = 0; e < 2; e++) {
@@ -118,7 +118,7 @@ static void apply_all(struct rig *r, const struct exh_signal_table *t, const int
     for (int apply = 0; apply < 2; apply++) {
         for (uint32_t i = 0; i < n; i++) {
             const struct exh_signal *row = exh_signal_at(t, i, NULL);
-            if (row->when == EXH_WHEN_SETUP) { continue; }
+            if (exh_signal_is_fixed(row)) { continue; }
             CHECK_EQ_I64(rig_write(r, RIG_RAW + 2 * i, (uint32_t)row->max), 0);
         }
         CHECK_EQ_I64(rig_coil(r, apply ? EXH_COIL_APPLY : EXH_COIL_DISCARD), 0);
@@ -127,7 +127,7 @@ static void apply_all(struct rig *r, const struct exh_signal_table *t, const int
         read_block(r, modbus_read_registers, RIG_RAW, n, now);
         for (uint32_t i = 0; i < n; i++) {
             const struct exh_signal *row = exh_signal_at(t, i, NULL);
-            const int changed = apply && row->when != EXH_WHEN_SETUP;
+            const int changed = apply && !exh_signal_is_fixed(row);
             CHECK(now[i] == (changed ? row->max : was[i]), "%s", row->name);
         }
     }
@@ -139,7 +139,7 @@ static void check_against_log(const char *log, const int32_t *now, uint32_t n)
     struct logfile l;
     CHECK_EQ_I64(logfile_open(&l, log), 0);
     l.scene->defaults();
-    CHECK_EQ_I64(exh_params_load(l.scene->params, l.params, l.params_len, NULL), 0);
+    CHECK_EQ_I64(exh_params_restore(l.scene->params, l.params, l.params_len, NULL), 0);
     CHECK_EQ_I64(exh_signal_count(l.scene->params->table), n);
     CHECK(memcmp(l.scene->params->staged, now, 4 * n) == 0, "other parameters than in the log");
     logfile_close(&l);

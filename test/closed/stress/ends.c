@@ -36,7 +36,7 @@ static void stage_ends(const struct exh_scene *sc, enum to to)
     const uint32_t n = p == NULL ? 0 : exh_signal_count(p->table);
     for (uint32_t i = 0; i < n; i++) {
         const struct exh_signal *row = exh_signal_at(p->table, i, NULL);
-        if (row->when == EXH_WHEN_SETUP) { continue; }
+        if (exh_signal_is_fixed(row)) { continue; }
         (void)exh_params_stage_at(p, i,
             to == LOWEST    ? row->min
             : to == HIGHEST ? row->max

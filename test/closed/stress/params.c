@@ -67,6 +67,7 @@ static void parameters_every_tick(int32_t tune_ms)
 static void stage_setup(void)
 {
     stage_all(EXH_WHEN_SETUP);
+    stage_all(EXH_WHEN_PERSON);
     if (any(8)) { set(ID_SUPPLY_MIN, 0); }
     if (any(2)) {
         stage_all(EXH_WHEN_ANY);

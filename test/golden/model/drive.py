@@ -6,6 +6,7 @@ from struct import Struct
 from .num import AGAIN, TICKS, MAX32, MIN32, Rng, clamp, gain, period, sat32, shr, times, wave
 
 PULL, FORCE, SLEW, PEAK, I2T, DAC, GATE, RAMP, RELEASE = (1 << b for b in range(9))
+PERSON = 1 << 11
 FULL = 1 << 30
 
 
@@ -60,7 +61,7 @@ class Drive:
 
     def __init__(self, par, T, to_cur, to_force):
         (self.f_max, self.up, self.down, self.peak, self.cont, ms, self.zero, self.span,
-         self.dac, self.mon_zero, self.mon) = par
+         self.dac, self.mon_zero, self.mon, person_f, person_i) = par
         self.to_cur, self.to_force = to_cur, to_force
         g = gain(T[0] << 20, T[1])
         self.up, self.down = max(1, times(g, self.up)), max(1, times(g, self.down))
@@ -72,6 +73,9 @@ class Drive:
         self.fold = (gain(self.peak - self.cont, self.budget >> self.sh >> 2) if self.budget
                      else (0, 1))
         self.amp = gain(1 << 42, self.dac)
+        end = to_cur.knots[-1][0]
+        self.top, self.top_bit = min(end, person_f), PERSON if person_f < end else FORCE
+        self.i_top = self.whole(person_i) if person_i < self.peak else self.peak
         self.force = self.fall = self.heat = 0
 
     def take(self, permit, asked, term=0):
@@ -87,10 +91,11 @@ class Drive:
             self.force = 0
             limits = PULL if asked < 0 else GATE if asked > 0 else 0
             return limits | (FORCE if asked - term > small else 0), -asked, 0, 0, 0
-        top = min(self.f_max, self.to_cur.knots[-1][0])
+        top = min(self.f_max, self.top)
         most = top * share // FULL
         held = clamp(asked, 0, most)
-        limits = PULL if asked < 0 else FORCE if asked > top else 0
+        bit = self.top_bit if self.f_max > self.top else FORCE
+        limits = PULL if asked < 0 else bit if asked > top else 0
         if most < top and asked > most:
             limits |= RAMP
         force = clamp(held, self.force - self.down, self.force + self.up)
@@ -99,16 +104,21 @@ class Drive:
         self.force = force
         return limits, held - asked, force - held, 0, force
 
+    def whole(self, most):
+        return min(most, (most * self.dac >> 42) * self.amp[0] >> self.amp[1])
+
     def current(self):
         """(limits, table, peak, i2t)"""
         i0 = self.to_cur.at(self.force)
         left = max(0, self.budget - self.heat) >> self.sh
         hot = self.cont + min(self.peak - self.cont, times(self.fold, left))
-        whole = min(hot, (hot * self.dac >> 42) * self.amp[0] >> self.amp[1])
-        i1 = min(i0, whole if hot == self.peak else self.peak)
+        whole = self.whole(hot)
+        top = whole if hot == self.peak else self.peak
+        peak = PERSON if self.i_top < top else PEAK
+        i1 = min(i0, top, self.i_top)
         i2 = min(i1, whole)
         coded = sat32(times(self.amp, shr(i2 * self.dac, 42)))
-        limits = (PEAK if i1 != i0 else 0) | (I2T if i2 != i1 else 0)
+        limits = (peak if i1 != i0 else 0) | (I2T if i2 != i1 else 0)
         self.heat = max(0, self.heat + (coded >> 10) ** 2 - self.cont2)
         return limits, i0, i1 - i0, i2 - i1
 
@@ -138,7 +148,8 @@ def any_par(rng, rate):
     zero, span = rng.draw(0, 65535), rng.draw(0, 32767) >> rng.draw(0, 8)
     dac = rng.draw(65536, MAX32)
     mon_zero, mon = rng.draw(-32768, 32767), rng.draw(1, MAX32)
-    return f_max, up, down, peak, cont, ms, zero, span, dac, mon_zero, mon
+    person = min(104857600, rng.draw(1 << 20, 1 << 28)), min(442918502, rng.draw(0, 1 << 30))
+    return f_max, up, down, peak, cont, ms, zero, span, dac, mon_zero, mon, *person
 
 
 def drive(rate):

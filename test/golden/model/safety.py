@@ -16,7 +16,7 @@ ON = {name: i for i, name in enumerate(
 HEALTHY = 0x1F0F
 LATE = 64
 FINGERS = 5
-LIMITS = 11
+LIMITS = 12
 
 
 def any_safety(rng, rate):
@@ -135,7 +135,7 @@ class Safety:
         out, enable = [], 0
         for i, (par, cur, told) in enumerate(zip(pars, currents, limits)):
             zero, span, scale = par[6:9]
-            span = min(span, par[3] * scale >> 42)
+            span = min(span, min(par[3], par[12]) * scale >> 42)
             code = zero
             if self.open():
                 enable |= 1 << i

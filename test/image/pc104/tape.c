@@ -70,7 +70,7 @@ static void take_params(void)
     if (next(&r, EXH_RECORD_HEADER)) {
         c = exh_bytes_reader(r.payload, r.len_B);
         exh_record_header_serialize(&c, &h);
-        err = exh_params_load(EXH_SCENE.params, r.payload + c.at, r.len_B - c.at, NULL);
+        err = exh_params_restore(EXH_SCENE.params, r.payload + c.at, r.len_B - c.at, NULL);
     }
     if (err < 0) { pc104_halt(PC104_EXIT_ABSENT, "tape: not a log of this scene"); }
 }

@@ -174,7 +174,7 @@ TEST(force_ledger_sums_and_limits_hold)
         int64_t asked;
         uint32_t bits;
         int32_t last, slew, most;
-        int run;
+        int run, person;
         if (!any_axis(&a)) { continue; }
         f.spring_N_q20 = check_i64() >> 8;
         f.damper_N_q20 = check_i64();
@@ -184,6 +184,8 @@ TEST(force_ledger_sums_and_limits_hold)
         asked = f.spring_N_q20 + f.damper_N_q20 + f.pullback_N_q20 + f.passivity_N_q20;
         f.clamp_N_q20 = f.slew_N_q20 = f.force_N_q20 = 123;
         most = a.par.f_max_N_q20 < a.knot[3].x ? a.par.f_max_N_q20 : a.knot[3].x;
+        person = a.par.person_N_q20 < most;
+        if (person) { most = a.par.person_N_q20; }
         last = s.force_N_q20 = check_i32_in(0, most);
         run = check_u64() % 8 != 0;
         bits = exh_drive_force_step(&s, &a.cfg, run ? &open_permit : &closed, &f);
@@ -201,9 +203,10 @@ TEST(force_ledger_sums_and_limits_hold)
         CHECK(within_slew(&a, (int64_t)f.force_N_q20 - last, slew), "from %" PRId32 " to %" PRId32,
             last, f.force_N_q20);
         CHECK(((bits & EXH_LIMIT_PULL) != 0) == (asked < 0), "pull bit, asked %" PRId64, asked);
-        CHECK(((bits & EXH_LIMIT_FORCE) != 0) == (asked > most), "force bit");
+        CHECK(((bits & EXH_LIMIT_FORCE) != 0) == (asked > most && !person), "force bit");
+        CHECK(((bits & EXH_LIMIT_PERSON) != 0) == (asked > most && person), "person bit");
         CHECK(((bits & EXH_LIMIT_SLEW) != 0) == (f.slew_N_q20 != 0), "slew bit");
-        CHECK((bits & ~7u) == 0, "foreign bits %" PRIx32, bits);
+        CHECK((bits & ~(7u | EXH_LIMIT_PERSON)) == 0, "foreign bits %" PRIx32, bits);
         CHECK(f.slew_N_q20 == 0 || f.force_N_q20 != last, "stuck at %" PRId32, last);
     }
 }
@@ -256,6 +259,7 @@ TEST(current_ledger_sums_and_limits_hold)
         int64_t sum, heat, peaked;
         int32_t top;
         uint32_t bits;
+        int person;
         if (!any_axis(&a)) { continue; }
         s.force_N_q20 = 0;
         s.i2t_q32 = heat = a.cfg.i2t_budget_q32 / 4096 * check_i32_in(0, 4096);
@@ -264,9 +268,11 @@ TEST(current_ledger_sums_and_limits_hold)
         sum = i.table_A_q26 + i.peak_A_q26 + i.i2t_A_q26;
         peaked = i.table_A_q26 + i.peak_A_q26;
         CHECK(on_table(a.knot, 4, f.force_N_q20, (int32_t)i.table_A_q26), "table");
-        top = whole(&a, a.par.i_peak_A_q26);
+        person = a.par.person_A_q26 < a.par.i_peak_A_q26 &&
+                 whole(&a, a.par.person_A_q26) < whole(&a, a.par.i_peak_A_q26);
+        top = whole(&a, person ? a.par.person_A_q26 : a.par.i_peak_A_q26);
         CHECK(peaked == exh_clamp(i.table_A_q26, -top, top) ||
-                  (i.i2t_A_q26 != 0 &&
+                  (i.i2t_A_q26 != 0 && !person &&
                       peaked == exh_clamp(i.table_A_q26, -a.par.i_peak_A_q26, a.par.i_peak_A_q26)),
             "peak");
         CHECK(sum >= -top && sum <= top, "beyond the peak");
@@ -279,9 +285,11 @@ TEST(current_ledger_sums_and_limits_hold)
         CHECK(i.i2t_A_q26 == 0 || heat >= a.cfg.i2t_budget_q32 / 4 * 3,
             "limited at heat %" PRId64 " of %" PRId64, heat, a.cfg.i2t_budget_q32);
         CHECK(i.gate_A_q26 == 0 && i.dac_A_q26 == 0 && i.coded_A_q26 == 0, "rest of the ledger");
-        CHECK(((bits & EXH_LIMIT_PEAK) != 0) == (i.peak_A_q26 != 0), "peak bit");
+        CHECK(((bits & EXH_LIMIT_PEAK) != 0) == (i.peak_A_q26 != 0 && !person), "peak bit");
+        CHECK(((bits & EXH_LIMIT_PERSON) != 0) == (i.peak_A_q26 != 0 && person), "person bit");
         CHECK(((bits & EXH_LIMIT_I2T) != 0) == (i.i2t_A_q26 != 0), "I2t bit");
-        CHECK((bits & ~(uint32_t)(EXH_LIMIT_PEAK | EXH_LIMIT_I2T)) == 0, "foreign bits");
+        CHECK((bits & ~(uint32_t)(EXH_LIMIT_PEAK | EXH_LIMIT_I2T | EXH_LIMIT_PERSON)) == 0,
+            "foreign bits");
         /* one tick at 6.6 A may overshoot: 43.6 A^2 in q32 is below 44 * 2^32 */
         CHECK(s.i2t_q32 >= 0 && s.i2t_q32 <= a.cfg.i2t_budget_q32 + 44 * (INT64_C(1) << 32),
             "heat %" PRId64, s.i2t_q32);

@@ -30,7 +30,8 @@ static int any_box(struct box *b, unsigned n)
         for (unsigned r = 6; r <= 8; r++) { /* zero, span, scale of the D/A */
             if (check_u64() % 4) { field[r] = in_row(r); }
         }
-        if (check_u64() % 2) { field[3] = in_row(3); } /* i_peak, and i_cont below it */
+        if (check_u64() % 2) { field[3] = in_row(3); }   /* i_peak, and i_cont below it */
+        if (check_u64() % 2) { field[12] = in_row(12); } /* person_i */
         if (b->par[k].i_cont_A_q26 > b->par[k].i_peak_A_q26) { b->par[k].i_cont_A_q26 = 0; }
         if (exh_drive_setup(&b->cfg[k], &b->par[k], (struct exh_period){1, 2000}, t, none) < 0) {
             return 0;
@@ -59,8 +60,10 @@ static int stands_for(const struct exh_drive_par *par, int32_t codes, int32_t co
 /* The code nearest to the current asked, unless an end is in the way. */
 static int nearest_code(const struct exh_drive_par *par, int32_t most, int64_t asked, int32_t codes)
 {
-    const int64_t peak = wide_sat64(
-        wide_shr_floor(wide_mul(par->i_peak_A_q26, par->dac_rawpA_q16), EXH_Q_CUR + EXH_Q_DAC));
+    const int32_t top =
+        par->person_A_q26 < par->i_peak_A_q26 ? par->person_A_q26 : par->i_peak_A_q26;
+    const int64_t peak =
+        wide_sat64(wide_shr_floor(wide_mul(top, par->dac_rawpA_q16), EXH_Q_CUR + EXH_Q_DAC));
     const int64_t near = par->dac_span_raw < most ? par->dac_span_raw : most;
     const int64_t span = peak < near ? peak : near;
     const int64_t lo = span < par->dac_zero_raw ? -span : -par->dac_zero_raw;
@@ -81,6 +84,9 @@ static void check_finger(const struct box *b, unsigned k, int open, int64_t aske
     CHECK(wide_cmp(wide_shl(wide_of(codes < 0 ? -codes : codes), EXH_Q_CUR + EXH_Q_DAC),
               wide_mul(par->i_peak_A_q26, par->dac_rawpA_q16)) <= 0,
         "finger %u: %" PRId32 " codes are beyond i_peak", k, codes);
+    CHECK(wide_cmp(wide_shl(wide_of(codes < 0 ? -codes : codes), EXH_Q_CUR + EXH_Q_DAC),
+              wide_mul(par->person_A_q26, par->dac_rawpA_q16)) <= 0,
+        "finger %u: %" PRId32 " codes are beyond person_i", k, codes);
     CHECK(i->coded_A_q26 == asked + i->gate_A_q26 + i->dac_A_q26, "finger %u: ledger", k);
     CHECK(stands_for(par, codes, i->coded_A_q26), "finger %u: %" PRId32 " codes are not %" PRId32,
         k, codes, i->coded_A_q26);

@@ -123,7 +123,8 @@ TEST(filter)
 
 static const struct exh_drive_par drive_par = {EXH_Q(40, 1, EXH_Q_FORCE), 200000, 200000,
     EXH_Q(66, 10, EXH_Q_CUR), EXH_Q(33, 10, EXH_Q_CUR), 2700, 32768, 12184,
-    EXH_Q(324900, 176, EXH_Q_DAC), 0, EXH_Q(5164, 10000000, EXH_Q_MON)};
+    EXH_Q(324900, 176, EXH_Q_DAC), 0, EXH_Q(5164, 10000000, EXH_Q_MON), EXH_Q(40, 1, EXH_Q_FORCE),
+    EXH_Q(66, 10, EXH_Q_CUR)};
 
 /* As many as a table's n can say: what stands behind the two that are. */
 static struct exh_knot knot[256];
@@ -139,6 +140,8 @@ static void make_drive(struct exh_drive_cfg *cfg, uint32_t round)
     damage(knot, 2 * sizeof knot[0], round);
     damage(&cfg->force_to_cur.n, 1, round);
     damage(&cfg->f_top_N_q20, sizeof cfg->f_top_N_q20, round);
+    damage(&cfg->i_top_A_q26, sizeof cfg->i_top_A_q26, round);
+    damage(&cfg->top_limit, sizeof cfg->top_limit, round);
     damage(&cfg->tick_N_q20, sizeof cfg->tick_N_q20, round);
     damage(&cfg->dac_A_q26, sizeof cfg->dac_A_q26, round);
     damage(&cfg->i2t_budget_q32, sizeof cfg->i2t_budget_q32, round);

@@ -157,6 +157,39 @@ TEST(force_limit_and_pull_only)
     }
 }
 
+/* Whatever f_max becomes between two ticks, and whatever the table says 1 N is. The lower of the
+ * two is told; of two alike it is f_max. */
+TEST(no_force_or_current_beyond_the_persons_ceiling)
+{
+    static const struct {
+        int32_t f_max, person, dA, asked, want, mA;
+        uint32_t limits;
+    } row[] = {{40, 2, 66, 30, 2, 200, EXH_LIMIT_PERSON}, {100, 2, 66, 2, 2, 200, 0},
+        {1, 2, 66, 30, 1, 100, EXH_LIMIT_FORCE}, {2, 2, 66, 30, 2, 200, EXH_LIMIT_FORCE},
+        {40, 40, 1, 30, 30, 100, EXH_LIMIT_PERSON}, {40, 40, 0, 30, 30, 0, EXH_LIMIT_PERSON},
+        {40, 2, 1, 30, 2, 100, EXH_LIMIT_PERSON}, {100, 100, 66, 80, 80, 6600, EXH_LIMIT_PEAK}};
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct exh_force_ledger f;
+        struct exh_current_ledger c;
+        struct axis a;
+        int64_t most;
+        uint32_t limits;
+        axis_par(&a.par);
+        a.par.person_N_q20 = row[i].person * NEWTON;
+        a.par.person_A_q26 = EXH_Q(row[i].dA, 10, EXH_Q_CUR);
+        CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
+        a.par.f_max_N_q20 = row[i].f_max * NEWTON;
+        limits = force(&a, (int64_t)row[i].asked * NEWTON, &f);
+        limits |= exh_drive_current_step(&a.s, &a.cfg, &f, &c);
+        CHECK(limits == row[i].limits, "row %zu: limits %x", i, (unsigned)limits);
+        CHECK_EQ_I64(f.force_N_q20, row[i].want * NEWTON);
+        most = (int64_t)row[i].mA * (1 << 26) / 1000;
+        CHECK(c.table_A_q26 + c.peak_A_q26 + c.i2t_A_q26 <= most &&
+                  c.table_A_q26 + c.peak_A_q26 + c.i2t_A_q26 >= most - (1 << 26) / 1846,
+            "row %zu: %" PRId64, i, c.table_A_q26 + c.peak_A_q26 + c.i2t_A_q26);
+    }
+}
+
 /* The table ends at 22 N: a force beyond it can't be had, and is not claimed. */
 TEST(no_force_beyond_the_table)
 {
@@ -624,7 +657,8 @@ TEST(no_peak_no_budget)
 }
 
 TEST_MAIN("unit/drive", setup_rejections, setup_refuses_tables_that_pull_at_no_force,
-    no_force_beyond_the_table, setup_refuses_a_table_that_was_not_set, not_running_is_no_force,
+    no_force_or_current_beyond_the_persons_ceiling, no_force_beyond_the_table,
+    setup_refuses_a_table_that_was_not_set, not_running_is_no_force,
     setup_takes_every_documented_period, force_limit_and_pull_only, release_is_bounded_and_ends,
     release_begins_anew, ramp_limits_the_force, small_force_is_told, slew_both_ways,
     hostile_bytes_come_into_range, slowest_slew_still_moves, peak_limit,

@@ -131,6 +131,26 @@ TEST(span_is_never_exceeded)
     }
 }
 
+/* A ledger beyond the person's ceiling, whose i_peak is 6.6 A; 0 A is a ceiling, too. */
+TEST(no_code_is_beyond_the_persons_ceiling)
+{
+    static const int32_t dA[] = {0, 1, 3, 12, 65, 66};
+    static const int32_t amp[] = {1, 6, 31, -1, -32};
+    for (size_t k = 0; k < LEN(dA) * LEN(amp); k++) {
+        const int32_t A = amp[k / LEN(dA)], most = dA[k % LEN(dA)] * 4 / 10;
+        const int32_t codes = exh_clamp(4 * A, -most, most);
+        struct box b;
+        box_setup(&b);
+        b.s.state = EXH_STATE_RUN;
+        b.par[0].person_A_q26 = EXH_Q(dA[k % LEN(dA)], 10, EXH_Q_CUR);
+        b.par[0].dac_rawpA_q16 = EXH_Q(4, 1, EXH_Q_DAC);
+        b.i[0].table_A_q26 = A * (INT64_C(1) << 26);
+        exh_gate_step(&b.s, b.cfg, 1, b.i, b.limits, &b.out);
+        CHECK_EQ_I64(b.out.dac_raw[0], 32768 + codes);
+        CHECK(((b.limits[0] & EXH_LIMIT_DAC) != 0) == (4 * A != codes), "%d A", (int)A);
+    }
+}
+
 /* A ledger beyond the peak: with four codes an ampere 1.2 A are four codes, not five, and 0.1 A
  * none. */
 TEST(no_code_is_beyond_the_peak)
@@ -199,6 +219,6 @@ TEST(alive_changes_at_every_tick_in_every_state)
 }
 
 TEST_MAIN("unit/gate", gate_in_every_state, a_shut_gate_makes_a_frame_that_drives_nothing,
-    a_release_never_rises, span_is_never_exceeded, no_code_is_beyond_the_peak,
-    converter_end_is_reported, fingers_not_in_use_get_zero,
+    a_release_never_rises, span_is_never_exceeded, no_code_is_beyond_the_persons_ceiling,
+    no_code_is_beyond_the_peak, converter_end_is_reported, fingers_not_in_use_get_zero,
     alive_changes_at_every_tick_in_every_state);

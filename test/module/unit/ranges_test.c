@@ -118,7 +118,7 @@ static int drive(const int32_t *p)
     static struct exh_knot knot[2] = {{0, 0, {0, 0}}, {EXH_Q(10, 1, EXH_Q_FORCE), A(5, 1), {0, 0}}};
     static struct exh_knot back[2];
     const struct exh_drive_par par = {
-        p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8], p[9], p[10]};
+        p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8], p[9], p[10], p[11], p[12]};
     struct exh_drive_cfg cfg;
     if (exh_table_setup(knot, 2) < 0 || exh_table_invert(back, knot, 2) < 0) { return 1; }
     return exh_drive_setup(
@@ -282,8 +282,11 @@ TEST(of_drive)
         {EXH_Q(1846, 1, EXH_Q_DAC), EXH_Q(1, 1, EXH_Q_DAC), INT32_MAX},
         {0, -32768, 32767},
         {567787804, 1, INT32_MAX},
+        {EXH_Q(40, 1, EXH_Q_FORCE), EXH_Q(1, 8, EXH_Q_FORCE), EXH_Q(100, 1, EXH_Q_FORCE)},
+        {A(66, 10), 0, A(66, 10)},
     };
-    int32_t par[] = {0, 1, 1000, A(1, 10), 0, 1, 0, 0, EXH_Q(1, 1, EXH_Q_DAC), 0, 1};
+    int32_t par[] = {0, 1, 1000, A(1, 10), 0, 1, 0, 0, EXH_Q(1, 1, EXH_Q_DAC), 0, 1,
+        EXH_Q(1, 8, EXH_Q_FORCE), 0};
     ends("drive", of, LEN(of), drive);
     CHECK(drive(par) == 0, "the least peak");
     par[3]--;

@@ -370,7 +370,7 @@ TEST(library_rows_are_well_formed)
         CHECK(r->help != NULL && is_line(r->help), "%s: help", r->name);
         CHECK(r->min <= r->dflt, "%s: default below its range", r->name);
         CHECK(r->dflt <= r->max, "%s: default above its range", r->name);
-        CHECK(r->frac < 64 && r->when <= EXH_WHEN_LIMIT, "%s", r->name);
+        CHECK(r->frac < 64 && r->when <= EXH_WHEN_PERSON, "%s", r->name);
         for (uint32_t k = 0; k < i; k++) {
             const struct exh_signal *o = exh_signal_at(&lib_table, k, NULL);
             CHECK(o->id != r->id, "%s and %s share id %04x", r->name, o->name, r->id);

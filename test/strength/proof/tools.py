@@ -48,6 +48,8 @@ WP_PLANTS = [
      "exh_clamp(asked, -span - 1, span)"),
     ("gate", "code_of", "lib/src/act/gate.c", "exh_clamp(peak, 0, most)",
      "exh_clamp(peak + 1, 0, most)"),
+    ("gate", "code_of", "lib/src/act/gate.c", "par->person_A_q26 < par->i_peak_A_q26 ?",
+     "par->person_A_q26 > par->i_peak_A_q26 ?"),
     ("gate", "code_of", "lib/src/act/gate.c", "dac_zero_raw + spanned, 0, UINT16_MAX)",
      "dac_zero_raw + spanned, 0, 2 * UINT16_MAX)"),
     ("gate", "any_gate@falls", "lib/src/act/gate.c", "falls ? s->off_raw[k] : UINT16_MAX",

@@ -47,7 +47,7 @@ static int start_scene(struct replay *p)
     int err = 0;
     if (sc->params != NULL) {
         sc->defaults();
-        err = exh_params_load(sc->params, p->log.params, p->log.params_len, &bad);
+        err = exh_params_restore(sc->params, p->log.params, p->log.params_len, &bad);
         if (err < 0) {
             const struct exh_signal *row = exh_signal_at(sc->params->table, bad, NULL);
             cli_complain("%s: parameter image: %s%s%s", p->log.path, exh_error_text(err),

@@ -3,7 +3,7 @@
  * The gate: any state of the box, any ledger, any output frame, every number of fingers; of the
  * parameters and constants those that exh_drive_setup() lets pass.
  *
- * WP: every code within `dac_zero` +- `dac_span`, within `i_peak` and within 16 bits; in RELEASE none further from `dac_zero` than in the tick
+ * WP: every code within `dac_zero` +- `dac_span`, within `i_peak`, within the person's ceiling and within 16 bits; in RELEASE none further from `dac_zero` than in the tick
  * before; a gate that is shut codes `dac_zero` for each finger and enables none; codes of fingers not in use are `dac_zero`;
  * nothing else is written.
  *
@@ -38,6 +38,7 @@ int main(void)
         par[k].dac_zero_raw = Frama_C_interval(0, UINT16_MAX);
         par[k].dac_span_raw = Frama_C_interval(0, INT16_MAX);
         par[k].i_peak_A_q26 = Frama_C_interval(6710886, 442918502);
+        par[k].person_A_q26 = Frama_C_interval(0, 442918502);
         par[k].dac_rawpA_q16 = Frama_C_interval(65536, INT32_MAX);
         cfg[k].par = &par[k];
         cfg[k].dac_A_q26.mant = Frama_C_interval(0, INT32_MAX);
@@ -49,7 +50,7 @@ int main(void)
         limits[k] = Frama_C_unsigned_int_interval(0, (1u << EXH_LIMITS) - 1);
     }
     exh_gate_step(&s, cfg, 1, i, limits, &out);
-    /*@ assert bits_of_limits: limits[0] < 1 << 11; */
+    /*@ assert bits_of_limits: limits[0] < 1 << EXH_LIMITS; */
     exh_gate_shut(&s, (uint16_t)par[0].dac_zero_raw, &out);
     /*@ assert drives_nothing: out.enable == 0; */
     END();

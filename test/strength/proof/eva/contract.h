@@ -28,8 +28,10 @@
 
 /*@ predicate drive_par(struct exh_drive_par *p) = 0 <= p->f_max_N_q20 <= 104857600 && 1 <= p->slew_up_Nps <= 10000000 &&
       1000 <= p->slew_down_Nps <= 10000000 && 6710886 <= p->i_peak_A_q26 <= 442918502 && 0 <= p->i_cont_A_q26 <= 221459251 &&
-      0 <= p->dac_zero_raw <= 65535 && 0 <= p->dac_span_raw <= 32767 && -32768 <= p->mon_zero_raw <= 32767;
-    predicate drive_made(struct exh_drive_cfg *c) = 1 <= c->f_top_N_q20 && gain(&c->tick_N_q20) && gain(&c->i2t_fold) &&
+      0 <= p->dac_zero_raw <= 65535 && 0 <= p->dac_span_raw <= 32767 && -32768 <= p->mon_zero_raw <= 32767 &&
+      131072 <= p->person_N_q20 <= 104857600 && 0 <= p->person_A_q26 <= 442918502;
+    predicate drive_made(struct exh_drive_cfg *c) = 1 <= c->f_top_N_q20 && 0 <= c->i_top_A_q26 <= 442918502 &&
+      (c->top_limit == 2 || c->top_limit == 2048) && gain(&c->tick_N_q20) && gain(&c->i2t_fold) &&
       gain(&c->dac_A_q26) && 0 <= c->i2t_budget_q32 <= 1 << 60 && c->i2t_shift <= 62;
     predicate drive_cfg(struct exh_drive_cfg *c) = \valid_read(c->par) && drive_par(c->par) && table(&c->force_to_cur) &&
       table_or_none(&c->cur_to_force) && drive_made(c);
