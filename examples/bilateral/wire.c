@@ -46,19 +46,6 @@ static void take_planes(
     }
 }
 
-/* Materials are the world's, and nothing else: they are taken at a freeze, and the drive's own
- * limit holds beside theirs. What pulls without a contact (f0), what limits a pull, and where and
- * when a contact is (s, d_lim, and all that a frozen finger stands on) are the box's own: no world,
- * and nobody else who can send a packet, sets them, frozen or not. */
-static struct exh_wire_ack stage(struct exh_params *params, const struct exh_wire_packet *p)
-{
-    const struct exh_wire_param *ask = &p->u.param;
-    const int known = exh_signal_find(params->table, ask->id, ask->instance) >= 0;
-    const int worlds = ask->id >> 8 == exh_material_rows[0].id >> 8;
-    const struct exh_wire_ack refused = {*ask, -EXH_E_STATE, p->seq};
-    return known && !worlds ? refused : exh_wire_stage(params, p);
-}
-
 void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
     const struct exh_scene_mail *in, uint32_t missed, struct exh_params *params)
 {
@@ -89,7 +76,8 @@ void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
         } else if (type == EXH_WIRE_PLANES) {
             take_planes(s, cfg, &p.u.planes);
         } else if (type == EXH_WIRE_PARAM) {
-            const struct exh_wire_ack ack = stage(params, &p);
+            const struct exh_wire_ack ack =
+                exh_wire_stage(params, &p, !exh_safety_is_at_rest(s->safety.state));
             w->set += ack.result == 0;
             w->ack[w->acks++] = ack;
         } else if (type == EXH_WIRE_TRACE_ASK) {

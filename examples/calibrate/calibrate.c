@@ -39,7 +39,7 @@ static const struct exh_signal own_rows[] = {
     ROW_MS(0x820E, "hold", 10000, 500, "means are taken over this"),
     ROW_MS(0x820F, "step_time", 600000, 120000, "no phase of a step takes longer"),
     ROW_MS(0x8210, "wait_time", 1000000, 600000, "no wait for a person takes longer"),
-    {0x8211, 0, EXH_WHEN_ANY, 0, CALIBRATE_MASS + CALIBRATE_MASSES, 0, "go", "",
+    {0x8211, 0, EXH_WHEN_WORD, 0, CALIBRATE_MASS + CALIBRATE_MASSES, 0, "go", "",
         "the person's word: step + 1, new while it waits"},
 };
 

@@ -2,7 +2,7 @@
 #include "drop.h"
 
 const struct exh_signal drop_own_rows[DROP_OWN_ROWS] = {
-    {0x8001, EXH_Q_POS, EXH_WHEN_SLEWED, -EXH_Q(1, 1, EXH_Q_POS), EXH_Q(1, 1, EXH_Q_POS),
+    {0x8001, EXH_Q_POS, EXH_WHEN_WALL, -EXH_Q(1, 1, EXH_Q_POS), EXH_Q(1, 1, EXH_Q_POS),
         EXH_Q(7, 100, EXH_Q_POS), "q_lim", "m", "virtual contact, from where the string starts"},
     {0x8002, EXH_Q_FORCE, EXH_WHEN_PERSON, EXH_Q(1, 10, EXH_Q_FORCE), EXH_Q(100, 1, EXH_Q_FORCE),
         EXH_Q(3339, 1000, EXH_Q_FORCE), "kf", "n_per_a",

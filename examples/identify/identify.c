@@ -25,7 +25,7 @@ static const struct exh_signal own_rows[] = {
     {0x8908, 0, EXH_WHEN_SETUP, 1, 100, 14, "repeats", "", "rounds of pulses, and of the mass"},
     {0x8909, 0, EXH_WHEN_SETUP, 1, 1000000, 600000, "wait_time", "ms",
         "no wait for a person takes longer"},
-    {0x890A, 0, EXH_WHEN_ANY, 0, IDENTIFY_STAGES, 0, "go", "",
+    {0x890A, 0, EXH_WHEN_WORD, 0, IDENTIFY_STAGES, 0, "go", "",
         "the person's word: stage + 1, new while it waits"},
 };
 

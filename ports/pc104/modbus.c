@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The scene's registers on COM2, by the library's slave: modbus=com2,ADDRESS,BAUD[,remote]. Polled
- * once a tick, behind the outputs, a bounded number of characters at a time; nothing waits. Without
- * the option the UART is not touched.
+/* The scene's registers on COM2, by the library's slave: modbus=com2,ADDRESS,BAUD[,write][,remote].
+ * Polled once a tick, behind the outputs, a bounded number of characters at a time; nothing waits.
+ * Without the option the UART is not touched.
  *
  * The FIFO of 16 must not overflow between two ticks, nor the answer's run dry, for a gap would end
  * its frame: a baud rate of which a tick has more than 14 characters is refused. How full the
@@ -21,12 +21,13 @@
 
 #define VALUES     1024u /* parameters of a scene */
 #define TICK_B     14u   /* characters in a tick, at most */
-#define REMOTE     (1u << EXH_COIL_RUN | 1u << EXH_COIL_CLEAR)
+#define REMOTE     (1u << EXH_COIL_RUN | 1u << EXH_COIL_CLEAR | 1u << EXH_COIL_OFF)
+#define FORM       "com2,ADDRESS,BAUD[,write][,remote]"
 #define COM2(what) ((uint16_t)(UART_COM2 + (what)))
 
 static struct {
     int32_t address, baud;
-    uint8_t asked_for, remote;
+    uint8_t asked_for, remote, write;
 } par;
 
 static struct exh_regs regs;
@@ -81,23 +82,28 @@ int pc104_modbus_option(const char *name, const char *value)
     const char *rest;
     if (!pc104_same_text(name, "modbus")) { return 0; }
     rest = word_of(value, word);
-    if (!pc104_same_text(word, "com2") || rest == NULL) {
-        refuse(value, "com2,ADDRESS,BAUD[,remote]");
-    }
+    if (!pc104_same_text(word, "com2") || rest == NULL) { refuse(value, FORM); }
     rest = word_of(rest, word);
     if (pc104_number(word, 0, &par.address) < 0 || par.address < 1 || par.address > 247) {
         refuse(value, "address 1..247");
     }
-    if (rest == NULL) { refuse(value, "com2,ADDRESS,BAUD[,remote]"); }
+    if (rest == NULL) { refuse(value, FORM); }
     rest = word_of(rest, word);
     if (pc104_number(word, 0, &par.baud) < 0 || par.baud < 1200 || par.baud > 115200 ||
         exh_udiv64(UART_BASE_BAUD, (uint32_t)par.baud, NULL) * (uint32_t)par.baud !=
             UART_BASE_BAUD) {
         refuse(value, "baud: 115200 and whole parts of it, down to 1200");
     }
-    par.remote = rest != NULL;
-    if (rest != NULL && !pc104_same_text(rest, "remote")) {
-        refuse(value, "com2,ADDRESS,BAUD[,remote]");
+    par.write = par.remote = 0;
+    while (rest != NULL) {
+        rest = word_of(rest, word);
+        if (pc104_same_text(word, "write")) {
+            par.write = 1;
+        } else if (pc104_same_text(word, "remote")) {
+            par.remote = 1;
+        } else {
+            refuse(value, FORM);
+        }
     }
     par.asked_for = 1;
     return 1;
@@ -129,7 +135,7 @@ static void map(const struct exh_scene *sc)
     regs.signals = sc->values ? sc->signals : NULL;
     regs.signal = sc->values;
     regs.fingers = sc->fingers;
-    regs.may = EXH_REGS_MAY | (par.remote ? REMOTE : 0u);
+    regs.may = (par.write ? EXH_REGS_MAY : 0u) | (par.remote ? REMOTE : 0u);
     params = sc->params;
     scene_allows = sc->allowed;
     safety = sc->safety;
@@ -225,6 +231,7 @@ static int apply(void)
     if (params == NULL) { return 0; }
     pending = params->pending;
     memcpy(was, params->staged, 4 * (size_t)params->count);
+    if (safety) { regs.box.state = safety->state; } /* it may run by now */
     err = exh_regs_apply(&regs, params);
     if (err == 0 && scene_allows) { err = scene_allows(); }
     if (err < 0) { exh_params_rollback(params, was, pending); }
@@ -331,7 +338,10 @@ static void prepare(void)
     ask[10] = (uint8_t)(2 * put);
     for (uint32_t i = 0; i < put / 2; i++) {
         const struct exh_signal *row = exh_signal_at(regs.params, i, NULL);
-        const uint32_t bits = exh_float_from_raw(row->min / 2 + row->max / 2, row->frac);
+        const int32_t raw = row->when == EXH_WHEN_PERSON || row->when == EXH_WHEN_WORD
+                                ? params->staged[i]
+                                : row->min / 2 + row->max / 2;
+        const uint32_t bits = exh_float_from_raw(raw, row->frac);
         for (uint32_t k = 0; k < 4; k++) { ask[11 + 4 * i + k] = (uint8_t)(bits >> (24 - 8 * k)); }
     }
     request(&dearest, ask, 11 + 2 * put);
@@ -364,6 +374,7 @@ int pc104_modbus_dry(unsigned part)
         for (uint32_t i = 0; i < 2 * most + 1; i++) { (void)pc104_in8(COM2(UART_STATUS)); }
         return params != NULL;
     }
+    regs.may |= EXH_REGS_MAY; /* so that one budget is right for both */
     if (dearest.len_B == 0) { prepare(); }
     (void)pc104_in8(COM2(UART_STATUS));
     if (part == 0) {
@@ -385,5 +396,7 @@ void pc104_modbus_report(void)
     pc104_say_u32(line.damaged);
     pc104_say(", for others ");
     pc104_say_u32(line.others);
+    pc104_say(", refused ");
+    pc104_say_u32(regs.refused);
     pc104_say("\n");
 }

@@ -47,7 +47,7 @@ COMMANDS = {
 BILATERAL = COMMANDS["bilateral"]
 NEEDS = {
     ("run", "record-columns"): ["--scene", "bilateral", "--record", "{hand}", *COMMANDS["run"]],
-    ("run", "save"): ["--modbus", "tcp:127.0.0.1:0", *COMMANDS["run"]],
+    ("run", "save"): ["--modbus", "tcp:127.0.0.1:0", "--modbus-write", *COMMANDS["run"]],
     ("run", "glove-serial"): ["--scene", "bilateral", "--pace", *COMMANDS["run"]],
     ("run", "glove-calibration"): ["--scene", "bilateral", "--pace", "--glove-serial", "{csv}",
                                    *COMMANDS["run"]],

@@ -230,7 +230,7 @@ static void datagram(struct box *b, const struct exh_precontact_cfg *cfg, struct
         tick(b, cfg, 0);
         tick(b, cfg, 1);
     } else if (r == EXH_WIRE_PARAM) {
-        const struct exh_wire_ack ack = exh_wire_stage(params, &b->last);
+        const struct exh_wire_ack ack = exh_wire_stage(params, &b->last, 0);
         MUST(ack.result == 0 || memcmp(was.staged, b->staged, sizeof b->staged) == 0);
     } else if (r == EXH_WIRE_TRACE) {
         const struct exh_wire_trace *t = &b->last.u.trace;

@@ -21,8 +21,8 @@ static const struct exh_signal par_rows[] = {
     {0x7202, 0, EXH_WHEN_SETUP, -5, 5, 0, "fixed", "", ""},
     {0x7203, 30, EXH_WHEN_SLEWED, INT32_MIN, INT32_MAX, 0, "free", "", ""},
     {0x7204, 42, EXH_WHEN_LIMIT, -70000, 70000, 1, "limit", "", ""},
-    {0x7205, 0, EXH_WHEN_ANY, 0, 1, 0, "bit", "", ""},
-    {0x7206, 24, EXH_WHEN_ANY, 16777217, INT32_MAX, 16777219, "odd", "",
+    {0x7205, 0, EXH_WHEN_REST, 0, 1, 0, "bit", "", ""},
+    {0x7206, 24, EXH_WHEN_WALL, 16777217, INT32_MAX, 16777219, "odd", "",
         ""}, /* no binary32 is an end */
 };
 static const struct exh_signal last_rows[] = {

@@ -10,7 +10,7 @@
 static const struct exh_signal some_rows[] = {
     {0x7001, 10, EXH_WHEN_LIMIT, 0, 1024000000, 7, "some", "", ""},
     {0x7002, 20, EXH_WHEN_SETUP, INT32_MIN, INT32_MAX, -1, "wide", "", ""},
-    {0x7003, 0, EXH_WHEN_ANY, -5, 5, 0, "five", "", ""},
+    {0x7003, 0, EXH_WHEN_MATERIAL, -5, 5, 0, "five", "", ""},
 };
 static const struct exh_signal more_rows[] = {
     {0x7101, 0, EXH_WHEN_SETUP, 1, 2, 1, "narrow", "", ""},

@@ -201,7 +201,7 @@ static void put_taken(struct golden *g, const struct datagram *d)
         v[4] = exh_wire_round_trip_us(p.stamp_us, &p.u.planes);
     }
     if (got == EXH_WIRE_PARAM) {
-        ack = exh_wire_stage(&world.params, &p);
+        ack = exh_wire_stage(&world.params, &p, 1);
         CHECK(ack.param.instance == p.u.param.instance, "another instance in the answer");
     }
     golden_put(g, got);

@@ -36,6 +36,7 @@
 
 /* numbers */
 #include "exhand/angle.h"
+#include "exhand/authority.h"
 #include "exhand/bytes.h"
 #include "exhand/error.h"
 #include "exhand/fix.h"

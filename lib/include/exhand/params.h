@@ -7,6 +7,7 @@
 #ifndef EXHAND_PARAMS_H
 #define EXHAND_PARAMS_H
 
+#include "exhand/authority.h"
 #include "exhand/bytes.h"
 #include "exhand/signal.h"
 #include "exhand/units.h"
@@ -29,6 +30,7 @@ struct exh_params {
     uint8_t pending;                      /* something was staged since the last apply */
     uint8_t moving;                       /* a slewed value is not yet where it is wanted */
     uint8_t shift;                        /* a slewed value goes by 2^-shift of what is left */
+    uint8_t by;               /* bits, 1 << enum exh_source: who staged since the last apply */
     uint16_t led[2];          /* ids of slewed rows that gains.h moves while locked; 0: none */
     uint32_t count;           /* exh_signal_count() */
     uint32_t sum, passed, at; /* exh_params_verify(): of all, of those looked at, the next */
@@ -55,14 +57,19 @@ void exh_params_setup(
 void exh_params_slew_setup(
     struct exh_params *p, const struct exh_tune_par *par, struct exh_period T);
 
-/* Stages one raw value. -EXH_E_UNKNOWN, -EXH_E_RANGE (outside min..max), or
- * -EXH_E_STATE (an output; another set-up value while locked, the same is
- * accepted); nothing is staged then. */
+/* Stages one raw value, as the person at the box. -EXH_E_UNKNOWN, -EXH_E_RANGE (outside min..max),
+ * or -EXH_E_STATE (an output; another set-up value while locked, the same is accepted); nothing is
+ * staged then. */
 int exh_params_stage(struct exh_params *p, uint16_t id, uint16_t instance, int32_t raw);
 
 /* The same by index of the value, for whoever walks the table; and whether it would be staged. */
 int exh_params_stage_at(struct exh_params *p, uint32_t i, int32_t raw);
 int exh_params_validate(const struct exh_params *p, uint32_t i, int32_t raw);
+
+/* The same by anybody; who.locked is taken from p. -EXH_E_STATE too: authority.h denies it. */
+int exh_params_stage_by(struct exh_params *p, struct exh_authority who, uint32_t i, int32_t raw);
+int exh_params_validate_by(
+    const struct exh_params *p, struct exh_authority who, uint32_t i, int32_t raw);
 
 /* One step from `now` towards `goal`: by 2^-shift of what is left, rounded up to whole LSB. shift
  * 0..31. Never beyond; at the goal after at most 2^shift * (1 + 0.7 * (32 - shift)) + 1 steps, from
@@ -102,10 +109,10 @@ int exh_params_verify(struct exh_params *p);
  * little-endian. Saves what is wanted: the staged values. Bytes written, or -EXH_E_SHORT. */
 int32_t exh_params_save(const struct exh_params *p, void *buf, size_t cap_B);
 
-/* Stages a whole image or nothing, but for values of EXH_WHEN_PERSON: those stay as they are,
- * whatever stands in their place, since no image says what a person bears. -EXH_E_SHORT,
- * -EXH_E_VERSION (other version or table), -EXH_E_CRC, -EXH_E_RANGE or -EXH_E_STATE; for the last
- * two *bad (may be NULL) is the index of the offending value. */
+/* Stages a whole image or nothing, before the set-up is over, but for values of EXH_WHEN_PERSON:
+ * those stay as they are, whatever stands in their place, since no image says what a person bears.
+ * -EXH_E_SHORT, -EXH_E_VERSION (other version or table), -EXH_E_CRC, -EXH_E_RANGE or -EXH_E_STATE;
+ * for the last two *bad (may be NULL) is the index of the offending value. */
 int exh_params_load(struct exh_params *p, const void *buf, size_t len_B, uint32_t *bad);
 
 /* The same with values of EXH_WHEN_PERSON: of a log's header, for whoever runs that run again. */

@@ -21,7 +21,7 @@
 extern "C" {
 #endif
 
-#define EXH_RECORD_VERSION  3       /* 2: keyframes had no count of the limit PERSON */
+#define EXH_RECORD_VERSION  3       /* 2: no limit PERSON, no source of an event */
 #define EXH_RECORD_SYNC     0x5845u /* first bytes of every record, "EX" */
 #define EXH_RECORD_HEAD_B   14      /* bytes before a payload */
 #define EXH_RECORD_OVERHEAD 18      /* bytes around a payload */
@@ -39,7 +39,7 @@ enum exh_record_type {
 
 /* What came in that is no input of every tick. */
 enum exh_event_type {
-    EXH_EVENT_PARAM = 1,   /* id u16, instance u16, value: staged and applied */
+    EXH_EVENT_PARAM = 1,   /* id, instance, value: staged and applied; source */
     EXH_EVENT_COMMAND = 2, /* value: enum exh_command */
     EXH_EVENT_MISSED = 3,  /* value: ticks missed before this tick */
     EXH_EVENT_MARK = 4,    /* value: the operator's own mark */
@@ -54,6 +54,8 @@ struct exh_event {
     uint16_t id;       /* of a signal's row */
     uint16_t instance; /* of it: finger */
     int32_t value;     /* raw */
+    uint16_t source;   /* bits, 1 << enum exh_source: who staged; more than one where more did in
+                        * the same tick */
 };
 
 /* The fixed part of the header's payload; the parameter image follows it, and behind that whole

@@ -26,7 +26,7 @@ extern "C" {
 
 #define EXH_REGS_MAGIC 0x45584831u /* "EXH1" */
 /* major << 16 | minor: a new major means something else, a new minor adds */
-#define EXH_REGS_VERSION 0x00010000u
+#define EXH_REGS_VERSION 0x00010001u
 
 /* the function that reads it */
 enum exh_regs_kind {
@@ -78,6 +78,7 @@ enum exh_regs_head {
     EXH_HEAD_NAME_1,      /* the next four */
     EXH_HEAD_NAME_2,      /* the next */
     EXH_HEAD_NAME_3,      /* the last; zeros behind the end */
+    EXH_HEAD_REFUSED,     /* writes and APPLY refused since set-up, modulo 2^32; since 1.1 */
     EXH_HEADS             /* how many there are */
 };
 
@@ -182,7 +183,7 @@ struct exh_regs {
     int32_t *staged;            /* the map's own, exh_signal_count(params) of them */
     uint32_t *touched;          /* bit i: staged[i] counts; EXH_REGS_WORDS() of them */
     struct exh_period T;        /* of the loop */
-    uint32_t may;               /* bit k: coil k can be commanded here */
+    uint32_t may;               /* bit k: coil k can be commanded; none: all is read only */
     uint8_t locked;             /* exh_params.locked: set-up values are refused */
     uint8_t fingers;            /* drives in use */
     struct exh_trace *trace;    /* set up; its frames are read and it is started here; or NULL */
@@ -191,13 +192,15 @@ struct exh_regs {
     /* Filled by exh_regs_setup() and what follows. */
     uint32_t signals_n, params_n;     /* values in the tables; 0: no table */
     uint32_t signals_crc, params_crc; /* exh_signal_crc() of them; 0: no table */
-    uint32_t asked; /* bit k: coil k was commanded, and exh_regs_poll() has not been called */
-    uint32_t done;  /* commands carried out */
-    int32_t result; /* of the last of them */
+    uint32_t asked;   /* bit k: coil k was commanded, and exh_regs_poll() has not been called */
+    uint32_t done;    /* commands carried out */
+    uint32_t refused; /* writes and APPLY refused, modulo 2^32; not those that were only early */
+    int32_t result;   /* of the last of them */
 };
 
-/* What can be commanded anywhere that has parameters; a port adds (1u << EXH_COIL_SAVE) where it
- * has a place to save to, RUN and CLEAR where somebody has allowed them on the spot. */
+/* What can be commanded where clients may change parameters: nothing is staged without APPLY. A
+ * port of which they only read leaves it 0, and adds (1u << EXH_COIL_SAVE) where it has a place to
+ * save to, RUN, CLEAR and OFF where somebody has allowed them on the spot. */
 #define EXH_REGS_MAY (1u << EXH_COIL_APPLY | 1u << EXH_COIL_DISCARD | 1u << EXH_COIL_OFF)
 
 /* Counts the tables and takes their CRCs; nothing is staged or asked. -EXH_E_RANGE: more than
@@ -216,7 +219,8 @@ int exh_regs_read(
 /* Stages n holding registers, 2 n bytes as above, all or none: a value of which one register alone
  * is written keeps the other as it stands, but not a binary32 (exception 3). Exception 3 too:
  * outside the row's range, a set-up value other than wanted while locked, a binary32 that is no
- * number. Exception 6: APPLY is pending, and what it takes does not change any more. Those of the
+ * number; what authority.h denies a register in the state of `box`; all of it without APPLY in
+ * `may`. Exception 6: APPLY is pending, and what it takes does not change any more. Those of the
  * trace start one; exception 3: a signal that is none. A binary32 goes to the nearest raw value, of
  * two as near to the even one; one that reads as what stands there leaves that as it is, one that
  * reads as min or max is min or max. What is staged as it is wanted anyway counts as not staged. */
@@ -238,8 +242,9 @@ int exh_regs_write_bits(struct exh_regs *r, uint16_t at, uint16_t n, const uint8
  * APPLY, SAVE, command; then exh_regs_complete(). */
 uint32_t exh_regs_poll(struct exh_regs *r);
 
-/* Between two ticks: hands what is staged to p, whose table is r->params, all or none. 0,
- * -EXH_E_STATE (a set-up value, and p is locked by now) or -EXH_E_RANGE. Nothing is staged then any
+/* Between two ticks: hands what is staged to p, whose table is r->params, all or none, judged once
+ * more: locked as p is, in the state of `box`, which the caller brings up to date before. 0,
+ * -EXH_E_STATE (what may not be any more) or -EXH_E_RANGE. Nothing is staged then any
  * more. */
 int exh_regs_apply(struct exh_regs *r, struct exh_params *p);
 

@@ -184,6 +184,13 @@ static inline int exh_safety_is_running(const struct exh_safety *s)
     return s->state == EXH_STATE_RUN || s->state == EXH_STATE_LIMIT;
 }
 
+/* 1 in OFF and FAULT: there is no force, and none comes but by a person's hand; else 0, and in what
+ * is no state. */
+static inline int exh_safety_is_at_rest(unsigned state)
+{
+    return state == EXH_STATE_OFF || state == EXH_STATE_FAULT;
+}
+
 /* 1 if the gate is open in this state of the box, else 0. */
 int exh_safety_is_open(const struct exh_safety *s);
 

@@ -27,8 +27,14 @@ enum exh_signal_when {
     EXH_WHEN_ANY,    /* between any two ticks, at once */
     EXH_WHEN_SLEWED, /* likewise, but little by little: force hangs on it */
     EXH_WHEN_LIMIT,  /* likewise, a limit of force: it rises little by little and falls at once */
-    EXH_WHEN_PERSON  /* before the loop starts, by the person at the box alone: by the command line
+    EXH_WHEN_PERSON, /* before the loop starts, by the person at the box alone: by the command line
                       * or a boot option; by no register, packet or image */
+    EXH_WHEN_BOUND,  /* at once: more of it may be more force */
+    EXH_WHEN_WALL,   /* little by little: less of it is more force */
+    EXH_WHEN_REST,   /* at once: where or when a contact is, so neither way is the safe one */
+    EXH_WHEN_MATERIAL, /* as BOUND, and the world's: it acts at the next freeze */
+    EXH_WHEN_WORD,     /* at any time, by the person alone: his word that a motion may begin */
+    EXH_WHENS          /* how many there are; who may change which: authority.h */
 };
 
 /* Register of ids, 0xMMNN: MM is the module, NN the row. test/module/unit/rows_test.c has each.
@@ -55,6 +61,13 @@ struct exh_signal {
 static inline int exh_signal_is_fixed(const struct exh_signal *row)
 {
     return row->when == EXH_WHEN_SETUP || row->when == EXH_WHEN_PERSON;
+}
+
+/* 1: while the loop runs it goes little by little to another value. */
+static inline int exh_signal_is_slewed(const struct exh_signal *row)
+{
+    return row->when == EXH_WHEN_SLEWED || row->when == EXH_WHEN_LIMIT ||
+           row->when == EXH_WHEN_WALL;
 }
 
 /* The rows of one module, once per instance (per finger). */

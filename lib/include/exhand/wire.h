@@ -218,8 +218,10 @@ int exh_wire_decode(
 /* The plane of one finger as precontact wants it. */
 struct exh_plane exh_wire_plane_of(const struct exh_wire_planes *planes, unsigned finger);
 
-/* What a PARAM packet asks for, staged; the answer to it. The loop applies between ticks. */
-struct exh_wire_ack exh_wire_stage(struct exh_params *params, const struct exh_wire_packet *p);
+/* What a PARAM packet asks for, staged if authority.h allows it a world; the answer to it. open: 1
+ * unless the box is in OFF or FAULT. The loop applies between ticks. */
+struct exh_wire_ack exh_wire_stage(
+    struct exh_params *params, const struct exh_wire_packet *p, int open);
 
 /* Newest time of an exchange, us: now less the stamp that came back. */
 static inline uint32_t exh_wire_round_trip_us(uint32_t now_us, const struct exh_wire_planes *planes)

@@ -20,10 +20,10 @@
 const struct exh_signal exh_drive_rows[EXH_DRIVE_ROWS] = {
     {0x0501, EXH_Q_FORCE, EXH_WHEN_LIMIT, 0, EXH_FORCE_MAX_N_Q20, EXH_Q(40, 1, EXH_Q_FORCE),
         "f_max", "n", "force limit"},
-    {0x0502, 0, EXH_WHEN_ANY, 1, SLEW_MAX_NPS, 200000, "slew_up", "n_per_s",
+    {0x0502, 0, EXH_WHEN_BOUND, 1, SLEW_MAX_NPS, 200000, "slew_up", "n_per_s",
         "fastest rise of force"},
     /* At 1 kN/s the 22 N of a CyberGrasp motor are gone in 22 ms: letting go is never slow. */
-    {0x0503, 0, EXH_WHEN_ANY, SLEW_DOWN_MIN_NPS, SLEW_MAX_NPS, 200000, "slew_down", "n_per_s",
+    {0x0503, 0, EXH_WHEN_BOUND, SLEW_DOWN_MIN_NPS, SLEW_MAX_NPS, 200000, "slew_down", "n_per_s",
         "fastest fall of force"},
     /* Elmo Castanet: 6.6 A peak for about 2.7 s, 3.3 A for ever (hardware facts). */
     {0x0504, EXH_Q_CUR, EXH_WHEN_SETUP, I_PEAK_MIN_A_Q26, I_PEAK_MAX_A_Q26, I_PEAK_MAX_A_Q26,
@@ -120,8 +120,11 @@ static void setup_top(struct exh_drive_cfg *cfg, const struct exh_drive_par *par
     const int cut = par->person_N_q20 < end_N_q20;
     cfg->f_top_N_q20 = cut ? par->person_N_q20 : end_N_q20;
     cfg->top_limit = cut ? EXH_LIMIT_PERSON : EXH_LIMIT_FORCE;
-    cfg->i_top_A_q26 = par->person_A_q26 < par->i_peak_A_q26 ? whole_codes(cfg, par->person_A_q26)
-                                                             : par->i_peak_A_q26;
+    /* Of the same codes it is i_peak that holds back. */
+    cfg->i_top_A_q26 = whole_codes(cfg, par->person_A_q26);
+    if (cfg->i_top_A_q26 >= whole_codes(cfg, par->i_peak_A_q26)) {
+        cfg->i_top_A_q26 = par->i_peak_A_q26;
+    }
 }
 
 int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, struct exh_period T,

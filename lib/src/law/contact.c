@@ -12,9 +12,9 @@ const struct exh_signal exh_contact_rows[EXH_CONTACT_ROWS] = {
         "damping of the virtual wall"},
     {0x0403, EXH_Q_FORCE, EXH_WHEN_SLEWED, 0, EXH_Q(20, 1, EXH_Q_FORCE),
         EXH_Q(107, 1000, EXH_Q_FORCE), "f0", "n", "pull-back force while the string runs in"},
-    {0x0404, EXH_Q_POS, EXH_WHEN_ANY, 0, EXH_Q(1, 100, EXH_Q_POS), EXH_Q(2, 10000, EXH_Q_POS),
+    {0x0404, EXH_Q_POS, EXH_WHEN_REST, 0, EXH_Q(1, 100, EXH_Q_POS), EXH_Q(2, 10000, EXH_Q_POS),
         "f0_band", "m", "movement that reverses the pull-back force"},
-    {0x0405, EXH_Q_POS, EXH_WHEN_ANY, 0, EXH_Q(1, 100, EXH_Q_POS), 0, "hyst", "m",
+    {0x0405, EXH_Q_POS, EXH_WHEN_REST, 0, EXH_Q(1, 100, EXH_Q_POS), 0, "hyst", "m",
         "contact ends this far before q_lim"},
 };
 

@@ -13,7 +13,7 @@
 #define ENERGY_MAX_NCNT_Q20 (INT64_C(1) << 60)
 
 const struct exh_signal exh_passivity_rows[EXH_PASSIVITY_ROWS] = {
-    {0x0F01, 0, EXH_WHEN_ANY, 0, LATE, LATE, "passivity", "",
+    {0x0F01, 0, EXH_WHEN_REST, 0, LATE, LATE, "passivity", "",
         "0 observes, 1 limits, 2 limits with outputs up to a tick late"},
 };
 

@@ -15,30 +15,30 @@
 #define SLEW_MAX_NPS     10000000
 
 const struct exh_signal exh_material_rows[EXH_MATERIAL_ROWS] = {
-    {0x0B01, EXH_Q_K, EXH_WHEN_ANY, 0, EXH_K_MAX_NPM_Q10, EXH_Q(20000, 1, EXH_Q_K), "mat_k",
+    {0x0B01, EXH_Q_K, EXH_WHEN_MATERIAL, 0, EXH_K_MAX_NPM_Q10, EXH_Q(20000, 1, EXH_Q_K), "mat_k",
         "n_per_m", "stiffness of the material"},
-    {0x0B02, EXH_Q_B, EXH_WHEN_ANY, 0, EXH_B_MAX_NSPM_Q20, EXH_Q(60, 1, EXH_Q_B), "mat_b",
+    {0x0B02, EXH_Q_B, EXH_WHEN_MATERIAL, 0, EXH_B_MAX_NSPM_Q20, EXH_Q(60, 1, EXH_Q_B), "mat_b",
         "ns_per_m", "damping of the material"},
-    {0x0B03, EXH_Q_FORCE, EXH_WHEN_ANY, 0, EXH_FORCE_MAX_N_Q20, EXH_Q(12, 1, EXH_Q_FORCE),
+    {0x0B03, EXH_Q_FORCE, EXH_WHEN_MATERIAL, 0, EXH_FORCE_MAX_N_Q20, EXH_Q(12, 1, EXH_Q_FORCE),
         "mat_f_max", "n", "force limit of the material"},
 };
 
 const struct exh_signal exh_precontact_rows[EXH_PRECONTACT_ROWS] = {
-    {0x0C01, EXH_Q_POS, EXH_WHEN_ANY, -EXH_Q(2, 10, EXH_Q_POS), -EXH_Q(1, 10000, EXH_Q_POS),
+    {0x0C01, EXH_Q_POS, EXH_WHEN_REST, -EXH_Q(2, 10, EXH_Q_POS), -EXH_Q(1, 10000, EXH_Q_POS),
         -EXH_Q(45, 10000, EXH_Q_POS), "d_lim", "m", "q_lim is frozen at this distance, < 0"},
-    {0x0C02, EXH_Q_POS, EXH_WHEN_ANY, 0, EXH_Q(5, 100, EXH_Q_POS), EXH_Q(1, 1000, EXH_Q_POS),
+    {0x0C02, EXH_Q_POS, EXH_WHEN_REST, 0, EXH_Q(5, 100, EXH_Q_POS), EXH_Q(1, 1000, EXH_Q_POS),
         "d_hyst", "m", "released this far before d_lim"},
-    {0x0C03, 24, EXH_WHEN_ANY, SCALE_MIN_Q24, SCALE_MAX_Q24, INT32_C(1) << 24, "string_per_tip", "",
-        "string metres per fingertip metre"},
-    {0x0C04, 0, EXH_WHEN_ANY, 0, 1, 0, "string_from_slope", "", "1: that of the joints instead"},
+    {0x0C03, 24, EXH_WHEN_REST, SCALE_MIN_Q24, SCALE_MAX_Q24, INT32_C(1) << 24, "string_per_tip",
+        "", "string metres per fingertip metre"},
+    {0x0C04, 0, EXH_WHEN_REST, 0, 1, 0, "string_from_slope", "", "1: that of the joints instead"},
     {0x0C05, 0, EXH_WHEN_SETUP, 0, 1, 0, "d_printed", "", "1: the sign of the pad as printed"},
     {0x0C06, 0, EXH_WHEN_SETUP, 1, 60000, 2000, "age_max", "ms", "an older plane is none"},
-    {0x0C07, EXH_Q_POS, EXH_WHEN_ANY, 0, EXH_Q(5, 100, EXH_Q_POS), EXH_Q(5, 1000, EXH_Q_POS),
+    {0x0C07, EXH_Q_POS, EXH_WHEN_REST, 0, EXH_Q(5, 100, EXH_Q_POS), EXH_Q(5, 1000, EXH_Q_POS),
         "d_doubt", "m", "touching so far before d_lim and d_hyst is in doubt"},
     {0x0C08, 0, EXH_WHEN_SETUP, 1, 60000, 100, "doubt_max", "ms",
         "a contact longer in doubt is let go"},
     {0x0C09, 0, EXH_WHEN_SETUP, 1, 60000, 50, "tip_age_max", "ms", "an older fingertip is unknown"},
-    {0x0C0A, 0, EXH_WHEN_ANY, 1, SLEW_MAX_NPS, 100, "late_slew", "n_per_s",
+    {0x0C0A, 0, EXH_WHEN_BOUND, 1, SLEW_MAX_NPS, 100, "late_slew", "n_per_s",
         "rise of force where a plane came too late"},
 };
 

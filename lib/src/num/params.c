@@ -2,6 +2,7 @@
 /* Staging, slewing and sealing of a scene's parameters, and their image. */
 #include "exhand/params.h"
 
+#include "exhand/authority.h"
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
@@ -86,13 +87,23 @@ void exh_params_slew_setup(
     for (; taken < time && p->shift < EXH_TUNE_SHIFT_MAX; taken *= 2) { p->shift++; }
 }
 
-int exh_params_validate(const struct exh_params *p, uint32_t i, int32_t raw)
+int exh_params_validate_by(
+    const struct exh_params *p, struct exh_authority who, uint32_t i, int32_t raw)
 {
     const struct exh_signal *row = exh_signal_at(p->table, i, NULL);
     if (row == NULL) { return -EXH_E_UNKNOWN; }
     if (row->when == EXH_WHEN_OUTPUT) { return -EXH_E_STATE; }
     if (raw < row->min || raw > row->max) { return -EXH_E_RANGE; }
-    return p->locked && exh_signal_is_fixed(row) && raw != p->staged[i] ? -EXH_E_STATE : 0;
+    who.locked = p->locked;
+    return exh_authority_check(who, row->when, p->staged[i], raw);
+}
+
+/* Open or not is nothing to who stands there. */
+static const struct exh_authority person = {EXH_FROM_PERSON, 1, 1};
+
+int exh_params_validate(const struct exh_params *p, uint32_t i, int32_t raw)
+{
+    return exh_params_validate_by(p, person, i, raw);
 }
 
 int exh_params_stage(struct exh_params *p, uint16_t id, uint16_t instance, int32_t raw)
@@ -101,13 +112,19 @@ int exh_params_stage(struct exh_params *p, uint16_t id, uint16_t instance, int32
     return i < 0 ? (int)i : exh_params_stage_at(p, (uint32_t)i, raw);
 }
 
-int exh_params_stage_at(struct exh_params *p, uint32_t i, int32_t raw)
+int exh_params_stage_by(struct exh_params *p, struct exh_authority who, uint32_t i, int32_t raw)
 {
-    const int err = exh_params_validate(p, i, raw);
+    const int err = exh_params_validate_by(p, who, i, raw);
     if (err < 0) { return err; }
     put(p, p->staged, i, raw);
     p->pending = 1;
+    p->by |= (uint8_t)(1u << who.source);
     return 0;
+}
+
+int exh_params_stage_at(struct exh_params *p, uint32_t i, int32_t raw)
+{
+    return exh_params_stage_by(p, person, i, raw);
 }
 
 int32_t exh_params_slew_step(int32_t now, int32_t goal, unsigned shift)
@@ -116,11 +133,6 @@ int32_t exh_params_slew_step(int32_t now, int32_t goal, unsigned shift)
     const uint32_t left = goal < now ? 0u - up : up;
     const uint32_t part = (left >> shift) + ((left & ((UINT32_C(1) << shift) - 1)) != 0);
     return exh_from_u32((uint32_t)now + (goal < now ? 0u - part : part));
-}
-
-static int is_slewed(const struct exh_signal *row)
-{
-    return row->when == EXH_WHEN_SLEWED || row->when == EXH_WHEN_LIMIT;
 }
 
 /* A step, or none where somebody else moves it. */
@@ -137,9 +149,9 @@ static void slew(struct exh_params *p, const struct exh_signal *row, uint32_t i)
 /* One whose two values differ; `all`: something was staged. */
 static void apply_value(struct exh_params *p, const struct exh_signal *row, uint32_t i, int all)
 {
-    if (p->locked && is_slewed(row)) {
+    if (p->locked && exh_signal_is_slewed(row)) {
         slew(p, row, i);
-    } else if (all || is_slewed(row)) {
+    } else if (all || exh_signal_is_slewed(row)) {
         put(p, p->active, i, p->staged[i]);
     }
 }
@@ -174,7 +186,7 @@ int exh_params_apply(struct exh_params *p)
     const int all = p->pending;
     uint32_t first = 0;
     if (!p->pending && !p->moving) { return 0; }
-    p->pending = p->moving = 0;
+    p->pending = p->moving = p->by = 0;
     for (uint16_t n = 0; n < p->table->groups; n++) {
         const struct exh_signal_group *g = &p->table->group[n];
         apply_group(p, g, first, all);
@@ -186,13 +198,14 @@ int exh_params_apply(struct exh_params *p)
 void exh_params_discard(struct exh_params *p)
 {
     for (uint32_t i = 0; i < p->count; i++) { put(p, p->staged, i, p->active[i]); }
-    p->pending = p->moving = 0;
+    p->pending = p->moving = p->by = 0;
 }
 
 void exh_params_rollback(struct exh_params *p, const int32_t *was, uint8_t pending)
 {
     for (uint32_t i = 0; i < p->count; i++) { put(p, p->staged, i, was[i]); }
     p->pending = pending;
+    if (!pending) { p->by = 0; }
 }
 
 /* --- keyframe --- */
@@ -201,7 +214,7 @@ void exh_params_rollback(struct exh_params *p, const int32_t *was, uint8_t pendi
 static int value_bytes(
     struct exh_bytes *c, struct exh_params *p, const struct exh_signal *row, uint32_t i, int take)
 {
-    const int slewed = is_slewed(row);
+    const int slewed = exh_signal_is_slewed(row);
     int32_t is = p->active[i], wanted = p->staged[i];
     exh_bytes_i32(c, &is);
     if (slewed) { exh_bytes_i32(c, &wanted); }
@@ -241,7 +254,7 @@ void exh_params_serialize(struct exh_bytes *c, struct exh_params *p)
         return;
     }
     if (c->mode == EXH_BYTES_READ) {
-        p->pending = p->moving = 0;
+        p->pending = p->moving = p->by = 0;
         (void)values_bytes(c, p, 1);
     }
     *c = ahead;
@@ -301,9 +314,11 @@ static int whole(const struct exh_params *p, const void *buf, size_t len_B)
     return crc == exh_crc32(0, buf, body_B) ? 0 : -EXH_E_CRC;
 }
 
-/* all: with the person's values. Two passes: an image is taken whole or not at all. */
-static int load(struct exh_params *p, const void *buf, size_t len_B, uint32_t *bad, int all)
+/* By a person: with his values. Two passes: an image is taken whole or not at all. */
+static int load(struct exh_params *p, const void *buf, size_t len_B, uint32_t *bad, uint8_t source)
 {
+    const struct exh_authority who = {source, 1, 1};
+    const int all = source == EXH_FROM_PERSON;
     int err = whole(p, buf, len_B);
     if (err < 0) { return err; }
     for (int pass = 0; pass < 2; pass++) {
@@ -313,7 +328,7 @@ static int load(struct exh_params *p, const void *buf, size_t len_B, uint32_t *b
             int32_t v = 0;
             exh_bytes_i32(&c, &v);
             if (!all && exh_signal_at(p->table, i, NULL)->when == EXH_WHEN_PERSON) { continue; }
-            err = pass == 0 ? exh_params_validate(p, i, v) : 0;
+            err = pass == 0 ? exh_params_validate_by(p, who, i, v) : 0;
             if (err < 0) {
                 if (bad != NULL) { *bad = i; }
                 return err;
@@ -322,15 +337,16 @@ static int load(struct exh_params *p, const void *buf, size_t len_B, uint32_t *b
         }
     }
     p->pending = 1;
+    p->by |= (uint8_t)(1u << source);
     return 0;
 }
 
 int exh_params_load(struct exh_params *p, const void *buf, size_t len_B, uint32_t *bad)
 {
-    return load(p, buf, len_B, bad, 0);
+    return load(p, buf, len_B, bad, EXH_FROM_IMAGE);
 }
 
 int exh_params_restore(struct exh_params *p, const void *buf, size_t len_B, uint32_t *bad)
 {
-    return load(p, buf, len_B, bad, 1);
+    return load(p, buf, len_B, bad, EXH_FROM_PERSON);
 }

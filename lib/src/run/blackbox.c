@@ -261,8 +261,8 @@ static void begin_small(uint8_t type, const struct exh_bytes *payload)
 
 static void begin_froze(void)
 {
-    struct exh_event e = {
-        EXH_EVENT_FROZE, at_most(is.later), at_most(last_tick - is.tick), exh_from_u32(is.cause)};
+    struct exh_event e = {EXH_EVENT_FROZE, at_most(is.later), at_most(last_tick - is.tick),
+        exh_from_u32(is.cause), 0};
     struct exh_bytes c = exh_bytes_writer(dump.small, sizeof dump.small);
     exh_event_serialize(&c, &e);
     begin_small(EXH_RECORD_EVENT, &c);

@@ -171,7 +171,7 @@ void exh_log_keyframe_serialize(struct exh_bytes *c, const struct exh_scene *sc)
 
 void exh_log_mark(uint32_t tick, int32_t value)
 {
-    event(tick, (struct exh_event){EXH_EVENT_MARK, 0, 0, value});
+    event(tick, (struct exh_event){EXH_EVENT_MARK, 0, 0, value, 0});
 }
 
 /* Staged parameters become events at the tick they will first act in; one on its way still may
@@ -183,10 +183,10 @@ static void log_params(uint32_t tick, const struct exh_params *p)
     for (uint32_t i = 0; i < n; i++) {
         uint16_t instance;
         const struct exh_signal *row = exh_signal_at(p->table, i, &instance);
-        const int halts =
-            p->moving && (row->when == EXH_WHEN_SLEWED || row->when == EXH_WHEN_LIMIT);
+        const int halts = p->moving && exh_signal_is_slewed(row);
         if (halts || p->staged[i] != p->active[i]) {
-            event(tick, (struct exh_event){EXH_EVENT_PARAM, row->id, instance, p->staged[i]});
+            event(
+                tick, (struct exh_event){EXH_EVENT_PARAM, row->id, instance, p->staged[i], p->by});
         }
     }
 }
@@ -195,11 +195,11 @@ void exh_log_before(uint32_t tick, struct exh_scene_in *in)
 {
     if (scene->params && scene->params->pending) { log_params(tick, scene->params); }
     if (in->command != EXH_CMD_NONE) {
-        event(tick, (struct exh_event){EXH_EVENT_COMMAND, 0, 0, in->command});
+        event(tick, (struct exh_event){EXH_EVENT_COMMAND, 0, 0, in->command, 0});
     }
     if (in->missed != 0) {
-        event(
-            tick, (struct exh_event){EXH_EVENT_MISSED, 0, 0, exh_clamp(in->missed, 0, INT32_MAX)});
+        event(tick,
+            (struct exh_event){EXH_EVENT_MISSED, 0, 0, exh_clamp(in->missed, 0, INT32_MAX), 0});
     }
 }
 

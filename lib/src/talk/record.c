@@ -93,4 +93,5 @@ void exh_event_serialize(struct exh_bytes *c, struct exh_event *e)
     exh_bytes_u16(c, &e->id);
     exh_bytes_u16(c, &e->instance);
     exh_bytes_i32(c, &e->value);
+    exh_bytes_u16(c, &e->source);
 }

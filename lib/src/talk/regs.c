@@ -42,6 +42,7 @@ int exh_regs_setup(struct exh_regs *r)
     exh_regs_discard(r);
     r->asked = 0;
     r->done = 0;
+    r->refused = 0;
     r->result = 0;
     return 0;
 }
@@ -123,6 +124,7 @@ static uint32_t head_of(const struct exh_regs *r, enum exh_regs_head h)
     case EXH_HEAD_NAME_1: return name_of(r, 1);
     case EXH_HEAD_NAME_2: return name_of(r, 2);
     case EXH_HEAD_NAME_3: return name_of(r, 3);
+    case EXH_HEAD_REFUSED: return r->refused;
     case EXH_HEADS: break;
     }
     return 0;

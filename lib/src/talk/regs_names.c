@@ -34,6 +34,7 @@ const struct exh_regs_row exh_regs_head_row[EXH_HEADS] = {
     {"name_1", "text", ""},
     {"name_2", "text", ""},
     {"name_3", "text", ""},
+    {"refused", "u32", "writes and APPLY refused since set-up, modulo 2^32; since map 1.1"},
 };
 
 const struct exh_regs_row exh_regs_bits_row[EXH_BITS] = {

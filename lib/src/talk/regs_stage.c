@@ -32,13 +32,19 @@ static int from_float(
     return 0;
 }
 
+/* In the box as it is shown. */
+static struct exh_authority client(const struct exh_regs *r)
+{
+    const struct exh_authority who = {
+        EXH_FROM_REGISTER, r->locked, !exh_safety_is_at_rest(r->box.state)};
+    return who;
+}
+
 /* May value i be staged as raw? 0 or exception 3. */
 static int judge(const struct exh_regs *r, const struct exh_signal *row, uint32_t i, int32_t raw)
 {
-    const int fixed = row->when == EXH_WHEN_OUTPUT || row->when == EXH_WHEN_PERSON ||
-                      (r->locked && row->when == EXH_WHEN_SETUP);
     if (raw < row->min || raw > row->max) { return EXH_MODBUS_VALUE; }
-    return fixed && raw != r->wanted[i] ? EXH_MODBUS_VALUE : 0;
+    return exh_authority_check(client(r), row->when, r->wanted[i], raw) < 0 ? EXH_MODBUS_VALUE : 0;
 }
 
 static uint32_t word(const uint8_t *p) { return (uint32_t)p[0] << 8 | p[1]; }
@@ -70,6 +76,7 @@ int exh_regs_validate(const struct exh_regs *r, uint16_t at, uint16_t n, const u
     int err = exh_regs_locate(r, EXH_REGS_HOLDING, at, n, &s);
     if (err != 0 || n == 0) { return err; }
     if (s.source == EXH_REGS_SET) { return exh_regs_trace_request(r, &s, from, &what); }
+    if (!(r->may >> EXH_COIL_APPLY & 1u)) { return EXH_MODBUS_VALUE; }
     if (r->asked >> EXH_COIL_APPLY & 1u) { return EXH_MODBUS_BUSY; }
     w = exh_regs_walk_to(r->params, s.from >> 1);
     for (uint32_t i = s.from >> 1; err == 0 && 2 * i < s.end; i++) {
@@ -80,7 +87,7 @@ int exh_regs_validate(const struct exh_regs *r, uint16_t at, uint16_t n, const u
     return err;
 }
 
-int exh_regs_write(struct exh_regs *r, uint16_t at, uint16_t n, const uint8_t *from)
+static int write_all(struct exh_regs *r, uint16_t at, uint16_t n, const uint8_t *from)
 {
     struct exh_regs_span s;
     struct exh_trace_request what;
@@ -102,9 +109,21 @@ int exh_regs_write(struct exh_regs *r, uint16_t at, uint16_t n, const uint8_t *f
     return 0;
 }
 
+/* Somebody wanted what may not be; busy is only not yet. */
+static int counted(struct exh_regs *r, int err)
+{
+    r->refused += err == EXH_MODBUS_VALUE;
+    return err;
+}
+
+int exh_regs_write(struct exh_regs *r, uint16_t at, uint16_t n, const uint8_t *from)
+{
+    return counted(r, write_all(r, at, n, from));
+}
+
 /* --- commands --- */
 
-int exh_regs_write_bits(struct exh_regs *r, uint16_t at, uint16_t n, const uint8_t *from)
+static int write_bits(struct exh_regs *r, uint16_t at, uint16_t n, const uint8_t *from)
 {
     const uint32_t apply = 1u << EXH_COIL_APPLY, discard = 1u << EXH_COIL_DISCARD;
     uint32_t on = 0;
@@ -122,6 +141,11 @@ int exh_regs_write_bits(struct exh_regs *r, uint16_t at, uint16_t n, const uint8
     return 0;
 }
 
+int exh_regs_write_bits(struct exh_regs *r, uint16_t at, uint16_t n, const uint8_t *from)
+{
+    return counted(r, write_bits(r, at, n, from));
+}
+
 /* --- carrying out --- */
 
 uint32_t exh_regs_poll(struct exh_regs *r)
@@ -133,14 +157,16 @@ uint32_t exh_regs_poll(struct exh_regs *r)
 
 int exh_regs_apply(struct exh_regs *r, struct exh_params *p)
 {
+    const struct exh_authority who = client(r);
     int err = 0;
     for (uint32_t i = 0; err == 0 && i < r->params_n; i++) {
-        if (exh_regs_is_staged(r, i)) { err = exh_params_validate(p, i, r->staged[i]); }
+        if (exh_regs_is_staged(r, i)) { err = exh_params_validate_by(p, who, i, r->staged[i]); }
     }
     for (uint32_t i = 0; err == 0 && i < r->params_n; i++) {
-        if (exh_regs_is_staged(r, i)) { err = exh_params_stage_at(p, i, r->staged[i]); }
+        if (exh_regs_is_staged(r, i)) { err = exh_params_stage_by(p, who, i, r->staged[i]); }
     }
     exh_regs_discard(r);
+    r->refused += err < 0;
     return err;
 }
 

@@ -357,10 +357,13 @@ struct exh_plane exh_wire_plane_of(const struct exh_wire_planes *planes, unsigne
     return p;
 }
 
-struct exh_wire_ack exh_wire_stage(struct exh_params *params, const struct exh_wire_packet *p)
+struct exh_wire_ack exh_wire_stage(
+    struct exh_params *params, const struct exh_wire_packet *p, int open)
 {
+    const struct exh_authority world = {EXH_FROM_WORLD, 1, open != 0};
     const struct exh_wire_param *ask = &p->u.param;
-    const int result = exh_params_stage(params, ask->id, ask->instance, ask->value);
+    const int32_t i = exh_signal_find(params->table, ask->id, ask->instance);
+    const int result = i < 0 ? (int)i : exh_params_stage_by(params, world, (uint32_t)i, ask->value);
     const struct exh_wire_ack ack = {*ask, (int16_t)result, p->seq};
     return ack;
 }

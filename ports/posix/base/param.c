@@ -95,9 +95,15 @@ int cli_param_set_by(struct exh_params *p, const char *by, const char *name, dou
     return err;
 }
 
+const char *cli_signal_when(const struct exh_signal *row)
+{
+    static const char *const when[EXH_WHENS] = {"output", "set-up", "any time", "slewed", "limit",
+        "person", "bound", "wall", "at rest", "material", "word"};
+    return row->when < EXH_WHENS ? when[row->when] : "";
+}
+
 void cli_signal_print(FILE *f, const struct exh_signal_table *t, const int32_t *raw)
 {
-    static const char *const when[] = {"output", "set-up", "any time", "slewed", "limit", "person"};
     const uint32_t n = exh_signal_count(t);
     for (uint32_t i = 0; i < n; i++) {
         uint16_t instance;
@@ -105,6 +111,6 @@ void cli_signal_print(FILE *f, const struct exh_signal_table *t, const int32_t *
         if (instance > 0) { continue; }
         fprintf(f, "  %-13s %-8s %14.12g  %14.12g .. %-14.12g %-8s %s\n", r->name,
             names_unit(r->unit), cli_signal_value(r, raw ? raw[i] : r->dflt),
-            cli_signal_value(r, r->min), cli_signal_value(r, r->max), when[r->when], r->help);
+            cli_signal_value(r, r->min), cli_signal_value(r, r->max), cli_signal_when(r), r->help);
     }
 }

@@ -11,6 +11,9 @@
 /* raw * 2^-frac. */
 double cli_signal_value(const struct exh_signal *row, int32_t raw);
 
+/* In a word or two, when it may change. */
+const char *cli_signal_when(const struct exh_signal *row);
+
 /* The row called name (its index to *index unless NULL), or NULL. */
 const struct exh_signal *cli_signal_find(
     const struct exh_signal_table *t, const char *name, uint32_t *index);

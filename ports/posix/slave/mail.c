@@ -68,9 +68,11 @@ int mail_start(const struct exh_scene *sc, struct exh_scene_board board)
     r->touched = mail.touched;
     r->T = board.T;
     r->fingers = sc->fingers;
-    r->may = EXH_REGS_MAY;
-    if (mail.cfg.save) { r->may |= 1u << EXH_COIL_SAVE; }
-    if (mail.cfg.remote) { r->may |= 1u << EXH_COIL_RUN | 1u << EXH_COIL_CLEAR; }
+    r->may = mail.cfg.write ? EXH_REGS_MAY : 0;
+    if (mail.cfg.write && mail.cfg.save) { r->may |= 1u << EXH_COIL_SAVE; }
+    if (mail.cfg.remote) {
+        r->may |= 1u << EXH_COIL_RUN | 1u << EXH_COIL_CLEAR | 1u << EXH_COIL_OFF;
+    }
     err = exh_regs_setup(r);
     if (err == 0) {
         r->trace = &mail.shown;
@@ -91,6 +93,7 @@ static int apply(void)
     const uint8_t pending = p->pending;
     int err;
     memcpy(was, p->staged, 4 * (size_t)mail.regs.params_n);
+    mail.regs.box.state = mail.sc->safety->state; /* it may run by now */
     err = exh_regs_apply(&mail.regs, p);
     if (err == 0 && mail.sc->allowed) { err = mail.sc->allowed(); }
     if (err < 0) { exh_params_rollback(p, was, pending); }

@@ -18,7 +18,8 @@
 
 struct mail_cfg {
     const char *save; /* SAVE writes the parameters there; NULL: refused */
-    int remote;       /* RUN and CLEAR may be commanded */
+    int write;        /* parameters may be changed; else clients only read */
+    int remote;       /* RUN, CLEAR and OFF may be commanded */
 };
 
 /* mail.c. start, before and after: as hooks of the loop, before those that log. A tick never waits:

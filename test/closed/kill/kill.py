@@ -51,7 +51,7 @@ WRITERS = (
     ("identify", "exhand", "identify --rate 100 --repeats 2 --out {d}", "log"),
     ("watch", "exhand", "watch --modbus {box} --seconds 0.6 --csv {d}/w.csv", "rows"),
     ("run-save", "exhand", "run --pace --rate 200 --seconds 0.6 --modbus tcp:127.0.0.1:{port} "
-     "--save {d}/p.bin", "same"),
+     "--modbus-write --save {d}/p.bin", "same"),
     ("listen", "exhand", "listen --at 127.0.0.1:{port} --silence 0.5 --out {d}/l.exh", "begin"),
     ("trace", "world", "--headless --listen 127.0.0.1:{port} --seconds 0.8 --scene {scene} "
      "--trace {d}/t.csv", "rows"),

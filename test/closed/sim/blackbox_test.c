@@ -281,10 +281,10 @@ TEST(another_fault_than_told_is_told)
     const size_t n = one_dump(path);
     static struct said s;
     struct exh_bytes c;
-    uint8_t *event = dump + n - (EXH_RECORD_OVERHEAD + 4) - (EXH_RECORD_OVERHEAD + 10);
+    uint8_t *event = dump + n - (EXH_RECORD_OVERHEAD + 4) - (EXH_RECORD_OVERHEAD + 12);
     struct exh_record r;
     struct exh_event e;
-    CHECK_EQ_I64(exh_record_decode(event, EXH_RECORD_OVERHEAD + 10, &r), EXH_RECORD_OVERHEAD + 10);
+    CHECK_EQ_I64(exh_record_decode(event, EXH_RECORD_OVERHEAD + 12, &r), EXH_RECORD_OVERHEAD + 12);
     c = exh_bytes_reader(r.payload, r.len_B);
     exh_event_serialize(&c, &e);
     CHECK_EQ_I64(e.type, EXH_EVENT_FROZE);
@@ -292,10 +292,10 @@ TEST(another_fault_than_told_is_told)
         struct exh_event other = e;
         other.value = what == 0 ? e.value : what == 1 ? EXH_FAULT_ESTOP : e.value;
         other.instance = (uint16_t)(e.instance + (what == 2));
-        c = exh_bytes_writer(event, EXH_RECORD_OVERHEAD + 10);
+        c = exh_bytes_writer(event, EXH_RECORD_OVERHEAD + 12);
         exh_record_begin(&c, EXH_RECORD_EVENT, r.seq, r.tick);
         exh_event_serialize(&c, &other);
-        CHECK_EQ_I64(exh_record_end(&c), EXH_RECORD_OVERHEAD + 10);
+        CHECK_EQ_I64(exh_record_end(&c), EXH_RECORD_OVERHEAD + 12);
         spill(path, dump, n);
         said(&s, dir, cli_replay, WORDS("replay", path));
         CHECK(s.status == (what != 0), "%d: status %d: %s", what, s.status, s.out);

@@ -203,7 +203,8 @@ static void check_events(
         exh_event_serialize(&c, &e);
         CHECK(i < n, "event %zu too many: type %u at tick %lu", i, e.type, (unsigned long)r.tick);
         CHECK(r.tick == tick[i] && e.type == want[i].type && e.id == want[i].id &&
-                  e.instance == want[i].instance && e.value == want[i].value,
+                  e.instance == want[i].instance && e.value == want[i].value &&
+                  e.source == want[i].source,
             "event %zu: type %u id %#x value %ld at tick %lu", i, e.type, (unsigned)e.id,
             (long)e.value, (unsigned long)r.tick);
         i++;
@@ -227,10 +228,10 @@ TEST(a_parameter_acts_at_the_tick_it_is_logged)
         {50, STAGE, 0x7777, 0, -EXH_E_UNKNOWN},
     };
     static const struct exh_event event[] = {
-        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_RUN},
-        {EXH_EVENT_PARAM, ID_Q_LIM, 0, -EXH_Q(1, 1000, EXH_Q_POS)},
-        {EXH_EVENT_PARAM, ID_K, 0, EXH_Q(3000, 1, EXH_Q_K)},
-        {EXH_EVENT_PARAM, ID_K, 0, EXH_Q(4000, 1, EXH_Q_K)},
+        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_RUN, 0},
+        {EXH_EVENT_PARAM, ID_Q_LIM, 0, -EXH_Q(1, 1000, EXH_Q_POS), 1 << EXH_FROM_PERSON},
+        {EXH_EVENT_PARAM, ID_K, 0, EXH_Q(3000, 1, EXH_Q_K), 1 << EXH_FROM_PERSON},
+        {EXH_EVENT_PARAM, ID_K, 0, EXH_Q(4000, 1, EXH_Q_K), 1 << EXH_FROM_PERSON},
     };
     static const uint32_t tick[] = {0, 30, 40, 41};
     const char *path = log_path();
@@ -260,7 +261,7 @@ TEST(setup_values_are_refused_while_locked)
         {2, STAGE, 0x0507, 0, -EXH_E_STATE},                        /* dac_zero */
         {3, STAGE, 0x8002, EXH_Q(5, 1, EXH_Q_FORCE), -EXH_E_STATE}, /* kf */
     };
-    static const struct exh_event event[] = {{EXH_EVENT_COMMAND, 0, 0, EXH_CMD_RUN}};
+    static const struct exh_event event[] = {{EXH_EVENT_COMMAND, 0, 0, EXH_CMD_RUN, 0}};
     static const uint32_t tick[] = {0};
     const char *path = log_path();
     struct exh_params *p = exh_scene_drop.params;
@@ -295,19 +296,19 @@ TEST(missed_ticks_reach_safety)
         {325, COMMAND, 0, EXH_CMD_OFF, 0},
     };
     static const struct exh_event event[] = {
-        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_RUN},
-        {EXH_EVENT_PARAM, ID_Q_LIM, 0, -EXH_Q(1, 1000, EXH_Q_POS)},
+        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_RUN, 0},
+        {EXH_EVENT_PARAM, ID_Q_LIM, 0, -EXH_Q(1, 1000, EXH_Q_POS), 1 << EXH_FROM_PERSON},
         {EXH_EVENT_MISSED, 0, 0, 1},
         {EXH_EVENT_MISSED, 0, 0, 2},
-        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_RUN},
-        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_CLEAR},
+        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_RUN, 0},
+        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_CLEAR, 0},
         {EXH_EVENT_MISSED, 0, 0, 7},
-        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_CLEAR},
-        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_CLEAR},
-        {EXH_EVENT_PARAM, ID_Q_LIM, 0, AWAY},
-        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_RUN},
-        {EXH_EVENT_PARAM, ID_Q_LIM, 0, -EXH_Q(1, 1000, EXH_Q_POS)},
-        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_OFF},
+        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_CLEAR, 0},
+        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_CLEAR, 0},
+        {EXH_EVENT_PARAM, ID_Q_LIM, 0, AWAY, 1 << EXH_FROM_PERSON},
+        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_RUN, 0},
+        {EXH_EVENT_PARAM, ID_Q_LIM, 0, -EXH_Q(1, 1000, EXH_Q_POS), 1 << EXH_FROM_PERSON},
+        {EXH_EVENT_COMMAND, 0, 0, EXH_CMD_OFF, 0},
     };
     static const uint32_t tick[] = {0, 10, 20, 30, 50, 55, 55, 240, 300, 305, 310, 318, 325};
     const char *path = log_path();

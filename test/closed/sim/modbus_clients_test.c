@@ -33,7 +33,7 @@ TEST(a_client_that_fetches_no_answer)
 {
     struct rig r;
     modbus_t *bad;
-    rig_start(&r, WORDS("run", "--pace", "--modbus", "tcp:127.0.0.1:0"));
+    rig_start(&r, WORDS("run", "--pace", "--modbus", "tcp:127.0.0.1:0", "--modbus-write"));
     bad = rig_client(r.port);
     ask_and_never_read(bad);
     CHECK_EQ_I64(rig_input(&r, RIG_HEAD(EXH_HEAD_TEST_INT)), 0x12345678);
@@ -52,7 +52,7 @@ TEST(silent_clients_keep_nobody_out)
     struct rig r;
     modbus_t *silent[20];
     uint16_t word[2];
-    rig_start(&r, WORDS("run", "--pace", "--modbus", "tcp:127.0.0.1:0"));
+    rig_start(&r, WORDS("run", "--pace", "--modbus", "tcp:127.0.0.1:0", "--modbus-write"));
     for (int i = 0; i < 20; i++) {
         silent[i] = rig_client(r.port);
         rig_sleep(0.05);
@@ -181,7 +181,7 @@ TEST(no_thread_blocks_the_signals_of_a_crash)
     char path[64];
     DIR *d;
     int threads = 0, block = 0;
-    rig_start(&r, WORDS("run", "--pace", "--modbus", "tcp:127.0.0.1:0"));
+    rig_start(&r, WORDS("run", "--pace", "--modbus", "tcp:127.0.0.1:0", "--modbus-write"));
     (void)rig_input(&r, RIG_HEAD(EXH_HEAD_TICK));
     snprintf(path, sizeof path, "/proc/%d/task", (int)r.pid);
     d = opendir(path);

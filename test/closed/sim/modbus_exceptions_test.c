@@ -40,7 +40,7 @@ TEST(bad_requests_get_the_standard_exceptions)
         {{4, 0, 0, 0, 2}, 5, 0}, /* and behind all these a good one */
     };
     struct rig r;
-    rig_start(&r, WORDS("run", "--pace", "--modbus", "tcp:127.0.0.1:0"));
+    rig_start(&r, WORDS("run", "--pace", "--modbus", "tcp:127.0.0.1:0", "--modbus-write"));
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
         const int got = exception_of(&r, row[i].pdu, row[i].len);
         CHECK(got == row[i].exception, "row %zu, function %u: %d", i, row[i].pdu[0], got);

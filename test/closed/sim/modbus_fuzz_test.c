@@ -69,7 +69,7 @@ static int open_server(void)
 /* Both maps show the same box, at rest and locked as while it runs. */
 static void begin(void)
 {
-    static const struct mail_cfg cfg = {NULL, 1}; /* SAVE is done when it is done */
+    static const struct mail_cfg cfg = {NULL, 1, 1}; /* SAVE is done when it is done */
     const struct exh_scene_board board = {{1, 2000}, 24};
     const uint32_t n = (sc->defaults(), exh_signal_count(sc->params->table));
     CHECK(n <= VALUES, "more values");

@@ -162,7 +162,7 @@ TEST(every_register_there_and_back)
         close(mkstemp(log));
         /* let go as soon as it was gripped: it stays OFF, and values stand */
         rig_start(&r, WORDS("run", "--scene", sc->name, "--pace", "--rate", "500", "--let-go",
-                          "0.001", "--log", log, "--modbus", "tcp:127.0.0.1:0"));
+                          "0.001", "--log", log, "--modbus", "tcp:127.0.0.1:0", "--modbus-write"));
         rig_sleep(0.2);
         check_head(&r, sc, 500);
         read_block(&r, modbus_read_input_registers, RIG_OUT, outs, out);

@@ -27,7 +27,7 @@ TEST(over_a_serial_line)
         return;
     }
     snprintf(where, sizeof where, "rtu:%s:115200", ptsname(fd));
-    pid = said_start(dir, cli_run, WORDS("run", "--pace", "--modbus", where));
+    pid = said_start(dir, cli_run, WORDS("run", "--pace", "--modbus", where, "--modbus-write"));
     for (int i = 0; i < 200 && said_size(said_path(dir, "said.out")) <= 0; i++) { rig_sleep(0.01); }
     modbus_set_slave(c, 1);
     modbus_set_socket(c, fd);
@@ -95,6 +95,11 @@ TEST(what_cannot_be_served_is_named)
     CHECK(s.status == 3 && strstr(s.err, "another program serves there"), "%d %s", s.status, s.err);
     said(&s, dir, cli_run, WORDS("run", "--seconds", "1", "--save", "x"));
     CHECK_EQ_I64(s.status, 2);
+    said(&s, dir, cli_run, WORDS("run", "--seconds", "1", "--modbus-write"));
+    CHECK(s.status == 2 && strstr(s.err, "only with --modbus"), "%d %s", s.status, s.err);
+    said(&s, dir, cli_run,
+        WORDS("run", "--seconds", "1", "--modbus", "tcp:127.0.0.1:0", "--save", "x"));
+    CHECK(s.status == 2 && strstr(s.err, "give --modbus-write"), "%d %s", s.status, s.err);
     rig_end(&r, 130);
     said_clean(r.dir);
     said_clean(dir);

@@ -15,7 +15,7 @@ static uint32_t k; /* index of a slewed value */
 
 static void begin(const char *path)
 {
-    const struct mail_cfg cfg = {path, 0};
+    const struct mail_cfg cfg = {path, 1, 0};
     const struct exh_scene_board board = {{1, 2000}, 24};
     const int32_t i = (sc->defaults(), exh_signal_find(sc->params->table, 0x0401, 0));
     CHECK(i >= 0, "no k");

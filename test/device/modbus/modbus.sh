@@ -45,7 +45,7 @@ strangers()
     # gripped and let go at once: it stays OFF; what the device does goes on
     "$B/posix/exhand" run --scene "$1" --pace --rate $rate --seconds 600 --let-go 0.001 --slack 1 \
         --save "$work/saved" \
-        --log "$work/log" --modbus "$2" > "$work/said" 2>&1 & box=$!
+        --log "$work/log" --modbus "$2" --modbus-write > "$work/said" 2>&1 & box=$!
     place=$(told_by $box)
     sleep 0.5
     echo "scene $1, ${2%%:*}"

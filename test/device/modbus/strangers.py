@@ -156,7 +156,7 @@ def pymodbus_writes(seen):
             continue
         now = [seen[table, at], seen[table, at + 1]]
         ends = [round(float(r[e]) * 2.0 ** frac_of(r)) for e in ("min", "max")]
-        if r["when"] == "set-up":
+        if r["when"] in ("set-up", "person", "word"):
             other = pair(i32(now) + (1 if i32(now) < ends[1] else -1))
             exception(box.write_registers(at, other), 3, f"{r['name']} is of the set-up")
             continue

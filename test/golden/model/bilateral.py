@@ -89,9 +89,10 @@ class Par:
 # --- parameters over the link: materials are the world's, and nothing else ---
 
 MOST = {0x0B01: 1024000000, 0x0B02: 1048576000, 0x0B03: 104857600}
-OWN = {0x0C01: FINGERS, 0x0C02: FINGERS, 0x0C03: FINGERS, 0x0C04: FINGERS, 0x8611: 1, 0x8612: 1,
-       0x0401: FINGERS,
-       0x0501: FINGERS}  # how many of each
+# how many of each, and their ranges
+OWN = {0x0C01: (FINGERS, -214748364, -107374), 0x0C02: (FINGERS, 0, 53687091),
+       0x0C03: (FINGERS, 2097152, 134217728), 0x0C04: (FINGERS, 0, 1), 0x8611: (1, 1, 10000),
+       0x8612: (1, 0, MAX32), 0x0401: (FINGERS, 0, 1024000000), 0x0501: (FINGERS, 0, 104857600)}
 
 
 class Params:
@@ -100,13 +101,18 @@ class Params:
     def __init__(self, par):
         self.par, self.staged = par, {}
 
-    def stage(self, ident, n, raw):
-        if n < OWN.get(ident, 0):
-            return -STATE
+    def stage(self, ident, n, raw, state):
+        """Outside OFF and FAULT no value of a material rises."""
+        own, lo, hi = OWN.get(ident, (0, 0, 0))
+        if n < own:
+            return -STATE if lo <= raw <= hi else -RANGE
         if ident not in MOST or n >= MATERIALS:
             return -UNKNOWN
         if not 0 <= raw <= MOST[ident]:
             return -RANGE
+        was = self.staged.get((ident, n), self.par.material[n][ident - 0x0B01])
+        if state not in (0, 5) and raw > was:
+            return -STATE
         self.staged[ident, n] = raw
         return 0
 
@@ -267,7 +273,7 @@ class Bilateral:
                 self.planes(p[18:-4])
             elif got == PARAM:
                 ident, n, value = unpack_from("<HHi", p, 18)
-                said = self.params.stage(ident, n, value)
+                said = self.params.stage(ident, n, value, self.safety.state_)
                 w.set += said == 0
                 w.acks.append(pack("<HHihI", ident, n, value, said, unpack_from("<I", p, 10)[0]))
             elif got == TRACE_ASK:

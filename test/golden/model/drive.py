@@ -75,7 +75,9 @@ class Drive:
         self.amp = gain(1 << 42, self.dac)
         end = to_cur.knots[-1][0]
         self.top, self.top_bit = min(end, person_f), PERSON if person_f < end else FORCE
-        self.i_top = self.whole(person_i) if person_i < self.peak else self.peak
+        self.i_top = self.whole(person_i)
+        if self.i_top >= self.whole(self.peak):
+            self.i_top = self.peak
         self.force = self.fall = self.heat = 0
 
     def take(self, permit, asked, term=0):

@@ -7,7 +7,7 @@ from struct import pack
 
 from .num import M32, MAX32, MIN32, RANGE, STATE, TICKS, Rng, clamp, period, wrap
 
-SETUP, ANY, SLEWED, LIMIT = 1, 2, 3, 4
+SETUP, ANY, SLEWED, LIMIT, WALL, REST = 1, 2, 3, 4, 7, 8
 IO = 9
 
 # --- binary32 ---
@@ -80,7 +80,7 @@ OUT = ((((0x7011, 0, 0, MIN32, MAX32, 0), (0x7012, 26, 0, MIN32, MAX32, 0),
        (((0x7021, 126, 0, MIN32, MAX32, 0),), 4))
 PAR = ((((0x7201, 10, ANY, 0, 1024000000, 1536000), (0x7202, 0, SETUP, -5, 5, 0),
          (0x7203, 30, SLEWED, MIN32, MAX32, 0), (0x7204, 42, LIMIT, -70000, 70000, 1),
-         (0x7205, 0, ANY, 0, 1, 0), (0x7206, 24, ANY, 16777217, MAX32, 16777219)), 11),
+         (0x7205, 0, REST, 0, 1, 0), (0x7206, 24, WALL, 16777217, MAX32, 16777219)), 11),
        (((0x7301, 126, SETUP, MIN32, MAX32, -1),), 2))
 
 
@@ -140,12 +140,13 @@ class Box:
         self.name = (b"", b"x", b"bilateral", b"seventeen letters")[rng.draw(0, 3)]
         self.may = rng.draw(0, 63) | APPLY | DISCARD | OFF
         self.fingers, self.T = rng.draw(1, 5), T
-        self.asked = self.done = self.result = self.locked = self.locks = 0
+        self.asked = self.done = self.result = self.locked = self.locks = self.refused = 0
+        self.box_state = 0
 
     def tick(self, rng, k):
         u, v = rng.u64(), rng.u64()
         self.now, state = u & M32, v >> 56 & 0x27
-        missed, first_tick = u >> 32, u >> 16 & M32
+        self.box_state, missed, first_tick = state, u >> 32, u >> 16 & M32
         faults, present, self.limits, first = (v & 0x7FFF, v >> 15 & 0x7FFF, v >> 30 & 0x7FF,
                                                v >> 41 & 0x7FFF)
         arm = u & 0x7F if state != 1 else 64 if u >> 40 & 1 else 32
@@ -171,6 +172,16 @@ class Box:
     def may_be(self, i, raw):
         return PAR_ROWS[i][2] != SETUP or not self.locks or raw == self.wanted[i]
 
+    def register_may(self, i, raw, locked):
+        """A client's wish, which in a box that may have a force is for less of it."""
+        when, was = PAR_ROWS[i][2], self.wanted[i]
+        if raw == was or not locked or when == ANY:
+            return True
+        if when == SETUP:
+            return False
+        calm = self.box_state in (0, 5)
+        return calm or when in (SLEWED, LIMIT) and raw < was or when == WALL and raw > was
+
     def held(self, i):
         return self.staged.get(i, self.wanted[i])
 
@@ -180,11 +191,11 @@ class Box:
     def head(self):
         name = (self.name + bytes(16))[:16]
         n = len(self.signals)
-        return [0x45584831, 0x00010000, 0x12345678, 0x3F800000, *self.seen, n, PARAMS,
+        return [0x45584831, 0x00010001, 0x12345678, 0x3F800000, *self.seen, n, PARAMS,
                 OUT_CRC if n else 0, PAR_CRC, *self.T,
                 VERSION[0] << 16 | VERSION[1] << 8 | VERSION[2], self.fingers, self.differ(),
                 self.asked, self.done, self.result,
-                *(int.from_bytes(name[i:i + 4], "big") for i in range(0, 16, 4))]
+                *(int.from_bytes(name[i:i + 4], "big") for i in range(0, 16, 4)), self.refused]
 
     # --- registers ---
 
@@ -192,7 +203,7 @@ class Box:
         """(the block's first register, the values from that of `at` to that of the last
         register)."""
         if kind == INPUT and at < 0x400:
-            base, count, values = 0, 30, self.head
+            base, count, values = 0, 31, self.head
         elif kind == INPUT and 0x400 <= at < 0x440:
             base, count, values = 0x400, 9 if self.trace else 0, self.own.values
         elif kind == INPUT and 0x440 <= at < 0x1000:
@@ -224,7 +235,21 @@ class Box:
         from_b = (at - base) % 2 * 2
         return b[from_b:from_b + 2 * n]
 
+    def counted(self, do, *what):
+        """Wishes for what may not be."""
+        try:
+            do(*what)
+        except Refuse as e:
+            self.refused += e.args[0] == 3
+            raise
+
     def write(self, at, n, data):
+        self.counted(self.write_all, at, n, data)
+
+    def write_bits(self, at, n, data):
+        self.counted(self.write_coils, at, n, data)
+
+    def write_all(self, at, n, data):
         """All or nothing."""
         base, values = self.block(HOLDING, at, n)
         if base != 0x400 and self.asked & APPLY:
@@ -246,8 +271,8 @@ class Box:
         for i, w in enumerate(words, first):
             row = PAR_ROWS[i]
             raw = self.from_float(i, w) if floats else wrap(w)
-            if (raw is None or not row[3] <= raw <= row[4] or row[2] == SETUP and self.locked and
-                raw != self.wanted[i]):
+            if (raw is None or not row[3] <= raw <= row[4] or
+                not self.register_may(i, raw, self.locked)):
                 raise Refuse(3)
             raws.append(raw)
         for i, raw in enumerate(raws, first):
@@ -270,7 +295,7 @@ class Box:
             raise Refuse(2)
         return (total >> at & (1 << n) - 1).to_bytes(n + 7 >> 3, "little")
 
-    def write_bits(self, at, n, data):
+    def write_coils(self, at, n, data):
         if at + n > 6:
             raise Refuse(2)
         on = (int.from_bytes(data, "little") & (1 << n) - 1) << at
@@ -290,7 +315,8 @@ class Box:
 
     def apply(self):
         staged, self.staged = self.staged, {}
-        if not all(self.may_be(i, raw) for i, raw in staged.items()):
+        if not all(self.register_may(i, raw, self.locks) for i, raw in staged.items()):
+            self.refused += 1
             return -STATE
         for i, raw in staged.items():
             self.wanted[i] = raw

@@ -7,12 +7,12 @@ from struct import pack
 
 from .num import AGAIN, RANGE, STATE, TICKS, UNKNOWN, Rng, period
 
-SETUP, ANY, SLEWED, LIMIT = 1, 2, 3, 4
+SETUP, ANY, SLEWED, LIMIT, MATERIAL = 1, 2, 3, 4, 9
 
 # (id, frac, when, min, max, default) of each row, and how many instances of them.
 GROUPS = (
     (((0x7001, 10, LIMIT, 0, 1024000000, 7), (0x7002, 20, SETUP, -(1 << 31), (1 << 31) - 1, -1),
-      (0x7003, 0, ANY, -5, 5, 0)), 2),
+      (0x7003, 0, MATERIAL, -5, 5, 0)), 2),
     (((0x7101, 0, SETUP, 1, 2, 1), (0x7102, 30, SLEWED, -(1 << 31), (1 << 31) - 1, 0)), 1),
 )
 
@@ -48,10 +48,16 @@ class Params:
             return STATE
         return 0
 
-    def stage(self, ident, instance, raw):
+    def world_may(self, i, raw):
+        """The same, asked over the link of a box that may have a force once it is locked."""
+        material = VALUES[i][0][2] == MATERIAL
+        return self.may(i, raw) or (0 if material and (not self.locked or raw <= self.staged[i])
+                                    else STATE)
+
+    def stage(self, ident, instance, raw, world=False):
         for i, (row, n) in enumerate(VALUES):
             if row[0] == ident and n == instance:
-                err = self.may(i, raw)
+                err = (self.world_may if world else self.may)(i, raw)
                 if not err:
                     self.staged[i], self.pending = raw, 1
                 return -err
@@ -86,7 +92,7 @@ class Params:
     def load(self, values):
         """(error, the culprit): all of them or none."""
         for i, raw in enumerate(values):
-            err = self.may(i, raw)
+            err = self.may(i, raw) or (STATE if self.locked and raw != self.staged[i] else 0)
             if err:
                 return -err, i
         self.staged, self.pending = values, 1

@@ -293,7 +293,7 @@ class World:
             trip = stamp - unpack_from("<I", body, 4)[0] & M32
         if got == PARAM:
             ident, instance, value = unpack_from("<HHi", body)
-            ack = ident, instance, value, self.params.stage(ident, instance, value), seq
+            ack = ident, instance, value, self.params.stage(ident, instance, value, True), seq
         return (got, seq, stamp, zlib.crc32(body), plane, trip) + ack[:1] + ack[2:]
 
     def values(self):

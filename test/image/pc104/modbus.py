@@ -106,7 +106,7 @@ def rule(line):
         if read(line, 4, 0, 2) is not None:
             break
     check("k", read(line, 4, K, 2), f32(5000))
-    check("k staged", line.ask(struct.pack(">BHHB", 16, K, 2, 4) + f32(1e6)),
+    check("k staged", line.ask(struct.pack(">BHHB", 16, K, 2, 4) + f32(500)),
           struct.pack(">BHH", 16, K, 2))
     check("APPLY", coil(line, APPLY), struct.pack(">BHH", 5, APPLY, 0xFF00))
     check("refused", read(line, 4, 48, 4), struct.pack(">Ii", 1, -13))
@@ -125,7 +125,7 @@ def main():
     for _ in range(20):  # it boots
         if read(line, 4, 0, 2) is not None:
             break
-    check("head", read(line, 4, 0, 8), bytes.fromhex("4558483100010000123456783f800000"))
+    check("head", read(line, 4, 0, 8), bytes.fromhex("4558483100010001123456783f800000"))
     check("name", read(line, 4, 52, 8), b"drop".ljust(16, b"\0"))
     check("k", read(line, 4, K, 2), f32(1500))
     check("k staged", line.ask(struct.pack(">BHHB", 16, K, 2, 4) + f32(800.5)),
@@ -147,10 +147,10 @@ def main():
     got = read(line, 4, 0x1000, 22)
     check("all outputs", len(got), 44)
 
-    to_all = struct.pack(">BBHHB", 0, 16, K, 2, 4) + f32(900)
+    to_all = struct.pack(">BBHHB", 0, 16, K, 2, 4) + f32(700)
     line.send(to_all + crc(to_all))
     check("said to all", line.hear(1, 0.3), b"")
-    check("and done", read(line, 3, K, 2), f32(900))
+    check("and done", read(line, 3, K, 2), f32(700))
     line.ask(struct.pack(">BHHB", 16, K, 2, 4) + f32(800.5))
     other = struct.pack(">BBHH", 2, 4, 0, 2)
     line.send(other + crc(other))

@@ -42,7 +42,7 @@ boot() # STATUS LINE OPTION...
     check "options '$*': $line" says "$line"
 }
 
-form='com2,ADDRESS,BAUD\[,remote\]$'
+form='com2,ADDRESS,BAUD\[,write\]\[,remote\]$'
 beside="s526_a=576" # the default base has COM2's ports
 boot 0 '^modbus: no 16550 with a FIFO at COM2: goes on without$' ticks=100 $beside \
     modbus=com2,1,57600
@@ -81,7 +81,7 @@ master()
     QEMU_FLAGS="-icount shift=2,sleep=on -serial tcp:127.0.0.1:$port,server=on,wait=on" \
         RECORDS=$dir/log TIMEOUT_s=300 \
         $run "$image" "ticks=$ticks" "rate=$rate" idle=spin log=debug uncalibrated=1 \
-        "modbus=com2,1,$baud${remote:+,$remote}" $beside \
+        "modbus=com2,1,$baud,write${remote:+,$remote}" $beside \
         >"$dir/said" 2>"$dir/err" &
     pid=$!
     python3 test/image/pc104/modbus.py "$port" "$reads" $remote >"$dir/client" 2>&1
@@ -94,7 +94,7 @@ master()
     check "$rate Hz, $baud baud: the dearest request is in the budget" priced
     check "$rate Hz, $baud baud: no tick missed" says "^ticks $ticks run, 0 missed$"
     check "$rate Hz, $baud baud: one damaged, one for others" says \
-        '^modbus answers [0-9]+, damaged 1, for others 1$'
+        '^modbus answers [0-9]+, damaged 1, for others 1, refused [0-9]+$'
     check "$rate Hz, $baud baud: its log replays" replays
     tr -d '\r' <"$dir/said" | grep -a '^modbus answers' | sed "s/^/  | $rate Hz, $baud baud: /"
     port=$((port + 1))
@@ -104,11 +104,11 @@ master 15000 500 57600
 master 50000 2000 115200 remote
 
 # The rule of gains holds against a client, too.
-gains='rule_on=1 rule_rate=500 rule_b1=30 rule_k0=9000 rule_k1=2000 k=5000 b=15'
+gains='rule_on=1 rule_rate=500 rule_k_min=1000 rule_b1=30 rule_k0=9000 rule_k1=2000 k=5000 b=15'
 # shellcheck disable=SC2086 # one option a word
 QEMU_FLAGS="-icount shift=3,sleep=on -serial tcp:127.0.0.1:$port,server=on,wait=on" TIMEOUT_s=120 \
     $run "$b/pc104/guarded-none.elf" ticks=10000 rate=500 idle=spin uncalibrated=1 \
-    modbus=com2,1,57600 $beside $gains \
+    modbus=com2,1,57600,write $beside $gains \
     >"$dir/said" 2>"$dir/err" &
 pid=$!
 python3 test/image/pc104/modbus.py "$port" rule >"$dir/client" 2>&1

@@ -183,7 +183,7 @@ TEST(no_force_or_current_beyond_the_persons_ceiling)
         limits |= exh_drive_current_step(&a.s, &a.cfg, &f, &c);
         CHECK(limits == row[i].limits, "row %zu: limits %x", i, (unsigned)limits);
         CHECK_EQ_I64(f.force_N_q20, row[i].want * NEWTON);
-        most = (int64_t)row[i].mA * (1 << 26) / 1000;
+        most = (int64_t)row[i].mA * (1 << 26) / 1000 + 1;
         CHECK(c.table_A_q26 + c.peak_A_q26 + c.i2t_A_q26 <= most &&
                   c.table_A_q26 + c.peak_A_q26 + c.i2t_A_q26 >= most - (1 << 26) / 1846,
             "row %zu: %" PRId64, i, c.table_A_q26 + c.peak_A_q26 + c.i2t_A_q26);

@@ -98,7 +98,7 @@ TEST(head_says_what_this_is)
 {
     begin();
     ASK(4, 0, 0, 0, 8);
-    GIVES(4, 16, 0x45, 0x58, 0x48, 0x31, 0, 1, 0, 0, 0x12, 0x34, 0x56, 0x78, 0x3F, 0x80, 0, 0);
+    GIVES(4, 16, 0x45, 0x58, 0x48, 0x31, 0, 1, 0, 1, 0x12, 0x34, 0x56, 0x78, 0x3F, 0x80, 0, 0);
     ASK(4, 0, 2 * EXH_HEAD_SIGNALS, 0, 4);
     GIVES(4, 8, 0, 0, 0, SIGNALS, 0, 0, 0, VALUES);
     ASK(4, 0, 2 * EXH_HEAD_PERIOD_NUM, 0, 8);

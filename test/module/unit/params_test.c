@@ -150,7 +150,10 @@ TEST(image_in_mid_way)
     CHECK_EQ_I64(active[GAIN], 200);
     CHECK_EQ_I64(exh_params_save(&p, image, sizeof image), sizeof image);
     start(3);
+    CHECK_EQ_I64(exh_params_load(&p, image, sizeof image, NULL), -EXH_E_STATE);
+    p.locked = 0;
     CHECK_EQ_I64(exh_params_load(&p, image, sizeof image, NULL), 0);
+    p.locked = 1;
     (void)exh_params_apply(&p);
     CHECK_EQ_I64(active[GAIN], 200);
     CHECK_EQ_I64(staged[GAIN], 900);

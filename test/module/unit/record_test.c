@@ -173,7 +173,7 @@ TEST(header_and_event_round_trip)
     struct exh_record_header h = {
         "drop", "posix-sim-16ch!", 0x000100, 0xDEADBEEF, {65, 1193182}, 5, 24, 40000};
     struct exh_record_header h2;
-    struct exh_event e = {EXH_EVENT_PARAM, 0x0401, 4, INT32_MIN}, e2;
+    struct exh_event e = {EXH_EVENT_PARAM, 0x0401, 4, INT32_MIN, 6}, e2;
     uint8_t buf[80];
     struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
     memset(&h2, 0xFF, sizeof h2);
@@ -181,7 +181,7 @@ TEST(header_and_event_round_trip)
     exh_record_header_serialize(&c, &h);
     CHECK_EQ_I64(c.at, 54);
     exh_event_serialize(&c, &e);
-    CHECK_EQ_I64(c.at, 64);
+    CHECK_EQ_I64(c.at, 66);
     c = exh_bytes_reader(buf, c.at);
     exh_record_header_serialize(&c, &h2);
     exh_event_serialize(&c, &e2);

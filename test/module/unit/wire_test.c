@@ -491,7 +491,8 @@ TEST(planes_and_round_trip)
 
 TEST(parameters_are_staged_and_answered)
 {
-    static const struct exh_signal rows[] = {{0x0401, 10, EXH_WHEN_ANY, 0, 100, 5, "k", "", ""},
+    static const struct exh_signal rows[] = {
+        {0x0401, 10, EXH_WHEN_MATERIAL, 0, 100, 5, "k", "", ""},
         {0x0402, 10, EXH_WHEN_SETUP, 0, 100, 5, "b", "", ""}};
     static const struct exh_signal_group group[] = {{rows, 2, 2}};
     static const struct exh_signal_table table = {group, 1};
@@ -508,7 +509,7 @@ TEST(parameters_are_staged_and_answered)
         struct exh_wire_packet p = {.type = EXH_WIRE_PARAM, .seq = 40 + (uint32_t)i};
         struct exh_wire_ack ack;
         p.u.param = c[i].ask;
-        ack = exh_wire_stage(&params, &p);
+        ack = exh_wire_stage(&params, &p, 0);
         CHECK(ack.result == c[i].want && ack.request_seq == p.seq &&
                   memcmp(&ack.param, &c[i].ask, sizeof ack.param) == 0,
             "case %d", (int)i);

@@ -131,7 +131,7 @@ static int read_params(struct live_options *o)
 
 static int open_modbus(const struct live_options *o)
 {
-    const struct mail_cfg mail = {o->save, o->remote};
+    const struct mail_cfg mail = {o->save, o->write, o->remote};
     if (o->modbus == NULL) { return 0; }
     mail_open(&mail);
     return live_modbus_open(o->modbus);
@@ -149,8 +149,14 @@ static int prepare(struct live_options *o, const struct exh_scene *sc)
             o->rate_Hz, 4294967294.0 / o->rate_Hz);
         err = 2;
     }
-    if (err == 0 && o->modbus == NULL && (o->save || o->remote)) {
-        cli_complain("--save and --remote: what clients may do: only with --modbus");
+    if (err == 0 && o->modbus == NULL && (o->save || o->remote || o->write)) {
+        cli_complain(
+            "--modbus-write, --save and --remote: what clients may do: only with --modbus");
+        err = 2;
+    }
+    if (err == 0 && o->save && !o->write) {
+        cli_complain(
+            "--save: %s: clients only read, and save nothing: give --modbus-write, too", o->save);
         err = 2;
     }
     if (err == 0 && o->slack_s > 0 && !o->pace) {
@@ -273,6 +279,8 @@ int cli_run(int argc, char **argv)
             "it is let go then: a fault; without --grip for good (never)"},
         {"modbus", CLI_TEXT, &o.modbus, 0, 0, "WHERE",
             "serve the registers at tcp:ADDRESS:PORT or rtu:DEVICE:BAUD"},
+        {"modbus-write", CLI_FLAG, &o.write, 0, 0, NULL,
+            "clients may change parameters, down while it runs (they only read)"},
         {"save", CLI_TEXT, &o.save, 0, 0, "FILE", "clients may save there, for --load-params"},
         {"remote", CLI_FLAG, &o.remote, 0, 0, NULL,
             "clients may command RUN and CLEAR; the dead-man holds all the same"},

@@ -31,7 +31,7 @@ struct live_options {
     double slack_s; /* < 0: not given */
     double record_Hz;
     int64_t seed;
-    int pace, grip, list, remote;
+    int pace, grip, list, remote, write;
     struct contacts gpio;
     const char *set[LIVE_SETTINGS_MAX];
     int sets;

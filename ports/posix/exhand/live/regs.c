@@ -11,7 +11,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#define LEN(a)  (sizeof(a) / sizeof((a)[0]))
 #define CELL_B  32
 #define COLUMNS 12
 
@@ -183,7 +182,6 @@ static void put_blocks(enum style style)
 static void name_cells(
     struct line *l, const struct exh_signal *row, unsigned instance, unsigned of, int is_float)
 {
-    static const char *const when[] = {"output", "set-up", "any time", "slewed", "limit"};
     if (of > 1) {
         snprintf(l->cell[NAME], CELL_B, "%s[%u]", row->name, instance);
     } else {
@@ -197,7 +195,7 @@ static void name_cells(
     } else {
         snprintf(l->cell[FORMAT], CELL_B, "i32");
     }
-    snprintf(l->cell[WHEN], CELL_B, "%s", row->when < LEN(when) ? when[row->when] : "");
+    snprintf(l->cell[WHEN], CELL_B, "%s", cli_signal_when(row));
 }
 
 static void range_cells(struct line *l, const struct exh_signal *row, int32_t dflt)

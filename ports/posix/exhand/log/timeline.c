@@ -248,14 +248,29 @@ static void on_frame(struct walk *w, const struct exh_record *r)
     w->now = other;
 }
 
+/* " by register" of its bits; "" of none. */
+static void by_whom(char to[48], unsigned source)
+{
+    static const char *const name[EXH_SOURCES] = {"the person", "image", "register", "world"};
+    size_t n = 0;
+    to[0] = '\0';
+    for (unsigned k = 0; k < EXH_SOURCES; k++) {
+        if (source >> k & 1u) {
+            n += (size_t)snprintf(to + n, 48 - n, "%s%s", n ? " or " : ", by ", name[k]);
+        }
+    }
+}
+
 static void said_param(struct walk *w, const struct exh_event *e)
 {
     const struct exh_params *p = w->log->scene->params;
     const int32_t i = p ? exh_signal_find(p->table, e->id, e->instance) : -1;
     if (i >= 0) {
         const struct exh_signal *row = exh_signal_at(p->table, (uint32_t)i, NULL);
-        timeline_say(&w->notes, w->log->tick, "parameter %s, instance %u: %.9g %s", row->name,
-            e->instance, cli_signal_value(row, e->value), names_unit(row->unit));
+        char by[48];
+        by_whom(by, e->source);
+        timeline_say(&w->notes, w->log->tick, "parameter %s, instance %u: %.9g %s%s", row->name,
+            e->instance, cli_signal_value(row, e->value), names_unit(row->unit), by);
     }
 }
 

@@ -88,9 +88,10 @@ struct exh_plane exh_wire_plane_of(const struct exh_wire_planes *planes, unsigne
     return p;
 }
 
-struct exh_wire_ack exh_wire_stage(struct exh_params *to, const struct exh_wire_packet *p)
+struct exh_wire_ack exh_wire_stage(struct exh_params *to, const struct exh_wire_packet *p, int open)
 {
     struct exh_wire_ack ack;
+    (void)open;
     /*@ assert wire_stage: params(to) && \initialized(&p->u.param); */
     ANY(ack);
     to->pending = any8();

@@ -10,6 +10,7 @@
  */
 #include "num/bytes.c"
 #include "law/gains.c"
+#include "num/authority.c"
 #include "num/params.c"
 #include "num/signal.c"
 

@@ -13,6 +13,7 @@
 #include "num/crc.c"
 #include "num/fix.c"
 #include "safe/integrity.c"
+#include "num/authority.c"
 #include "num/params.c"
 #include "num/signal.c" /* not that of Frama-C */
 

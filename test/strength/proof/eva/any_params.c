@@ -21,6 +21,7 @@
 #define exh_signal_crc table_crc /* its proof is any_signal.c */
 struct exh_signal_table;
 uint32_t table_crc(const struct exh_signal_table *t);
+#include "num/authority.c"
 #include "num/params.c"
 #undef exh_signal_crc
 #include "num/signal.c" /* not that of Frama-C */
@@ -64,6 +65,7 @@ static void changes(void)
     (void)exh_params_verify(&p);
     /*@ assert next: p.at < 8; */
     (void)exh_params_stage(&p, (uint16_t)any_u32(), (uint16_t)any_u32(), any32());
+    (void)exh_params_stage_by(&p, who, any_u32(), any32());
     (void)exh_params_stage_at(&p, Frama_C_unsigned_int_interval(TABLE_VALUES, UINT32_MAX), any32());
     for (uint32_t i = 0; i < TABLE_VALUES; i++) { (void)exh_params_stage_at(&p, i, any32()); }
     exh_params_set_active(&p, Frama_C_unsigned_int_interval(0, TABLE_VALUES - 1), any32());
@@ -84,6 +86,7 @@ static void load(size_t len_B)
     any_params();
     ANY(image_B);
     /* Its end is the end of the array. */
+    (void)exh_params_restore(&p, image_B + sizeof image_B - len_B, len_B, NULL);
     (void)exh_params_load(&p, image_B + sizeof image_B - len_B, len_B, len_B & 1 ? &bad : NULL);
 }
 

@@ -13,6 +13,7 @@
  * PLANT: lib/src/talk/regs_trace.c: &what->index[(at >> 1) - 1u] -> &what->index[at >> 1]
  */
 #include "num/bytes.c"
+#include "num/authority.c"
 #include "num/fix.c"
 #define exh_float_from_raw any_float /* any_regs.c has them */
 #define exh_float_to_raw   any_raw
@@ -52,17 +53,19 @@ int any_raw(uint32_t bits, unsigned frac, int32_t *raw)
     return 0;
 }
 
-int exh_params_validate(const struct exh_params *of, uint32_t i, int32_t raw)
+int exh_params_validate_by(
+    const struct exh_params *of, struct exh_authority who, uint32_t i, int32_t raw)
 {
+    (void)who;
     /*@ assert a_value: i < 8; */
     /*@ assert in_range: -1000 <= raw <= 2000; */
     (void)of;
     return Frama_C_interval(-EXH_E_COUNT, 0);
 }
 
-int exh_params_stage_at(struct exh_params *of, uint32_t i, int32_t raw)
+int exh_params_stage_by(struct exh_params *of, struct exh_authority who, uint32_t i, int32_t raw)
 {
-    return exh_params_validate(of, i, raw);
+    return exh_params_validate_by(of, who, i, raw);
 }
 
 static void any_staged(void)

@@ -12,6 +12,7 @@
 #include "num/bytes.c"
 #include "num/fix.c"
 #include "law/gains.c"
+#include "num/authority.c"
 #include "num/params.c"
 #include "num/signal.c" /* not that of Frama-C */
 

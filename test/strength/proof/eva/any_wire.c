@@ -13,6 +13,7 @@
 #include "num/bytes.c"
 #include "num/crc.c"
 #include "num/fix.c"
+#include "num/authority.c"
 #include "num/params.c"
 #include "num/signal.c"      /* not that of Frama-C */
 #define head       wire_head /* params.c has its own */
@@ -56,7 +57,7 @@ static void use(void)
     any_rows();
     exh_params_setup(&params, &table, active, staged);
     ANY(p);
-    (void)exh_wire_stage(&params, &p);
+    (void)exh_wire_stage(&params, &p, any8() & 1);
     (void)exh_wire_plane_of(&p.u.planes, Frama_C_unsigned_int_interval(0, EXH_FINGERS - 1));
     ANY(ours);
     ANY(theirs);

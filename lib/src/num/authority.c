@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT */
+/* Who may change what. */
+#include "exhand/authority.h"
+
+#include "exhand/error.h"
+#include "exhand/signal.h"
+
+/* What a cell allows. Before the set-up is over no cell but NEVER and SAME holds anything back. */
+enum cell {
+    NEVER, /* what no row below names, too */
+    SAME,  /* as it stands: who writes a whole block may write it back */
+    SETUP, /* before the loop, then as it stands */
+    REST,  /* another value while no force may be */
+    FALL,  /* the same, and at any time a lower one */
+    RISE,  /* the same, and at any time a higher one */
+    ANY    /* at any time */
+};
+
+static const uint8_t may[EXH_SOURCES][EXH_WHENS] = {
+    [EXH_FROM_PERSON] = {[EXH_WHEN_SETUP] = SETUP,
+        [EXH_WHEN_ANY] = ANY,
+        [EXH_WHEN_SLEWED] = ANY,
+        [EXH_WHEN_LIMIT] = ANY,
+        [EXH_WHEN_PERSON] = SETUP,
+        [EXH_WHEN_BOUND] = ANY,
+        [EXH_WHEN_WALL] = ANY,
+        [EXH_WHEN_REST] = ANY,
+        [EXH_WHEN_MATERIAL] = ANY,
+        [EXH_WHEN_WORD] = ANY},
+    [EXH_FROM_IMAGE] = {[EXH_WHEN_SETUP] = SETUP,
+        [EXH_WHEN_ANY] = SETUP,
+        [EXH_WHEN_SLEWED] = SETUP,
+        [EXH_WHEN_LIMIT] = SETUP,
+        [EXH_WHEN_BOUND] = SETUP,
+        [EXH_WHEN_WALL] = SETUP,
+        [EXH_WHEN_REST] = SETUP,
+        [EXH_WHEN_MATERIAL] = SETUP,
+        [EXH_WHEN_WORD] = SETUP},
+    [EXH_FROM_REGISTER] = {[EXH_WHEN_SETUP] = SETUP,
+        [EXH_WHEN_ANY] = ANY,
+        [EXH_WHEN_SLEWED] = FALL,
+        [EXH_WHEN_LIMIT] = FALL,
+        [EXH_WHEN_PERSON] = SAME,
+        [EXH_WHEN_BOUND] = FALL,
+        [EXH_WHEN_WALL] = RISE,
+        [EXH_WHEN_REST] = REST,
+        [EXH_WHEN_MATERIAL] = FALL,
+        [EXH_WHEN_WORD] = SAME},
+    [EXH_FROM_WORLD] = {[EXH_WHEN_MATERIAL] = FALL},
+};
+
+int exh_authority_check(struct exh_authority who, unsigned when, int32_t was, int32_t raw)
+{
+    const unsigned cell =
+        who.source < EXH_SOURCES && when < EXH_WHENS ? may[who.source][when] : NEVER;
+    const int calm = !who.locked || (cell >= REST && !who.open);
+    const int ok = (cell >= SAME && raw == was) || (cell >= SETUP && calm) ||
+                   (cell == FALL && raw < was) || (cell == RISE && raw > was) || cell == ANY;
+    return ok ? 0 : -EXH_E_STATE;
+}
