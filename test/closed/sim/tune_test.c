@@ -54,7 +54,7 @@ static void stage_any(int all)
         const struct exh_signal *row = exh_signal_at(p->table, i, NULL);
         const uint64_t span = (uint64_t)((int64_t)row->max - row->min) + 1, u = any();
         int64_t v = row->min + (int64_t)(u % span);
-        if (row->when < EXH_WHEN_SLEWED && !(all && row->when == EXH_WHEN_ANY)) { continue; }
+        if (!exh_signal_is_slewed(row) && (!all || exh_signal_is_fixed(row))) { continue; }
         if (u >> 60 < 4) { v = u >> 60 & 1 ? row->max : row->min; }
         if (u >> 60 == 4) { v = row->dflt; }
         CHECK_EQ_I64(exh_params_stage(p, row->id, 0, (int32_t)v), 0);

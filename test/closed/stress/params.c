@@ -35,6 +35,15 @@ static void stage_force(void)
 {
     stage_all(EXH_WHEN_SLEWED);
     stage_all(EXH_WHEN_LIMIT);
+    stage_all(EXH_WHEN_WALL);
+}
+
+/* What acts at once. */
+static void stage_rest(void)
+{
+    static const int when[] = {
+        EXH_WHEN_ANY, EXH_WHEN_BOUND, EXH_WHEN_REST, EXH_WHEN_MATERIAL, EXH_WHEN_WORD};
+    for (size_t i = 0; i < sizeof when / sizeof when[0]; i++) { stage_all(when[i]); }
 }
 
 static void parameters_every_tick(int32_t tune_ms)
@@ -48,7 +57,7 @@ static void parameters_every_tick(int32_t tune_ms)
     start((struct exh_period){1, 2000});
     for (uint64_t n = 0; n < cases; n++) {
         const struct exh_scene_in in = handled_in(n);
-        stage_all(EXH_WHEN_ANY);
+        stage_rest();
         /* Held for a while, too, or none would ever come near its ends. */
         if (any(n / 4096 % 2 ? 1 : 256) == 0) { stage_force(); }
         if (!exh_safety_is_running(&rig.state.safety)) {
@@ -70,7 +79,7 @@ static void stage_setup(void)
     stage_all(EXH_WHEN_PERSON);
     if (any(8)) { set(ID_SUPPLY_MIN, 0); }
     if (any(2)) {
-        stage_all(EXH_WHEN_ANY);
+        stage_rest();
         stage_force();
         if (any(4)) { set(ID_F0, 0); }
     }

@@ -127,9 +127,9 @@ void apply(void)
     exh_params_apply(&rig.params);
     for (uint32_t i = 0; i < exh_signal_count(rig.params.table); i++) {
         const struct exh_signal *row = exh_signal_at(rig.params.table, i, NULL);
-        const int up = goal[i] > was[i], when = row->when;
-        const int64_t next =
-            next_of(was[i], goal[i], when == EXH_WHEN_SLEWED || (when == EXH_WHEN_LIMIT && up));
+        const int up = goal[i] > was[i];
+        const int64_t next = next_of(
+            was[i], goal[i], exh_signal_is_slewed(row) && (row->when != EXH_WHEN_LIMIT || up));
         must(is[i] == next, "slewed", "%s: %ld, from %ld to %ld is %" PRId64, row->name,
             (long)is[i], (long)was[i], (long)goal[i], next);
     }

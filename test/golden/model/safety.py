@@ -27,7 +27,7 @@ def any_safety(rng, rate):
 
 
 class Safety:
-    pack = Struct("<21Ii5B5H").pack
+    pack = Struct("<22Ii5B5H").pack
 
     def __init__(self, par, T):
         most, self.small, arm, ramp, release = par

@@ -365,7 +365,7 @@ TEST(nothing_is_there)
     REFUSES(2, 2, 0, 0, 0, 193);
     REFUSES(2, 2, 0, 192, 0, 1);
     REFUSES(2, 2, 0xFF, 0xFF, 0, 2);
-    REFUSES(2, 4, 0, 0x3C, 0, 1);    /* behind the head */
+    REFUSES(2, 4, 0, 0x3E, 0, 1);    /* behind the head */
     REFUSES(2, 4, 0x04, 0x00, 0, 1); /* kept for traces */
     REFUSES(2, 4, 0x0F, 0xFF, 0, 2); /* into the outputs */
     REFUSES(2, 4, 0x10, 0x8C, 0, 1); /* behind the outputs */
