@@ -163,7 +163,7 @@ void calibration_why(char to[CALIBRATION_WHY_B], const struct calibration *r)
         "card", "link", "supply", "watchdog", "configuration", "state of the box"};
     static const char *const limit[] = {"pull", "force: f_max, or i_max", "slew", "peak: i_peak",
         "I2t: i_cont, i_peak, peak_time", "D/A span", "gate", "ramp", "release", "speed",
-        "passivity"};
+        "passivity", "person: person_f, person_i"};
     char list[120] = "";
     if (r->result == CALIBRATE_OFF) {
         names(list, sizeof list, r->faults, fault, sizeof fault / sizeof fault[0]);
