@@ -118,7 +118,7 @@ int exh_params_stage_by(struct exh_params *p, struct exh_authority who, uint32_t
     if (err < 0) { return err; }
     put(p, p->staged, i, raw);
     p->pending = 1;
-    p->by |= (uint8_t)(1u << who.source);
+    p->by |= (uint8_t)(1u << (who.source & 7u));
     return 0;
 }
 

@@ -137,6 +137,22 @@ static int open_modbus(const struct live_options *o)
     return live_modbus_open(o->modbus);
 }
 
+/* What clients may do goes with somewhere they come to. */
+static int check_clients(const struct live_options *o)
+{
+    if (o->modbus == NULL && (o->save || o->remote || o->write)) {
+        cli_complain(
+            "--modbus-write, --save and --remote: what clients may do: only with --modbus");
+        return 2;
+    }
+    if (o->save && !o->write) {
+        cli_complain(
+            "--save: %s: clients only read, and save nothing: give --modbus-write, too", o->save);
+        return 2;
+    }
+    return 0;
+}
+
 /* Everything that can be refused before the loop. */
 static int prepare(struct live_options *o, const struct exh_scene *sc)
 {
@@ -149,16 +165,7 @@ static int prepare(struct live_options *o, const struct exh_scene *sc)
             o->rate_Hz, 4294967294.0 / o->rate_Hz);
         err = 2;
     }
-    if (err == 0 && o->modbus == NULL && (o->save || o->remote || o->write)) {
-        cli_complain(
-            "--modbus-write, --save and --remote: what clients may do: only with --modbus");
-        err = 2;
-    }
-    if (err == 0 && o->save && !o->write) {
-        cli_complain(
-            "--save: %s: clients only read, and save nothing: give --modbus-write, too", o->save);
-        err = 2;
-    }
+    if (err == 0) { err = check_clients(o); }
     if (err == 0 && o->slack_s > 0 && !o->pace) {
         cli_complain("--slack: nothing is late in virtual time: only with --pace");
         err = 2;
@@ -277,10 +284,8 @@ int cli_run(int argc, char **argv)
             "the dead-man is gripped anew after a stop or fault"},
         {"let-go", CLI_REAL, &o.let_go_s, 0, 1e9, "S",
             "it is let go then: a fault; without --grip for good (never)"},
-        {"modbus", CLI_TEXT, &o.modbus, 0, 0, "WHERE",
-            "serve the registers at tcp:ADDRESS:PORT or rtu:DEVICE:BAUD"},
-        {"modbus-write", CLI_FLAG, &o.write, 0, 0, NULL,
-            "clients may change parameters, down while it runs (they only read)"},
+        {"modbus", CLI_TEXT, &o.modbus, 0, 0, "WHERE", "serve tcp:ADDRESS:PORT or rtu:DEVICE:BAUD"},
+        {"modbus-write", CLI_FLAG, &o.write, 0, 0, NULL, "clients write, too: less force only"},
         {"save", CLI_TEXT, &o.save, 0, 0, "FILE", "clients may save there, for --load-params"},
         {"remote", CLI_FLAG, &o.remote, 0, 0, NULL,
             "clients may command RUN and CLEAR; the dead-man holds all the same"},

@@ -50,7 +50,7 @@ int main(void)
         limits[k] = Frama_C_unsigned_int_interval(0, (1u << EXH_LIMITS) - 1);
     }
     exh_gate_step(&s, cfg, 1, i, limits, &out);
-    /*@ assert bits_of_limits: limits[0] < 1 << EXH_LIMITS; */
+    /*@ assert bits_of_limits: limits[0] < 1 << 12; */
     exh_gate_shut(&s, (uint16_t)par[0].dac_zero_raw, &out);
     /*@ assert drives_nothing: out.enable == 0; */
     END();

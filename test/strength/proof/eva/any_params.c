@@ -61,6 +61,8 @@ static void changes(void)
 {
     const struct exh_tune_par tune = {any32()};
     const struct exh_period T = {any_u32(), any_u32()};
+    struct exh_authority who;
+    ANY(who);
     any_params();
     (void)exh_params_verify(&p);
     /*@ assert next: p.at < 8; */
