@@ -11,7 +11,7 @@
 /*@ predicate gain(struct exh_gain *g) = 0 <= g->mant && g->shift <= 62;
     predicate fall(struct exh_gain *g) = 0 <= g->mant && 31 <= g->shift <= 62;
     predicate bit(integer v) = 0 <= v <= 1;
-    predicate limits(integer v) = 0 <= v < 1 << 11;
+    predicate limits(integer v) = 0 <= v < 1 << 12;
     predicate causes(integer v) = 0 <= v < 1 << 15;
     predicate table(struct exh_table *t) = 2 <= t->n && \valid_read(t->knot + (0 .. t->n - 1));
     predicate table_or_none(struct exh_table *t) = t->n == 0 || table(t); */
