@@ -96,6 +96,7 @@ static int set_drive(struct wall *w)
     for (int i = 0; i < EXH_DRIVE_ROWS; i++) { ((int32_t *)p)[i] = exh_drive_rows[i].dflt; }
     p->f_max_N_q20 = rounded(w->f_max_N * 1048576);
     p->slew_up_Nps = p->slew_down_Nps = 10000000;
+    p->person_N_q20 = EXH_Q(100, 1, EXH_Q_FORCE);
     w->knot[0].x = w->knot[0].y = 0;
     w->knot[1].x = EXH_Q(100, 1, EXH_Q_FORCE);
     w->knot[1].y = EXH_Q(6, 1, EXH_Q_CUR);

@@ -312,6 +312,7 @@ TEST(what_has_to_fall_is_no_more_than_the_highest_limit)
     start(1);
     rig.to_cur[1] = (struct exh_knot){200 * NEWTON, 6 * AMPERE, {0, 0}};
     CHECK_EQ_I64(exh_table_setup(rig.to_cur, 2), 0);
+    rig.drive_par.person_N_q20 = 100 * NEWTON;
     rig.drive_par.slew_down_Nps = 100001; /* of a tick of 1 ms, rounded: 100 N */
     CHECK_EQ_I64(exh_drive_setup(&rig.drive, &rig.drive_par, rig.T,
                      (struct exh_table){rig.to_cur, 2}, (struct exh_table){NULL, 0}),
