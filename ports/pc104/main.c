@@ -42,6 +42,21 @@ static void before(uint32_t tick, struct exh_scene_in *in)
     pc104_scene_before(tick, in);
 }
 
+/* A force over current that nobody believes. */
+static void say_far(const struct exh_scene_calib *k)
+{
+    say_version(", finger ", k->finger);
+    say_version(", point ", k->point_at + 1u);
+    pc104_say(": ");
+    pc104_say_fixed(k->ratio_NpA_q20, EXH_Q_FORCE);
+    pc104_say(" N/A (allowed ");
+    pc104_say_fixed(k->expected_NpA_q20, EXH_Q_FORCE + 1);
+    pc104_say(" to ");
+    pc104_say_fixed(3 * (int64_t)k->expected_NpA_q20, EXH_Q_FORCE + 1);
+    pc104_say("): refused\n"
+              "calibrate again, or correct kf; far_calibration=1 believes it\n");
+}
+
 /* Which module set-up did not take, and what of it: an option that is refused. */
 static void say_refused(const struct exh_scene_calib *k)
 {
@@ -50,6 +65,10 @@ static void say_refused(const struct exh_scene_calib *k)
     say_version("calibration ", k->image_at + 1u);
     pc104_say(": ");
     pc104_say(k->what);
+    if (k->expected_NpA_q20) {
+        say_far(k);
+        return;
+    }
     if (k->point_at) { say_version(", point ", k->point_at + 1u); }
     pc104_say(": refused\n");
 }

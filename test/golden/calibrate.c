@@ -43,7 +43,7 @@ static void any_values(struct golden_rng *r, struct exh_calib *c)
     c->device_id = (uint32_t)(golden_u64(r) & UINT32_MAX);
     c->finger = (uint32_t)golden_draw(r, 0, 4);
     c->day = (uint32_t)golden_draw(r, 1, 30000);
-    c->valid_days = (uint32_t)golden_draw(r, 0, 400);
+    c->valid_days = (uint32_t)golden_draw(r, 0, 366);
     c->dac_rawpA_q16 = (int32_t)golden_draw(r, 65536, INT32_MAX);
     c->dac_zero_raw = (int32_t)golden_draw(r, 0, 65535);
     c->mon_A_q40 = (int32_t)golden_draw(r, 1, INT32_MAX);

@@ -71,12 +71,14 @@ int32_t exh_calib_residual_N_q20(
 
 /* --- a calibration of one finger --- */
 
+#define EXH_CALIB_VALID_MAX_DAYS 366 /* a year: cables, sheaths and motors age */
+
 /* A calibration of one finger. What is out of range is refused, never limited. */
 struct exh_calib {
     uint32_t device_id;    /* of the box, given by whoever calibrates */
     uint32_t finger;       /* 0 .. EXH_FINGERS - 1 */
     uint32_t day;          /* when: days since 1970-01-01, or any serial number that grows */
-    uint32_t valid_days;   /* good on days day .. day + valid_days */
+    uint32_t valid_days;   /* good on days day .. day + valid_days, 0 .. EXH_CALIB_VALID_MAX_DAYS */
     int32_t dac_rawpA_q16; /* scales and zero it was measured with (exh_drive_par): with
                             * others it is no longer true. Codes per ampere */
     int32_t dac_zero_raw;  /* code of no current, 0 .. 65535 */
@@ -102,12 +104,16 @@ enum exh_calib_error_kind {
     EXH_CALIB_VALUE,       /* zero, F0, end or number of points */
     EXH_CALIB_FORCE_TABLE, /* force -> current; at: the point */
     EXH_CALIB_MONITOR_TABLE, /* monitor -> force; at: the point */
-    EXH_CALIB_ERRORS         /* how many there are */
+    EXH_CALIB_VALIDITY,      /* valid_days above EXH_CALIB_VALID_MAX_DAYS */
+    EXH_CALIB_FAR_CURRENT, /* force over coded current, far from what is expected; at: the point */
+    EXH_CALIB_FAR_MONITOR, /* the same over the monitored one */
+    EXH_CALIB_FAR_FINGERS, /* either, far from the median of the fingers; at: the point */
+    EXH_CALIB_ERRORS       /* how many there are */
 };
 /* The culprit: why a calibration was refused. */
 struct exh_calib_error {
     uint8_t what; /* enum exh_calib_error_kind */
-    uint8_t at;   /* point, from 0, for the tables */
+    uint8_t at;   /* point, from 0, for the tables and what is far */
 };
 
 /* "force-to-current table", ...; never NULL. */
@@ -124,8 +130,19 @@ int exh_calib_force_table(
 int exh_calib_monitor_table(
     const struct exh_calib *c, struct exh_knot *knot, unsigned cap, struct exh_calib_error *bad);
 
-/* All of it: values in range and both tables as above. 0 or the error. */
+/* All of it: values in range, validity, and both tables as above. 0 or the error. */
 int exh_calib_validate(const struct exh_calib *c, struct exh_calib_error *bad);
+
+/* Force over current of one point, N/A q20, rounded down; saturates, as above 0 A. 0 where the
+ * current is none. Set-up only (divides). */
+int32_t exh_calib_ratio_NpA_q20(const struct exh_calib_point *p, enum exh_calib_column which);
+
+/* Is force over either current within half of kf, so 1/2 .. 3/2 of it, at every point? Between two
+ * points a table's ratio lies between theirs. Beyond the last it lies between that and the line's.
+ * So it holds everywhere: if kf is right, no force is above twice what is asked. For points that
+ * were validated and kf 0 .. 512 N/A. 0, or -EXH_E_RANGE with *bad (may be NULL) FAR_CURRENT or
+ * FAR_MONITOR and the point. No division. */
+int exh_calib_near(const struct exh_calib *c, int32_t kf_NpA_q20, struct exh_calib_error *bad);
 
 /* Where and when it is to be used. */
 struct exh_calib_target {

@@ -94,6 +94,10 @@ const char *exh_calib_error_text(unsigned what)
         "zero, F0, end or number of points",
         "force-to-current table",
         "monitor-to-force table",
+        "validity, above 366 days",
+        "force over current",
+        "force over monitored current",
+        "force over current beside the other fingers",
     };
     return what < EXH_CALIB_ERRORS ? text[what] : "unknown";
 }
@@ -201,9 +205,43 @@ int exh_calib_validate(const struct exh_calib *c, struct exh_calib_error *bad)
 {
     struct exh_knot knot[2 * EXH_CALIB_POINTS_MAX + 3];
     const unsigned cap = sizeof knot / sizeof knot[0];
-    int n = exh_calib_force_table(c, knot, cap, bad);
+    int n;
+    if (c->valid_days > EXH_CALIB_VALID_MAX_DAYS) {
+        return refuse(bad, EXH_CALIB_VALIDITY, 0, -EXH_E_RANGE);
+    }
+    n = exh_calib_force_table(c, knot, cap, bad);
     if (n >= 0) { n = exh_calib_monitor_table(c, knot, cap, bad); }
     return n < 0 ? n : 0;
+}
+
+int32_t exh_calib_ratio_NpA_q20(const struct exh_calib_point *p, enum exh_calib_column which)
+{
+    const int32_t cur = current_of(p, which);
+    uint64_t ratio;
+    if (cur <= 0 || p->force_N_q20 < 0) { return 0; }
+    ratio = exh_udiv64((uint64_t)p->force_N_q20 << EXH_Q_CUR, (uint32_t)cur, NULL);
+    return ratio < INT32_MAX ? (int32_t)ratio : INT32_MAX;
+}
+
+/* Points are in range and kf is at most 512 N/A, 2^29: wanted < 2^59. */
+static int is_near(int64_t force, int64_t cur, int64_t kf)
+{
+    const int64_t twice = force * (2 << EXH_Q_CUR), wanted = kf * cur;
+    return twice >= wanted && twice <= 3 * wanted;
+}
+
+int exh_calib_near(const struct exh_calib *c, int32_t kf_NpA_q20, struct exh_calib_error *bad)
+{
+    for (unsigned i = 0; i < c->points; i++) {
+        const struct exh_calib_point *p = &c->point[i];
+        if (!is_near(p->force_N_q20, p->cur_A_q26, kf_NpA_q20)) {
+            return refuse(bad, EXH_CALIB_FAR_CURRENT, i, -EXH_E_RANGE);
+        }
+        if (!is_near(p->force_N_q20, p->mon_A_q26, kf_NpA_q20)) {
+            return refuse(bad, EXH_CALIB_FAR_MONITOR, i, -EXH_E_RANGE);
+        }
+    }
+    return 0;
 }
 
 int exh_calib_check(

@@ -14,6 +14,8 @@ const struct exh_signal exh_calib_set_rows[EXH_CALIB_SET_ROWS] = {
         "today, days since 1970; 0: not known, no calibration of a day holds"},
     {0x8903, 0, EXH_WHEN_PERSON, 0, 1, 0, "uncalibrated", "",
         "1: a finger without a calibration arms without, by kf, polarity on trust"},
+    {0x8904, 0, EXH_WHEN_SETUP, 0, 1, 0, "far_calibration", "",
+        "1: a calibration beyond half or 3/2 of kf, or of the fingers' median, is believed"},
 };
 
 /* Images carry at most so many points. */
@@ -44,6 +46,52 @@ static int load(struct loaded *to, struct exh_scene_calib *k, unsigned i)
         err = -EXH_E_RANGE;
     }
     return err < 0 ? refuse(k, i, bad, err) : 0;
+}
+
+/* Is what an image says of force over current within half of what is expected? */
+static int near(
+    struct exh_scene_calib *k, unsigned i, const struct loaded *now, int32_t kf_NpA_q20, int others)
+{
+    struct exh_calib_error bad = {0, 0};
+    const int err = exh_calib_near(&now->c, kf_NpA_q20, &bad);
+    if (err == 0) { return 0; }
+    k->finger = (uint8_t)now->c.finger;
+    k->ratio_NpA_q20 = exh_calib_ratio_NpA_q20(&now->point[bad.at],
+        bad.what == EXH_CALIB_FAR_MONITOR ? EXH_CALIB_MONITOR : EXH_CALIB_CURRENT);
+    k->expected_NpA_q20 = kf_NpA_q20;
+    if (others) { bad.what = EXH_CALIB_FAR_FINGERS; }
+    return refuse(k, i, bad, err);
+}
+
+/* Of each image's line; the lower one of an even number. All are sound. */
+static int32_t median(struct exh_scene_calib *k)
+{
+    int32_t sorted[EXH_FINGERS] = {0};
+    struct loaded now;
+    struct exh_calib_fit fit;
+    for (unsigned i = 0; i < k->images; i++) {
+        unsigned at = i;
+        (void)load(&now, k, i);
+        (void)exh_calib_fit(&fit, now.point, now.c.points, EXH_CALIB_CURRENT);
+        for (; at > 0 && sorted[at - 1] > fit.kf_NpA_q20; at--) { sorted[at] = sorted[at - 1]; }
+        sorted[at] = fit.kf_NpA_q20;
+    }
+    return sorted[(k->images - 1) / 2];
+}
+
+/* Of two that differ nobody knows which one is wrong: kf alone judges them. */
+static int alike(struct exh_scene_calib *k)
+{
+    struct loaded now;
+    int32_t middle;
+    int err = 0;
+    if (k->images < 3) { return 0; }
+    middle = median(k);
+    for (unsigned i = 0; err == 0 && i < k->images; i++) {
+        (void)load(&now, k, i);
+        err = near(k, i, &now, middle, 1);
+    }
+    return err;
 }
 
 /* With the image's own scales where `drive` is NULL. */
@@ -88,7 +136,9 @@ int exh_calib_set_load(struct exh_scene_calib *k, struct exh_params *params,
     int err;
     k->refused = 0;
     k->what = NULL;
+    k->expected_NpA_q20 = 0;
     err = check(k, par, fingers);
+    if (err == 0 && !par->far_allowed) { err = alike(k); }
     for (unsigned i = 0; err == 0 && i < k->images; i++) {
         (void)load(&now, k, i);
         err = exh_params_stage(params, MON_ZERO_ID, (uint16_t)now.c.finger, now.c.mon_zero_raw);
@@ -142,7 +192,9 @@ int exh_calib_set_tables(struct exh_calib_tables *t, struct exh_scene_calib *k,
         if (now.c.finger != of->f) { continue; }
         h = here(&now.c, par, of->drive);
         err = exh_calib_check(&now.c, &h, &bad);
-        return err < 0 ? refuse(k, i, bad, err) : measured(t, k, i, &now);
+        if (err < 0) { return refuse(k, i, bad, err); }
+        err = par->far_allowed ? 0 : near(k, i, &now, of->kf_NpA_q20, 0);
+        return err < 0 ? err : measured(t, k, i, &now);
     }
     return lines(t, of);
 }

@@ -92,6 +92,7 @@ int images_give(const struct images *im, const struct exh_scene *sc)
     }
     err = cli_param_set(sc->params, "device_id", 1);
     if (err == 0) { err = cli_param_set(sc->params, "uncalibrated", 0); }
+    if (err == 0) { err = cli_param_set(sc->params, "far_calibration", 0); }
     return err < 0 ? err : cli_param_set(sc->params, "day", (double)(time(NULL) / DAY_S));
 }
 
@@ -110,11 +111,27 @@ static void say_whose(const struct images *im, const struct exh_scene *sc, int i
         (unsigned long)c.valid_days, (long)sc->params->active[id], (long)sc->params->active[day]);
 }
 
+/* A force over current that nobody believes. */
+static void say_far(const struct images *im, const struct exh_scene_calib *k)
+{
+    const double scale = 1 << EXH_Q_FORCE;
+    const double expected = k->expected_NpA_q20 / scale;
+    cli_complain(
+        "--calibration: %s: finger %u, %s, point %u: %.4g N/A (allowed %.4g..%.4g, half to "
+        "3/2 of %.4g): calibrate again, or correct kf; --set far_calibration=1 believes it",
+        im->at[k->image_at].path, (unsigned)k->finger, k->what, k->point_at + 1u,
+        k->ratio_NpA_q20 / scale, expected / 2, 1.5 * expected, expected);
+}
+
 int images_complain(const struct images *im, const struct exh_scene *sc)
 {
     const struct exh_scene_calib *k = sc->calib;
     char point[24] = "";
     if (im == NULL || k == NULL || k->refused == 0 || k->image_at >= im->n) { return 0; }
+    if (k->expected_NpA_q20) {
+        say_far(im, k);
+        return 1;
+    }
     if (k->point_at) { snprintf(point, sizeof point, ", point %d", k->point_at + 1); }
     cli_complain("--calibration: %s: %s%s: %s: nothing was started", im->at[k->image_at].path,
         k->what, point, exh_error_text(k->refused));

@@ -314,7 +314,7 @@ static void start_box(int is_alone)
     const struct exh_scene_board board = {{1, 500}, 24};
     exh_scene_drop.defaults();
     CHECK_EQ_I64(exh_params_stage(
-                     exh_scene_drop.params, exh_calib_set_rows[EXH_CALIB_SET_ROWS - 1].id, 0, 1),
+                     exh_scene_drop.params, exh_calib_set_rows[2].id, 0, 1),
         0); /* uncalibrated */
     exh_params_apply(exh_scene_drop.params);
     CHECK_EQ_I64(exh_scene_drop.setup(board), 0);

@@ -21,6 +21,7 @@
 #define ID_DEVICE   0x8901
 #define ID_DAY      0x8902
 #define ID_WITHOUT  0x8903
+#define ID_FAR      0x8904
 #define ID_FINGERS  0x8610
 #define ID_DAC_ZERO 0x0507
 #define MON_ZERO    -37
@@ -43,8 +44,9 @@ static struct exh_calib_point point[3] = {
 /* With the scales that a scene begins with. */
 static struct exh_calib calib(uint32_t finger)
 {
-    const struct drop_par *par = (const void *)exh_scene_drop.params->active;
+    const struct drop_par *par;
     exh_scene_drop.defaults();
+    par = (const void *)exh_scene_drop.params->active;
     return (struct exh_calib){.device_id = DEVICE,
         .finger = finger,
         .day = DAY,
@@ -289,6 +291,109 @@ TEST(one_of_five_that_is_refused_refuses_all)
     CHECK_EQ_I64(sc->calib->image_at, 1);
 }
 
+/* --- far from what is expected --- */
+
+#define FORGED_DAYS 36500
+
+/* As nobody calibrates: 0.1 N/A of a motor with 3.3, good for a hundred years; its CRC is right. */
+static void forge(unsigned i, struct exh_calib c, uint32_t valid_days)
+{
+    static struct exh_calib_point weak[2] = {
+        {EXH_Q(1001, 10000, EXH_Q_FORCE), EXH_Q(1, 1, EXH_Q_CUR), EXH_Q(1, 1, EXH_Q_CUR), 0},
+        {EXH_Q(5005, 10000, EXH_Q_FORCE), EXH_Q(5, 1, EXH_Q_CUR), EXH_Q(5, 1, EXH_Q_CUR), 0},
+    };
+    struct exh_bytes b;
+    uint32_t crc;
+    c.point = weak;
+    c.points = LEN(weak);
+    save(i, &c);
+    b = exh_bytes_writer(image[i].byte + 20, 4);
+    exh_bytes_u32(&b, &valid_days);
+    crc = exh_crc32(0, image[i].byte, image[i].len_B - 4);
+    b = exh_bytes_writer(image[i].byte + image[i].len_B - 4, 4);
+    exh_bytes_u32(&b, &crc);
+}
+
+TEST(a_forged_one_is_refused)
+{
+    const struct exh_scene *const all[] = {
+        &exh_scene_drop, &exh_scene_guarded, &exh_scene_bilateral};
+    for (size_t i = 0; i < LEN(all); i++) {
+        const struct exh_scene_calib *k = all[i]->calib;
+        forge(0, calib(0), 90);
+        give(all[i], 0, 1);
+        if (i == 2) { CHECK_EQ_I64(exh_params_stage(all[i]->params, ID_FINGERS, 0, 1), 0); }
+        CHECK_EQ_I64(exh_params_stage(all[i]->params, ID_WITHOUT, 0, 1), 0);
+        CHECK_EQ_I64(set_up(all[i]), -EXH_E_RANGE);
+        CHECK(strcmp(k->what, "force over current") == 0 && k->image_at == 0 && k->point_at == 0 &&
+                  k->finger == 0,
+            "%s", k->what);
+        CHECK(abs(k->ratio_NpA_q20 - EXH_Q(1001, 10000, EXH_Q_FORCE)) < 4 &&
+                  k->expected_NpA_q20 == EXH_Q(3339, 1000, EXH_Q_FORCE),
+            "%d of %d", (int)k->ratio_NpA_q20, (int)k->expected_NpA_q20);
+        CHECK_EQ_I64(exh_params_stage(all[i]->params, ID_FAR, 0, 1), 0);
+        CHECK_EQ_I64(set_up(all[i]), 0);
+        CHECK_EQ_I64(k->expected_NpA_q20, 0);
+        forge(0, calib(0), FORGED_DAYS); /* which nothing waives */
+        give(all[i], 0, 1);
+        CHECK_EQ_I64(exh_params_stage(all[i]->params, ID_FAR, 0, 1), 0);
+        check_refused(all[i], -EXH_E_RANGE, "validity, above 366 days", "a hundred years");
+    }
+}
+
+/* Each point is held against kf, the monitor's current as the one that is coded. */
+TEST(one_point_far_from_kf_is_named)
+{
+    const struct exh_calib_point was = point[1];
+    for (int far = 0; far < 4; far++) {
+        struct exh_calib c = calib(0);
+        point[1].cur_A_q26 = far == 0 ? EXH_Q(59, 100, EXH_Q_CUR) : was.cur_A_q26;
+        point[1].mon_A_q26 = far == 1   ? EXH_Q(59, 100, EXH_Q_CUR)
+                             : far == 2 ? EXH_Q(18, 10, EXH_Q_CUR)
+                                        : was.mon_A_q26;
+        save(0, &c);
+        give(&exh_scene_drop, 0, 1);
+        CHECK(set_up(&exh_scene_drop) == (far < 3 ? -EXH_E_RANGE : 0), "row %d", far);
+        if (far < 3) {
+            CHECK(strcmp(exh_scene_drop.calib->what,
+                      far ? "force over monitored current" : "force over current") == 0 &&
+                      exh_scene_drop.calib->point_at == 1,
+                "row %d: %s", far, exh_scene_drop.calib->what);
+        }
+    }
+    point[1] = was;
+}
+
+/* All within half of kf, one not within half of the median; of two nobody knows which is wrong. */
+TEST(one_finger_far_from_the_others_is_named)
+{
+    const struct exh_scene *sc = &exh_scene_bilateral;
+    const struct exh_calib_point was[3] = {point[0], point[1], point[2]};
+    for (unsigned odd = 0; odd < EXH_FINGERS; odd++) {
+        for (unsigned f = 0; f < EXH_FINGERS; f++) {
+            struct exh_calib c = calib(f);
+            for (unsigned i = 0; i < LEN(point); i++) { /* 4.67 and 2.67 N/A */
+                const int32_t A_q26 =
+                    (int32_t)(was[i].force_N_q20 * 64.0 / (f == odd ? 4.67 : 2.67));
+                point[i] = (struct exh_calib_point){was[i].force_N_q20, A_q26, A_q26, 0};
+            }
+            save(f, &c);
+        }
+        for (unsigned n = 1; n <= EXH_FINGERS; n++) {
+            const int told = n >= 3 && odd < n;
+            give(sc, 0, n);
+            CHECK(set_up(sc) == (told ? -EXH_E_RANGE : 0), "%u of %u", odd, n);
+            if (!told) { continue; }
+            CHECK(sc->calib->finger == odd && sc->calib->image_at == odd &&
+                      strcmp(sc->calib->what, "force over current beside the other fingers") == 0,
+                "%u of %u: %s", odd, n, sc->calib->what);
+            CHECK_EQ_I64(exh_params_stage(sc->params, ID_FAR, 0, 1), 0);
+            CHECK(set_up(sc) == 0, "%u of %u, waived", odd, n);
+        }
+    }
+    memcpy(point, was, sizeof was);
+}
+
 /* --- people --- */
 
 static uint32_t slurp(const char *path, uint8_t *to, size_t cap_B)
@@ -299,6 +404,43 @@ static uint32_t slurp(const char *path, uint8_t *to, size_t cap_B)
     n = fread(to, 1, cap_B, f);
     fclose(f);
     return (uint32_t)n;
+}
+
+/* The file that was 22 N where a person had asked for 0.67 N. */
+TEST(a_forged_file_is_refused_by_every_command)
+{
+    static const struct {
+        uint32_t days;
+        const char *drop, *check;
+    } row[] = {
+        {90,
+            "finger 0, force over current, point 1: 0.1001 N/A (allowed 1.669..5.008, half to 3/2 "
+            "of 3.339): calibrate again",
+            "finger 0, force over current, point 1: 0.1001 N/A (allowed 1.669..5.008, half to 3/2 "
+            "of kf 3.339): calibrate again"},
+        {FORGED_DAYS, "validity, above 366 days: ", "validity, above 366 days: "},
+    };
+    static struct said s;
+    const char *dir = said_dir();
+    const char *path = said_path(dir, "calibration.bin");
+    struct exh_calib_point own[EXH_CALIB_POINTS_MAX];
+    struct exh_calib c = {.point = own, .cap = EXH_CALIB_POINTS_MAX};
+    uint8_t genuine[EXH_CALIB_IMAGE_B];
+    said(&s, dir, cli_calibrate, WORDS("calibrate", "--day", "20000", "--out", dir));
+    CHECK_EQ_I64(exh_calib_load(&c, genuine, slurp(path, genuine, sizeof genuine), NULL), 0);
+    for (size_t i = 0; i < LEN(row); i++) {
+        FILE *f = fopen(path, "wb");
+        forge(0, c, row[i].days);
+        CHECK(f && fwrite(image[0].byte, 1, image[0].len_B, f) == image[0].len_B && fclose(f) == 0,
+            "%s", path);
+        said(&s, dir, cli_drop,
+            WORDS("drop", "--rate", "500", "--falls", "1", "--set", "f_max=0.66", "--calibration",
+                path, "--set", "day=20000"));
+        CHECK(s.status == 2 && strstr(s.err, row[i].drop), "%d: %s", s.status, s.err);
+        said(&s, dir, cli_calibrate, WORDS("calibrate", "--check", path, "--day", "20000"));
+        CHECK(s.status == 1 && strstr(s.err, row[i].check), "%d: %s", s.status, s.err);
+    }
+    said_clean(dir);
 }
 
 /* The header has the image's bytes, so that a replay elsewhere, years later, is the same. */
@@ -429,5 +571,7 @@ TEST(an_old_log_is_named)
 TEST_MAIN("calib", nothing_arms_without_unless_waived, a_good_one_arms_and_forces_go_by_its_points,
     what_does_not_hold_is_refused_by_name, every_damaged_bit_and_every_end_is_refused,
     the_full_box_needs_one_for_every_finger_in_use, one_of_five_that_is_refused_refuses_all,
+    a_forged_one_is_refused, one_point_far_from_kf_is_named,
+    one_finger_far_from_the_others_is_named, a_forged_file_is_refused_by_every_command,
     a_log_has_them_and_replays, a_dump_of_the_black_box_has_them, the_command_names_file_and_field,
     loaded_parameters_do_not_vouch, an_old_log_is_named);

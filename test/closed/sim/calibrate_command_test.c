@@ -63,6 +63,7 @@ TEST(exit_status_says_what_happened)
         {2, "--set i_max=0.04 --set pol_max=0.03 --set home_cur=0.03"}, /* slack_cur */
         {2, "--set go=1"},                                              /* the person's word */
         {2, "--set mass=0.3"},
+        {2, "--valid 367"},
         {2, "--hung 0.1"},
         {2, "--wrong nothing"},
         {2, "--rate 0"},
@@ -141,6 +142,60 @@ TEST(what_is_refused_is_named)
     said_clean(dir);
 }
 
+/* A mass that is typed wrong, at each place of the list, too light and too heavy: it is named, by
+ * its step or by its residual, and nothing is written. */
+TEST(a_mistyped_mass_is_named)
+{
+    static const struct {
+        const char *mass, *says;
+        int status;
+    } row[] = {
+        {"0.02,0.2,0.3,0.5,0.7", "mass 0.02 kg: did not move", 1},
+        {"0.085,0.2,0.3,0.5,0.7", "mass 0.085 kg: ", 1},
+        {"0.12,0.2,0.3,0.5,0.7", "mass 0.12 kg: residual: 0.1", 1},
+        {"0.1,0.17,0.3,0.5,0.7", "mass 0.17 kg: ", 1},
+        {"0.1,0.29,0.3,0.5,0.7", "mass 0.29 kg: residual: 0.8", 1},
+        {"0.1,0.2,0.23,0.5,0.7", "mass 0.23 kg: ", 1},
+        {"0.1,0.2,0.49,0.5,0.7", "mass 0.49 kg: residual: 1.8", 1},
+        {"0.1,0.2,0.3,0.05,0.7", "--mass: 0.1,0.2,0.3,0.05,0.7 (", 2},
+        {"0.1,0.2,0.3,0.4,0.7", "mass 0.4 kg: ", 1},
+        {"0.1,0.2,0.3,0.69,0.7", "mass 0.69 kg: residual: 1.8", 1},
+        {"0.1,0.2,0.3,0.5,0.6", "mass 0.6 kg: residual: 0.9", 1},
+        {"0.1,0.2,0.3,0.5,2", "mass 2 kg: residual: 12", 1},
+        {"0.2,0.4,0.6,1,1.4", "are --mass in kg?", 1}, /* all of them, by one factor */
+        {"0.12,0.24,0.3,0.5,0.7", "no one mass is the cause", 1},
+    };
+    char *dir = said_dir();
+    for (size_t i = 0; i < LEN(row); i++) {
+        SAYS(dir, row[i].status, row[i].says, "--mass", row[i].mass, "--hung",
+            "0.1,0.2,0.3,0.5,0.7", "--rate", "500", "--out", dir);
+        CHECK(said_size(said_path(dir, "calibration.bin")) < 0, "%s: written", row[i].mass);
+    }
+    said_clean(dir);
+}
+
+/* A motor's constant does not change by half: what is there is not replaced by what is far from it.
+ */
+TEST(the_last_image_is_asked)
+{
+    char *dir = said_dir();
+    const char *image = said_path(dir, "calibration.bin");
+    static struct said made;
+    said(&made, dir, cli_calibrate,
+        WORDS("calibrate", "--day", "20000", "--rate", "500", "--device", "kf=7", "--out", dir));
+    CHECK(made.status == 0, "%s", made.err);
+    SAYS(dir, 1, "half to 3/2 of 6.8", "--rate", "500", "--out", dir);
+    SAYS(dir, 1, "(allowed 1.669..5.008, half to 3/2 of kf 3.339): calibrate again", "--check",
+        image, "--day", "20000");
+    said(&made, dir, cli_calibrate,
+        WORDS("calibrate", "--check", image, "--day", "20000", "--device", "kf=7"));
+    CHECK(made.status == 0, "%s", made.err);
+    said(&made, dir, cli_calibrate, /* another finger's: not asked */
+        WORDS("calibrate", "--rate", "500", "--finger", "1", "--out", dir));
+    CHECK(made.status == 0, "%s", made.err);
+    said_clean(dir);
+}
+
 #define LONG_64  "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef"
 #define LONG_512 LONG_64 LONG_64 LONG_64 LONG_64 LONG_64 LONG_64 LONG_64 LONG_64
 
@@ -199,4 +254,5 @@ TEST(an_interruption_saves_nothing)
 }
 
 TEST_MAIN("sim/calibrate_command", exit_status_says_what_happened, what_is_refused_is_named,
-    what_cannot_be_written_is_said, an_interruption_saves_nothing);
+    a_mistyped_mass_is_named, the_last_image_is_asked, what_cannot_be_written_is_said,
+    an_interruption_saves_nothing);

@@ -153,6 +153,20 @@ TEST(same_seed_same_image)
     CHECK(memcmp(a, b, (size_t)len) != 0, "another seed gives the same image");
 }
 
+/* What is honest has a fifth of the residual that is refused (0.1 N), whatever the chance. */
+TEST(honest_noise_is_far_from_being_refused)
+{
+    double worst_N = 0;
+    for (uint64_t seed = 1; seed <= 60; seed++) {
+        struct calibration_cfg c = config(seed);
+        struct calibration_lines l;
+        c.rate_Hz = seed % 2 ? 200 : 500;
+        calibrated(&c, &l);
+        worst_N = fmax(worst_N, fmax(l.cur_worst_N, l.mon_worst_N));
+    }
+    CHECK(worst_N > 0.002 && worst_N < 0.05, "%.4f N", worst_N);
+}
+
 /* --- what stops it --- */
 
 TEST(whatever_is_wrong_stops_at_its_step)
@@ -553,8 +567,9 @@ TEST(either_residual_counts)
     said_clean(dir);
 }
 
-TEST_MAIN("sim/calibrate", kf_f0_and_home_are_the_devices, at_any_rate, other_devices,
-    the_monitors_zero_is_found, kf_itself_where_the_mass_has_no_friction, same_seed_same_image,
+TEST_MAIN("sim/calibrate", honest_noise_is_far_from_being_refused, kf_f0_and_home_are_the_devices,
+    at_any_rate, other_devices, the_monitors_zero_is_found,
+    kf_itself_where_the_mass_has_no_friction, same_seed_same_image,
     whatever_is_wrong_stops_at_its_step, reversed_is_seen_at_the_least_current,
     exchanged_masses_are_refused_by_table_and_point, set_up_refuses,
     a_fault_ends_it_in_its_tick_for_good, nothing_begins_outside_run,

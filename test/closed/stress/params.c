@@ -23,9 +23,7 @@ static void stage_all(int when)
         uint16_t instance;
         const struct exh_signal *row = exh_signal_at(rig.params.table, i, &instance);
         if (row->when != when) { continue; }
-        if (row->id == exh_calib_set_rows[EXH_CALIB_SET_ROWS - 1].id) {
-            continue;
-        } /* uncalibrated: it would not arm */
+        if (row->id == exh_calib_set_rows[2].id) { continue; } /* uncalibrated: it would not arm */
         must(exh_params_stage(&rig.params, row->id, instance, any_value(row)) == 0, "setting", "%s",
             row->name);
     }

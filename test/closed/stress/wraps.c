@@ -51,7 +51,7 @@ static char *write_wrapping_log(uint32_t first, uint32_t ticks, size_t *len_B)
     p.log = open_memstream(&log, len_B);
     posix_configure(&p);
     sc->defaults();
-    must(exh_params_stage(sc->params, exh_calib_set_rows[EXH_CALIB_SET_ROWS - 1].id, 0, 1) == 0 &&
+    must(exh_params_stage(sc->params, exh_calib_set_rows[2].id, 0, 1) == 0 &&
              exh_params_apply(sc->params),
         "set-up", "uncalibrated");
     must(p.log != NULL && sc->setup(board) == 0, "set-up", "refused");

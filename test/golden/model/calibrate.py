@@ -66,7 +66,7 @@ def calibrate(rate):
     rng = Rng("calibrate", rate, 0)
     for k in range(TICKS):
         middle, points = mean(rng), any_points(rng)
-        values = [rng.u64() & M32, rng.draw(0, 4), rng.draw(1, 30000), rng.draw(0, 400),
+        values = [rng.u64() & M32, rng.draw(0, 4), rng.draw(1, 30000), rng.draw(0, 366),
                   rng.draw(65536, MAX32), rng.draw(0, 65535), rng.draw(1, MAX32),
                   rng.draw(-32768, 32767), rng.draw(0, 442918502), rng.draw(0, 442918502)]
         (g1, kf1), (g2, kf2) = fit(points, 1), fit(points, 2)

@@ -122,11 +122,13 @@ boots 0 '^arming refused at calibration$' ticks=1000
 says '^no calibration: arming will be refused at calibration '
 says ', enable 0x00000000$'
 if [ -x "$exhand" ]; then
-    calibrated() # FINGER: made with the scales that the scene has
+    calibrated() # DIR [FINGER [OPTION...]]: made with the scales that the scene has
     {
-        "$exhand" calibrate --finger "$1" --day 20000 --device dac_scale=1846.02272034 \
+        dir=$out/$1 finger=${2:-$1}
+        shift $(($# > 2 ? 2 : $#))
+        "$exhand" calibrate --finger "$finger" "$@" --day 20000 --device dac_scale=1846.02272034 \
             --device mon_scale=0.000516399999469 \
-            --out "$out/$1" >"$out/replay" || { fail "calibrate"; cat "$out/replay" >&2; }
+            --out "$dir" >"$out/replay" || { fail "calibrate"; cat "$out/replay" >&2; }
     }
     calibrated 0
     export MODULES=$out/0/calibration.bin
@@ -138,6 +140,13 @@ if [ -x "$exhand" ]; then
     boots 2 '^calibration 1: scale or zero of D/A or monitor: refused$' ticks=1000 device_id=1 \
         day=20000 dac_zero=32700
     says '^calibration too old, or made before a change$'
+    # Sound in all else, but of a motor with twice the force: refused, unless that is waived.
+    calibrated 2 0 --device kf=7
+    MODULES=$out/2/calibration.bin
+    boots 1 '^calibration 1: force over current, finger 0, point 1: 6[.].*: refused$' ticks=1000 \
+        device_id=1 day=20000
+    says 'far_calibration=1 believes it$'
+    boots 0 ', enable 0x00000001$' ticks=1000 device_id=1 day=20000 far_calibration=1
     MODULES=$out/1.bin
     head -c 100 "$out/0/calibration.bin" >"$MODULES"
     boots 2 '^calibration 1: image: refused$' ticks=1000 device_id=1 day=20000 uncalibrated=1

@@ -110,6 +110,76 @@ TEST(tables_need_room)
     CHECK_EQ_I64(bad.what, EXH_CALIB_MONITOR_TABLE);
 }
 
+/* 9 N of a motor with 3 N/A: 2 A and 6 A are 3/2 and half of kf, and near. A bit beyond is not, and
+ * point and column are named. */
+TEST(near_is_within_half_of_kf)
+{
+    static const struct {
+        int32_t cur_A_q26, mon_A_q26;
+        unsigned what; /* 0: near */
+    } row[] = {
+        {A(3000), A(3000), 0},
+        {A(2000), A(6000), 0},
+        {A(6000), A(2000), 0},
+        {A(2000) - 1, A(3000), EXH_CALIB_FAR_CURRENT},
+        {A(6000) + 1, A(3000), EXH_CALIB_FAR_CURRENT},
+        {A(3000), A(2000) - 1, EXH_CALIB_FAR_MONITOR},
+        {A(3000), A(6000) + 1, EXH_CALIB_FAR_MONITOR},
+    };
+    for (uint8_t at = 0; at < 2; at++) {
+        for (size_t i = 0; i < LEN(row); i++) {
+            struct exh_calib_point p[2] = {
+                {N(9000), A(3000), A(3000), 0}, {N(9000), A(3000), A(3000), 0}};
+            const struct exh_calib c = {.point = p, .points = 2, .cap = 2};
+            struct exh_calib_error bad = {0, 99};
+            p[at].cur_A_q26 = row[i].cur_A_q26;
+            p[at].mon_A_q26 = row[i].mon_A_q26;
+            CHECK_EQ_I64(exh_calib_near(&c, N(3000), &bad), row[i].what ? -EXH_E_RANGE : 0);
+            CHECK(bad.what == row[i].what && bad.at == (row[i].what ? at : 99), "row %zu: %u, %u",
+                i, bad.what, bad.at);
+        }
+    }
+}
+
+TEST(a_ratio_saturates)
+{
+    static const struct exh_calib_point p[] = {
+        {N(9000), A(3000), A(2000), 0}, {N(1), 0, -5, 0}, {N(100000), 1, 2, 0}};
+    CHECK_EQ_I64(exh_calib_ratio_NpA_q20(&p[0], EXH_CALIB_CURRENT), N(3000));
+    CHECK_EQ_I64(exh_calib_ratio_NpA_q20(&p[0], EXH_CALIB_MONITOR), N(4500));
+    CHECK_EQ_I64(exh_calib_ratio_NpA_q20(&p[1], EXH_CALIB_CURRENT), 0);
+    CHECK_EQ_I64(exh_calib_ratio_NpA_q20(&p[1], EXH_CALIB_MONITOR), 0);
+    CHECK_EQ_I64(exh_calib_ratio_NpA_q20(&p[2], EXH_CALIB_MONITOR), INT32_MAX);
+}
+
+/* A year is believed, a day more is neither written nor read. */
+TEST(validity_has_a_ceiling)
+{
+    struct exh_calib_error bad = {99, 99};
+    struct exh_calib_point point[POINTS];
+    struct exh_calib back = {.point = point, .cap = POINTS};
+    struct fixture f;
+    uint8_t buf[EXH_CALIB_IMAGE_B];
+    int32_t n;
+    set_up(&f);
+    f.c.valid_days = EXH_CALIB_VALID_MAX_DAYS;
+    n = exh_calib_save(&f.c, buf, sizeof buf, &bad);
+    CHECK(n > 0, "%d", (int)n);
+    CHECK_EQ_I64(exh_calib_load(&back, buf, (size_t)n, &bad), 0);
+    f.c.valid_days++;
+    CHECK_EQ_I64(exh_calib_save(&f.c, buf, sizeof buf, &bad), -EXH_E_RANGE);
+    CHECK_EQ_I64(bad.what, EXH_CALIB_VALIDITY);
+    buf[20]++; /* 366 is 0x16E: no carry */
+    {
+        struct exh_bytes b = exh_bytes_writer(buf + n - 4, 4);
+        uint32_t crc = exh_crc32(0, buf, (size_t)n - 4);
+        exh_bytes_u32(&b, &crc);
+    }
+    bad = (struct exh_calib_error){99, 99};
+    CHECK_EQ_I64(exh_calib_load(&back, buf, (size_t)n, &bad), -EXH_E_RANGE);
+    CHECK(bad.what == EXH_CALIB_VALIDITY && back.points == 0, "%u", bad.what);
+}
+
 /* Each spoiled value is refused with the table and the point that it spoils. */
 TEST(refusals_name_table_and_point)
 {
@@ -567,7 +637,8 @@ TEST(the_least_way_on)
 }
 
 TEST_MAIN("unit/calibrate", mean_rounds_half_up_once, mean_stops_before_it_overflows,
-    tables_meet_every_point_and_go_straight_on, tables_need_room, refusals_name_table_and_point,
+    tables_meet_every_point_and_go_straight_on, tables_need_room, near_is_within_half_of_kf,
+    a_ratio_saturates, validity_has_a_ceiling, refusals_name_table_and_point,
     values_out_of_range_are_refused, another_device_and_stale_ones_are_refused, image_round_trip,
     any_bit_flipped_any_byte_missing_is_refused, a_sound_image_of_a_bad_table_is_refused,
     every_name_has_its_text, fit_by_hand, tables_that_cannot_go_on_are_refused,

@@ -65,6 +65,10 @@ struct exh_scene_calib {
     int refused;
     uint8_t image_at, point_at;
     const char *what;
+    /* Where its force over current is too far from what is expected: both, N/A, and whose. Else
+     * expected is 0. Allowed is within half of it. */
+    int32_t ratio_NpA_q20, expected_NpA_q20;
+    uint8_t finger;
 };
 
 struct exh_scene {

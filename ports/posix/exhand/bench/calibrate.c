@@ -196,31 +196,11 @@ static int write_files(
 
 /* --- a calibration --- */
 
-/* Three checks besides the steps: every mass is a point, all is a table, and its points
- * lie on a line. */
-static int judge(const struct calibrate_options *o, struct calibration *r)
+/* What was judged good, kept. */
+static int finish(const struct calibrate_options *o, struct calibration *r)
 {
     struct calibration_lines l;
-    struct exh_calib_error bad;
-    int err;
-    if (r->c.points != o->masses) {
-        cli_complain("%d of %d masses were weighed: calibrate again", r->c.points, o->masses);
-        return 1;
-    }
-    err = exh_calib_validate(&r->c, &bad);
-    if (err < 0) { return calibrate_complain("calibrate", err, &bad); }
-    if (calibration_lines(&r->c, &l) < 0) {
-        cli_complain("no line through these points: calibrate again");
-        return 1;
-    }
-    calibration_print(stdout, &r->c, &l);
-    fflush(stdout);
-    err = l.cur_worst_N > o->residual_N || l.mon_worst_N > o->residual_N;
-    if (err) {
-        cli_complain("residual: %.4g N (allowed 0..%.4g): weigh that mass again, or --residual",
-            l.cur_worst_N > l.mon_worst_N ? l.cur_worst_N : l.mon_worst_N, o->residual_N);
-        return 1;
-    }
+    if (calibrate_judge(o, r, &l) != 0) { return 1; }
     if (posix_interrupted()) {
         cli_complain("interrupted before it was written: nothing was saved");
         return 130;
@@ -276,7 +256,7 @@ static int calibrate(const struct calibrate_options *o)
     r.c.finger = (uint32_t)o->finger;
     r.c.day = (uint32_t)o->day;
     r.c.valid_days = (uint32_t)o->valid_days;
-    return judge(o, &r);
+    return finish(o, &r);
 }
 
 /* The lightest of what will hang on the string decides. */
@@ -328,7 +308,8 @@ int cli_calibrate(int argc, char **argv)
         {"id", CLI_INT, &o.id, 0, 4294967295.0, "N", "of the device (1)"},
         {"finger", CLI_INT, &o.finger, 0, EXH_FINGERS - 1, "N", "thumb 0 .. little 4 (0)"},
         {"day", CLI_INT, &o.day, 0, 4294967295.0, "N", "today, in days since 1970 (the clock's)"},
-        {"valid", CLI_INT, &o.valid_days, 0, 36525, "DAYS", "stale after that (90)"},
+        {"valid", CLI_INT, &o.valid_days, 0, EXH_CALIB_VALID_MAX_DAYS, "DAYS",
+            "stale after that (90)"},
         {"seed", CLI_INT, &o.seed, 0, 1e9, "N", "of all chance in the simulation (1)"},
         {"cards", CLI_FLAG, &o.cards, 0, 0, NULL,
             "through the drivers and emulated cards: the same bits"},

@@ -26,6 +26,17 @@ struct calibrate_options {
 /* What is wrong with an image, after a line on stderr: 1. */
 int calibrate_complain(const char *what, int err, const struct exh_calib_error *bad);
 
+/* Is a result good: every mass is a point, all is a table, the masses fit each other, and force
+ * over current is near the device's kf and what the last image in --out says? Prints it. 0 with *l,
+ * or 1 after a line on stderr. */
+int calibrate_judge(
+    const struct calibrate_options *o, const struct calibration *r, struct calibration_lines *l);
+
+/* Force over current beyond half or 3/2 of kf, N/A, at some point: 1 after a line on stderr that
+ * begins with `what` and ends with `advice`. */
+int calibrate_far(const char *what, const struct exh_calib *c, double kf_NpA, const char *whose,
+    const char *advice);
+
 /* --check: exit status. */
 int calibrate_check(const struct calibrate_options *o);
 

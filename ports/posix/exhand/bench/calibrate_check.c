@@ -78,6 +78,7 @@ int calibrate_check(const struct calibrate_options *o)
     struct exh_calib_target here;
     struct calibration_lines l;
     struct exh_calib_error bad = {0, 0};
+    char whose[32];
     uint8_t image[EXH_CALIB_IMAGE_B];
     const long len = outfile_read("check", o->check,
         "calibration.bin that `exhand calibrate --out` wrote", image, sizeof image);
@@ -98,5 +99,8 @@ int calibrate_check(const struct calibrate_options *o)
         return 1;
     }
     calibration_print(stdout, &c, &l);
-    return 0;
+    fflush(stdout);
+    snprintf(whose, sizeof whose, "kf %.4g", o->device.kf_npa);
+    return calibrate_far(o->check, &c, o->device.kf_npa, whose,
+        "calibrate again, or give --device kf= of this motor");
 }

@@ -91,6 +91,9 @@ static void others(void)
     any_calib(POINTS, POINTS);
     ANY(here);
     (void)exh_calib_check(&c, &here, &bad);
+    (void)exh_calib_near(&c, Frama_C_interval(0, INT32_C(1) << 29), &bad);
+    (void)exh_calib_ratio_NpA_q20(point, EXH_CALIB_CURRENT);
+    (void)exh_calib_ratio_NpA_q20(point, EXH_CALIB_MONITOR);
     (void)any_gain(&fit.gain, 0, 1);
     (void)exh_calib_residual_N_q20(&fit, point, EXH_CALIB_MONITOR);
     (void)exh_calib_fit(&fit, point, POINTS, EXH_CALIB_CURRENT);
