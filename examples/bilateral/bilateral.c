@@ -155,10 +155,21 @@ static void tell_box(struct bilateral_box *b, const struct bilateral *s)
 }
 
 /* Steps of arming that hold. A calibration that is none, a glove's or a finger's, was refused at
- * set-up. */
-static uint8_t steps_held(const struct bilateral_cfg *cfg)
+ * set-up. Where strings are pulled, all of them must have gone in, else the ramp waits. */
+static uint8_t steps_held(
+    struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_axis_now *now)
 {
-    return (uint8_t)((cfg->tested ? EXH_ARM_SELFTEST : 0u) | cfg->vouches);
+    const uint32_t held = (cfg->tested ? EXH_ARM_SELFTEST : 0u) | cfg->vouches;
+    uint32_t waits = 0, failed = 0;
+    if (cfg->par->polarity.pull_N_q20 == 0) { return (uint8_t)held; }
+    for (unsigned k = 0; k < bilateral_n(cfg); k++) {
+        const unsigned f = bilateral_at(cfg, k);
+        const uint8_t r = exh_polarity_step(
+            &s->polarity[f], &cfg->finger[f].polarity, exh_safety_pulls(&s->safety), now[k].cnt);
+        if (r != EXH_POLARITY_SEEN) { waits = EXH_ARM_WAIT; }
+        if (r > EXH_POLARITY_SEEN) { failed = EXH_ARM_POLARITY; }
+    }
+    return (uint8_t)((held & ~failed) | waits);
 }
 
 void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
@@ -167,7 +178,7 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
 {
     const unsigned n = bilateral_n(cfg);
     struct exh_axis_now now[BILATERAL_FINGERS];
-    struct exh_safety_in box = {0, 0, in->missed, in->command, (uint8_t)n, steps_held(cfg)};
+    struct exh_safety_in box = {0, 0, in->missed, in->command, (uint8_t)n, 0};
     struct exh_permit permit;
     struct exh_current_ledger i[BILATERAL_FINGERS];
     uint32_t limits[BILATERAL_FINGERS];
@@ -178,7 +189,9 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
     bilateral_wire_take(s, cfg, mail, in->missed, params);
     bilateral_see(s, cfg, in);
     box.raised = bilateral_causes(s, cfg, in);
+    box.ready = steps_held(s, cfg, now);
     permit = exh_axis_permit(&s->safety, &cfg->safety, now, n, box);
+    s->pulls = box.ready & EXH_ARM_WAIT && exh_safety_pulls(&s->safety);
     for (unsigned k = 0; k < n; k++) {
         const unsigned f = bilateral_at(cfg, k);
         limits[k] = now[k].limits | bilateral_finger_feel(s, cfg, k, &permit, &i[k], &sig->paper[f],
@@ -290,7 +303,13 @@ static void show(void)
 
 static void write_mail(void) { bilateral_write(&state, &cfg, &signals, &mail_out); }
 
-static void state_bytes(struct exh_bytes *c) { bilateral_bytes(c, &state); }
+static void state_bytes(struct exh_bytes *c)
+{
+    bilateral_bytes(c, &state);
+    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
+        exh_polarity_serialize(c, &state.polarity[f]);
+    }
+}
 
 struct bilateral *bilateral_memory(struct bilateral_cfg **c)
 {

@@ -38,6 +38,7 @@ struct bilateral_par {
     struct exh_precontact_par precontact[BILATERAL_FINGERS];
     struct exh_material_par material[BILATERAL_MATERIALS];
     struct exh_safety_par safety;
+    struct exh_polarity_par polarity;
     struct exh_supply_par supply;
     struct exh_glove_par glove;
     struct bilateral_own_par own;
@@ -102,6 +103,7 @@ struct bilateral_finger_cfg {
     struct exh_precontact_cfg precontact;
     struct exh_tracking_cfg track;
     struct exh_motion_cfg watch;
+    struct exh_polarity_cfg polarity;
     struct exh_calib_tables calib;
     uint32_t sensors; /* bit i: sensor i moves it */
 };
@@ -219,6 +221,8 @@ struct bilateral {
      * UINT32_MAX: it has not said anything, or not for very long. */
     int32_t mon_A_q26[BILATERAL_FINGERS];
     uint32_t glove_age_ticks;
+    uint8_t pulls;                                   /* 1: arming pulls, and no law is asked */
+    struct exh_polarity polarity[BILATERAL_FINGERS]; /* arming's pull, of each finger */
 };
 
 /* Configuration from parameters, and of the calibrations that calib has of fingers in use (NULL:
@@ -240,6 +244,7 @@ void bilateral_tell(
 void bilateral_write(struct bilateral *s, const struct bilateral_cfg *cfg,
     struct bilateral_signals *sig, struct exh_scene_mail *out);
 
+/* All but arming's pull, which is behind it where a run is kept. */
 void bilateral_bytes(struct exh_bytes *c, struct bilateral *s);
 
 /* How many fingers are in use, and which is at a place k < 5. Of damaged memory they are wrong,

@@ -31,6 +31,9 @@ int bilateral_finger_setup(struct bilateral_cfg *cfg, unsigned place, struct exh
         err = exh_axis_setup(&parts, board.T, board.enc_bits, exh_calib_to_cur(&c->calib),
             exh_calib_to_force(&c->calib));
     }
+    if (err == 0) {
+        err = exh_polarity_setup(&c->polarity, &par->polarity, par->quad[f].step_m_q42, board.T);
+    }
     if (err == 0) { err = exh_hand_setup(&c->hand, &exh_hit2_bones[f], &par->hand[f]); }
     if (err == 0) { err = exh_hand_couple(&c->hand, &exh_hit2_map, f); }
     if (err == 0) {
@@ -93,6 +96,22 @@ static void wind_in(struct bilateral_finger *s, uint32_t rest_ticks)
     s->out_m_q30 = c->turn_m_q30;
 }
 
+/* Arming's pull, in the place of the law: no more than it asks for, whatever share the ramp has. */
+static uint32_t pull(struct bilateral *s, const struct bilateral_cfg *cfg, unsigned place,
+    struct exh_permit permit, struct exh_force_ledger *force, struct exh_current_ledger *i)
+{
+    const unsigned f = bilateral_at(cfg, place);
+    const struct exh_polarity_cfg *c = &cfg->finger[f].polarity;
+    const struct exh_axis axis = bilateral_axis(s, cfg, place);
+    const struct exh_drive_par *drive = &cfg->par->drive[f];
+    const struct exh_drive_most own = {
+        exh_clamp(c->pull_N_q20, 0, drive->f_max_N_q20), drive->slew_up_Nps};
+    *force =
+        (struct exh_force_ledger){.pullback_N_q20 = exh_polarity_force_N_q20(&s->polarity[f], c)};
+    permit.share_q30 = INT32_C(1) << 30;
+    return exh_axis_force_within(&axis, &permit, own, force, i);
+}
+
 uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *cfg, unsigned place,
     const struct exh_permit *permit, struct exh_current_ledger *i, struct bilateral_paper *p,
     int32_t *bits)
@@ -119,7 +138,9 @@ uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *
         p->c = exh_contact_step(&now->contact, &law, q, &force);
     }
     wind_in(now, cfg->rest_ticks);
-    limits = exh_axis_force_within(&axis, permit, most(&now->precontact, cfg, f), &force, i);
+    limits = s->pulls
+                 ? pull(s, cfg, place, *permit, &force, i)
+                 : exh_axis_force_within(&axis, permit, most(&now->precontact, cfg, f), &force, i);
     if (!(limits & EXH_LIMIT_SLEW)) { exh_precontact_arrived(&now->precontact); }
     p->f_des_N_q20 = force.force_N_q20;
     p->q_lim_m_q30 = q.lim_m_q30;

@@ -110,6 +110,7 @@ static const struct exh_signal_group param_groups[] = {
     EACH(exh_precontact_rows, EXH_PRECONTACT_ROWS),
     {exh_material_rows, EXH_MATERIAL_ROWS, BILATERAL_MATERIALS},
     {exh_safety_rows, EXH_SAFETY_ROWS, 1},
+    {exh_polarity_rows, EXH_POLARITY_ROWS, 1},
     {exh_supply_rows, EXH_SUPPLY_ROWS, 1},
     {exh_glove_rows, EXH_GLOVE_ROWS, 1},
     {own_rows, LEN(own_rows), 1},
@@ -134,9 +135,9 @@ EXH_STATIC_ASSERT(bilateral_par_matches_rows,
             (BILATERAL_FINGERS * (EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS +
                                      EXH_DRIVE_ROWS + EXH_TRACKING_ROWS + EXH_MOTION_ROWS +
                                      LEN(kf_rows) + EXH_HAND_ROWS + EXH_PRECONTACT_ROWS) +
-                BILATERAL_MATERIALS * EXH_MATERIAL_ROWS + EXH_SAFETY_ROWS + EXH_SUPPLY_ROWS +
-                EXH_GLOVE_ROWS + LEN(own_rows) + EXH_CALIB_SET_ROWS + GLOVE_OWN_ROWS +
-                GLOVE_CAL_ROWS * EXH_GLOVE_SENSORS + EXH_TUNE_ROWS));
+                BILATERAL_MATERIALS * EXH_MATERIAL_ROWS + EXH_SAFETY_ROWS + EXH_POLARITY_ROWS +
+                EXH_SUPPLY_ROWS + EXH_GLOVE_ROWS + LEN(own_rows) + EXH_CALIB_SET_ROWS +
+                GLOVE_OWN_ROWS + GLOVE_CAL_ROWS * EXH_GLOVE_SENSORS + EXH_TUNE_ROWS));
 EXH_STATIC_ASSERT(bilateral_signals_match_rows,
     sizeof(struct bilateral_signals) ==
         sizeof(int32_t) * (BILATERAL_FINGERS * (LEN(paper_rows) + LEN(more_rows)) + LEN(box_rows)));

@@ -70,6 +70,7 @@
 #include "exhand/integrity.h"
 #include "exhand/safety.h"
 #include "exhand/motion.h"
+#include "exhand/polarity.h"
 
 /* the tick of one finger */
 #include "exhand/axis.h"

@@ -87,6 +87,9 @@ enum exh_arm {
 #define EXH_UNCALIBRATED EXH_ARM_CALIBRATION
 #define EXH_UNPOLARISED  EXH_ARM_POLARITY
 #define EXH_ARM_ALL      0xFu
+/* With them in `ready`, and no step: while the gate is open in ARM the ramp waits, since a pull is
+ * under way (polarity.h). A step that is lost then is named as refused. */
+#define EXH_ARM_WAIT 0x80u
 
 /* in order of priority: the first that applies decides */
 enum exh_trigger {
@@ -189,6 +192,12 @@ static inline int exh_safety_is_running(const struct exh_safety *s)
 static inline int exh_safety_is_at_rest(unsigned state)
 {
     return state == EXH_STATE_OFF || state == EXH_STATE_FAULT;
+}
+
+/* 1 in ARM once the gate is open: a pull may be under way. */
+static inline int exh_safety_pulls(const struct exh_safety *s)
+{
+    return s->state == EXH_STATE_ARM && s->share_q30 > 0;
 }
 
 /* 1 if the gate is open in this state of the box, else 0. */

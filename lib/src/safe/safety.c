@@ -189,15 +189,16 @@ static uint8_t first_of(uint32_t due)
 }
 
 /* What a state counts: from its first tick on. */
-static void count_steps(
-    struct exh_safety *s, const struct exh_safety_cfg *cfg, int anew, uint32_t missed)
+static void count_steps(struct exh_safety *s, const struct exh_safety_cfg *cfg, int anew,
+    const struct exh_safety_in *in)
 {
+    const int waits = in->ready & EXH_ARM_WAIT && s->share_q30 > 0;
     if (anew) { s->steps = 0; }
     if (anew || s->state != EXH_STATE_ARM) { s->share_q30 = 0; }
-    if (s->state == EXH_STATE_RELEASE) { s->steps = add_sat(s->steps, add_sat(missed, 1)); }
+    if (s->state == EXH_STATE_RELEASE) { s->steps = add_sat(s->steps, add_sat(in->missed, 1)); }
     if (s->state == EXH_STATE_ARM && !anew) {
         s->steps = add_sat(s->steps, 1);
-        if (s->steps >= cfg->arm_ticks) {
+        if (s->steps >= cfg->arm_ticks && !waits) {
             s->share_q30 = exh_clamp((int64_t)s->share_q30 + cfg->ramp_q30, 0, FULL_Q30);
         }
     }
@@ -233,7 +234,9 @@ struct exh_permit exh_safety_step(
     if (exh_safety_is_open(s) || s->state == EXH_STATE_FAULT) { latch(s, s->present); }
     see_hand(s, in.din);
     s->trigger = first_of(triggers(s, cfg, &in, lacks));
-    if (s->trigger == EXH_ON_REFUSED && lacks) {
+    if (lacks &&
+        (s->trigger == EXH_ON_REFUSED ||
+            (s->trigger == EXH_ON_OFF && in.ready & EXH_ARM_WAIT && exh_safety_pulls(s)))) {
         s->refused = (uint8_t)(lacks & (~lacks + 1u)); /* the lowest: the first step */
         s->refusals = add_sat(s->refusals, 1);
     }
@@ -241,7 +244,7 @@ struct exh_permit exh_safety_step(
     s->state = exh_safety_next[before][s->trigger];
     if (s->trigger == EXH_ON_CLEAR) { s->faults = 0; }
     if (s->trigger == EXH_ON_ARMED) { s->refused = 0; }
-    count_steps(s, cfg, s->state != before, in.missed);
+    count_steps(s, cfg, s->state != before, &in);
     s->tick++;
     return permit_of(s, cfg, in.missed);
 }

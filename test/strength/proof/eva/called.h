@@ -283,6 +283,38 @@ void exh_motion_serialize(struct exh_bytes *c, struct exh_motion *s)
     ANY(*s);
 }
 
+int exh_polarity_setup(struct exh_polarity_cfg *cfg, const struct exh_polarity_par *par,
+    int32_t step_m_q42, struct exh_period T)
+{
+    (void)step_m_q42;
+    (void)T;
+    /*@ assert polarity_setup: \valid_read(par); */
+    ANY(*cfg);
+    return REFUSED() ? -EXH_E_RANGE : 0;
+}
+
+uint8_t exh_polarity_step(
+    struct exh_polarity *s, const struct exh_polarity_cfg *cfg, int pulls, int32_t cnt)
+{
+    (void)pulls;
+    (void)cnt;
+    /*@ assert polarity_step: \valid_read(cfg); */
+    ANY(*s);
+    return any8();
+}
+
+int32_t exh_polarity_force_N_q20(const struct exh_polarity *s, const struct exh_polarity_cfg *cfg)
+{
+    /*@ assert polarity_force: \valid_read(s) && \valid_read(cfg); */
+    return any32();
+}
+
+void exh_polarity_serialize(struct exh_bytes *c, struct exh_polarity *s)
+{
+    (void)c;
+    ANY(*s);
+}
+
 int exh_supply_setup(
     struct exh_supply_cfg *cfg, const struct exh_supply_par *par, struct exh_period T)
 {
