@@ -62,9 +62,10 @@ base := -std=c99 -O$(O) -g $(warn) -ffunction-sections -fdata-sections -Ilib/inc
         $(if $(UNCALIBRATED),-DUNCALIBRATED)
 
 # An assertion names its source without lib/src/: a layer's folder costs an image no bytes.
-# A compiler that is too old for it goes without.
+# No folder's name is in DWARF: the same sources are the same bytes anywhere (make same).
+# A compiler that is too old for both goes without.
 base += $(shell $(CC) -fmacro-prefix-map=a=b -E -xc /dev/null >/dev/null 2>&1 && echo \
-        -fmacro-prefix-map=lib/src/=)
+        -fmacro-prefix-map=lib/src/= -fdebug-prefix-map=$(CURDIR)=.)
 
 # What all objects are compiled with. Another text here compiles all anew.
 stamp      := $(out)/flags
@@ -161,7 +162,7 @@ $(out)/$(SCENE)/%.o: %.c $(stamp)
 	    $(CFLAGS) -c $< -o $@
 $(out)/$(SCENE)/%.o: %.S $(stamp)
 	@mkdir -p $(@D)
-	$(Q)$(CC) -Ilib/include $(PORT_CFLAGS) -g -c $< -o $@
+	$(Q)$(CC) -Ilib/include $(PORT_CFLAGS) $(filter -fdebug%,$(base)) -g -c $< -o $@
 
 $(image): $(image_obj) $(one_lib) $(PORT_LDSCRIPT) $(frozen_stamp)
 	$(Q)$(CC) $(if $(FROZEN),$(whole_flags),$(one_link)) $(PORT_LDFLAGS) $(LDFLAGS) \

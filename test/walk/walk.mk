@@ -49,6 +49,20 @@ fresh:
 fresh-ways:
 	test/walk/fresh/ways.py $(B)/fresh/ways $(ARGS)
 
+## Print the bill of materials, SPDX 2.3: exhand and what it is built, run and tested with here.
+.PHONY: sbom
+sbom:
+	@test/walk/release/sbom.py --check >&2
+	@test/walk/release/sbom.py
+
+## Build library and image of SCENE (minimal) for pc104 from two folders: the same bytes? Prints
+## their SHA-256.
+.PHONY: same
+same:
+	@.ci/deps "an image for PC/104" i686-linux-gnu-gcc gcc-i686-linux-gnu || exit 3
+	@SCENE=$(if $(filter command%,$(origin SCENE)),$(SCENE),minimal) \
+	    test/walk/release/same.sh $(B)/same
+
 ## Check that all names in the documents exist, and that the documents list every page, port, scene
 ## and test folder.
 .PHONY: doc-names
