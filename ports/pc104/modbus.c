@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The scene's registers on COM2, by the library's slave: modbus=com2,ADDRESS,BAUD[,write][,remote].
- * Polled once a tick, behind the outputs, a bounded number of characters at a time; nothing waits.
- * Without the option the UART is not touched.
+ * Polled once a tick behind the outputs, a few characters at a time. Without it COM2 is untouched.
  *
  * The FIFO of 16 must not overflow between two ticks, nor the answer's run dry, for a gap would end
  * its frame: a baud rate of which a tick has more than 14 characters is refused. How full the
@@ -96,14 +95,13 @@ int pc104_modbus_option(const char *name, const char *value)
     }
     par.write = par.remote = 0;
     while (rest != NULL) {
+        uint8_t *may;
         rest = word_of(rest, word);
-        if (pc104_same_text(word, "write")) {
-            par.write = 1;
-        } else if (pc104_same_text(word, "remote")) {
-            par.remote = 1;
-        } else {
-            refuse(value, FORM);
-        }
+        may = pc104_same_text(word, "write")    ? &par.write
+              : pc104_same_text(word, "remote") ? &par.remote
+                                                : NULL;
+        if (may == NULL) { refuse(value, FORM); }
+        *may = 1;
     }
     par.asked_for = 1;
     return 1;

@@ -14,7 +14,7 @@ const struct exh_signal exh_calib_set_rows[EXH_CALIB_SET_ROWS] = {
         "today, days since 1970; 0: not known, no calibration of a day holds"},
     {0x8903, 0, EXH_WHEN_PERSON, 0, 1, 0, "uncalibrated", "",
         "1: a finger without a calibration arms without, by kf, polarity on trust"},
-    {0x8904, 0, EXH_WHEN_SETUP, 0, 1, 0, "far_calibration", "",
+    {0x8904, 0, EXH_WHEN_PERSON, 0, 1, 0, "far_calibration", "",
         "1: a calibration beyond half or 3/2 of kf, or of the fingers' median, is believed"},
 };
 

@@ -347,14 +347,13 @@ uint32_t exh_wire_compare(const struct exh_wire_hello *ours, const struct exh_wi
 struct exh_plane exh_wire_plane_of(const struct exh_wire_planes *planes, unsigned finger)
 {
     const struct exh_wire_plane *w = &planes->plane[finger];
-    const struct exh_plane p = {
+    return (struct exh_plane){
         w->kind,
         w->material,
         w->object,
         {w->normal_q30[0], w->normal_q30[1], w->normal_q30[2]},
         {w->point_m_q30[0], w->point_m_q30[1], w->point_m_q30[2]},
     };
-    return p;
 }
 
 struct exh_wire_ack exh_wire_stage(
@@ -364,8 +363,7 @@ struct exh_wire_ack exh_wire_stage(
     const struct exh_wire_param *ask = &p->u.param;
     const int32_t i = exh_signal_find(params->table, ask->id, ask->instance);
     const int result = i < 0 ? (int)i : exh_params_stage_by(params, world, (uint32_t)i, ask->value);
-    const struct exh_wire_ack ack = {*ask, (int16_t)result, p->seq};
-    return ack;
+    return (struct exh_wire_ack){*ask, (int16_t)result, p->seq};
 }
 
 /* --- state --- */
