@@ -254,6 +254,7 @@ static void defaults(void)
         active.precontact[f].from_slope = 1;
         active.watch[f].stuck_ms =
             10000; /* held against a stiff wall, a finger can stand for seconds */
+        active.chatter[f].energy_J_q24 = EXH_Q(3, 100, 24);
         active.precontact[f].d_lim_m_q30 = -EXH_Q(8, 1000, EXH_Q_POS);
     }
     staged = active;

@@ -33,6 +33,7 @@ struct bilateral_par {
     struct exh_drive_par drive[BILATERAL_FINGERS];
     struct exh_tracking_par track[BILATERAL_FINGERS];
     struct exh_motion_par watch[BILATERAL_FINGERS];
+    struct exh_chatter_par chatter[BILATERAL_FINGERS];
     int32_t kf_NpA_q20[BILATERAL_FINGERS];
     struct exh_hand_par hand[BILATERAL_FINGERS];
     struct exh_precontact_par precontact[BILATERAL_FINGERS];
@@ -104,6 +105,7 @@ struct bilateral_finger_cfg {
     struct exh_tracking_cfg track;
     struct exh_motion_cfg watch;
     struct exh_polarity_cfg polarity;
+    struct exh_chatter_cfg chatter;
     struct exh_calib_tables calib;
     uint32_t sensors; /* bit i: sensor i moves it */
 };
@@ -115,6 +117,7 @@ struct bilateral_finger {
     struct exh_drive drive;
     struct exh_tracking track;
     struct exh_motion watch;
+    struct exh_chatter chatter;
     struct exh_precontact precontact;
     int32_t out_m_q30;                       /* how far the string has run out */
     uint32_t rest_ticks;                     /* since then */
@@ -268,7 +271,7 @@ static inline struct exh_axis bilateral_axis(
     struct bilateral_finger *now = &s->finger[f];
     const struct bilateral_finger_cfg *c = &cfg->finger[f];
     return (struct exh_axis){&now->quad, &c->quad, &now->velocity, &c->velocity, &now->watch,
-        &c->watch, &now->track, &c->track, &now->drive, &cfg->drive[k]};
+        &c->watch, &now->track, &c->track, &now->drive, &cfg->drive[k], &now->chatter, &c->chatter};
 }
 
 /* --- parts (finger.c, frame.c, wire.c, trace.c) --- */

@@ -22,7 +22,8 @@ int bilateral_finger_setup(struct bilateral_cfg *cfg, unsigned place, struct exh
     struct bilateral_finger_cfg *c = &cfg->finger[f];
     const struct exh_calib_finger finger = {f, drive, par->kf_NpA_q20[f]};
     const struct exh_axis_setup parts = {&c->quad, &par->quad[f], &c->velocity, &par->velocity[f],
-        &c->watch, &par->watch[f], &c->track, &par->track[f], &cfg->drive[place], drive};
+        &c->watch, &par->watch[f], &c->track, &par->track[f], &cfg->drive[place], drive,
+        &c->chatter, &par->chatter[f]};
     int err;
 
     c->sensors = sensors_of(&exh_hit2_map, f);
@@ -155,6 +156,7 @@ void bilateral_finger_bytes(struct exh_bytes *c, struct bilateral_finger *s)
     exh_drive_serialize(c, &s->drive);
     exh_tracking_serialize(c, &s->track);
     exh_motion_serialize(c, &s->watch);
+    exh_chatter_serialize(c, &s->chatter);
     exh_precontact_serialize(c, &s->precontact);
     exh_bytes_i32(c, &s->out_m_q30);
     exh_bytes_u32(c, &s->rest_ticks);

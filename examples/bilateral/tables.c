@@ -105,6 +105,7 @@ static const struct exh_signal_group param_groups[] = {
     EACH(exh_drive_rows, EXH_DRIVE_ROWS),
     EACH(exh_tracking_rows, EXH_TRACKING_ROWS),
     EACH(exh_motion_rows, EXH_MOTION_ROWS),
+    EACH(exh_chatter_rows, EXH_CHATTER_ROWS),
     EACH(kf_rows, LEN(kf_rows)),
     EACH(exh_hand_rows, EXH_HAND_ROWS),
     EACH(exh_precontact_rows, EXH_PRECONTACT_ROWS),
@@ -132,9 +133,10 @@ const struct exh_signal_table bilateral_outputs = {output_groups, LEN(output_gro
 EXH_STATIC_ASSERT(bilateral_par_matches_rows,
     sizeof(struct bilateral_par) ==
         sizeof(int32_t) *
-            (BILATERAL_FINGERS * (EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS +
-                                     EXH_DRIVE_ROWS + EXH_TRACKING_ROWS + EXH_MOTION_ROWS +
-                                     LEN(kf_rows) + EXH_HAND_ROWS + EXH_PRECONTACT_ROWS) +
+            (BILATERAL_FINGERS *
+                    (EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS + EXH_DRIVE_ROWS +
+                        EXH_TRACKING_ROWS + EXH_MOTION_ROWS + EXH_CHATTER_ROWS + LEN(kf_rows) +
+                        EXH_HAND_ROWS + EXH_PRECONTACT_ROWS) +
                 BILATERAL_MATERIALS * EXH_MATERIAL_ROWS + EXH_SAFETY_ROWS + EXH_POLARITY_ROWS +
                 EXH_SUPPLY_ROWS + EXH_GLOVE_ROWS + LEN(own_rows) + EXH_CALIB_SET_ROWS +
                 GLOVE_OWN_ROWS + GLOVE_CAL_ROWS * EXH_GLOVE_SENSORS + EXH_TUNE_ROWS));

@@ -38,15 +38,16 @@ static const struct exh_signal_table signal_table = {signal_groups, DROP_SIGNAL_
 #define PARAMS (sizeof(struct drop_par) / sizeof(int32_t))
 EXH_STATIC_ASSERT(drop_par_matches_rows,
     PARAMS == EXH_QUAD_ROWS + EXH_VELOCITY_ROWS + EXH_CONTACT_ROWS + EXH_DRIVE_ROWS +
-                  EXH_TRACKING_ROWS + EXH_MOTION_ROWS + EXH_SAFETY_ROWS + EXH_SUPPLY_ROWS +
-                  DROP_OWN_ROWS + EXH_CALIB_SET_ROWS + EXH_TUNE_ROWS);
+                  EXH_TRACKING_ROWS + EXH_MOTION_ROWS + EXH_CHATTER_ROWS + EXH_SAFETY_ROWS +
+                  EXH_SUPPLY_ROWS + DROP_OWN_ROWS + EXH_CALIB_SET_ROWS + EXH_TUNE_ROWS);
 
 int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scene_board board,
     struct exh_scene_calib *calib)
 {
     const struct exh_calib_finger finger = {0, &par->drive, par->own.kf_NpA_q20};
     const struct exh_axis_setup parts = {&cfg->quad, &par->quad, &cfg->velocity, &par->velocity,
-        &cfg->watch, &par->watch, &cfg->track, &par->track, &cfg->drive, &par->drive};
+        &cfg->watch, &par->watch, &cfg->track, &par->track, &cfg->drive, &par->drive, &cfg->chatter,
+        &par->chatter};
     int err;
 
     cfg->par = par;
@@ -64,7 +65,7 @@ int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scen
 static struct exh_axis axis_of(struct drop *s, const struct drop_cfg *cfg)
 {
     return (struct exh_axis){&s->quad, &cfg->quad, &s->velocity, &cfg->velocity, &s->watch,
-        &cfg->watch, &s->track, &cfg->track, &s->drive, &cfg->drive};
+        &cfg->watch, &s->track, &cfg->track, &s->drive, &cfg->drive, &s->chatter, &cfg->chatter};
 }
 
 /* Causes that are not the finger's. */
@@ -125,6 +126,7 @@ void drop_bytes(struct exh_bytes *c, struct drop *s)
     exh_drive_serialize(c, &s->drive);
     exh_tracking_serialize(c, &s->track);
     exh_motion_serialize(c, &s->watch);
+    exh_chatter_serialize(c, &s->chatter);
     exh_safety_serialize(c, &s->safety);
     exh_supply_serialize(c, &s->supply);
 }

@@ -22,13 +22,14 @@ extern const struct exh_signal drop_paper_rows[DROP_PAPER_ROWS];
 extern const struct exh_signal drop_more_rows[DROP_MORE_ROWS];
 
 /* Groups of its tables, for scenes that are this one and something more. */
-#define DROP_PARAM_N 11
+#define DROP_PARAM_N 12
 #define DROP_PARAM_GROUPS \
     {exh_quad_rows, EXH_QUAD_ROWS, 1}, {exh_velocity_rows, EXH_VELOCITY_ROWS, 1}, \
         {exh_contact_rows, EXH_CONTACT_ROWS, 1}, {exh_drive_rows, EXH_DRIVE_ROWS, 1}, \
         {exh_tracking_rows, EXH_TRACKING_ROWS, 1}, {exh_motion_rows, EXH_MOTION_ROWS, 1}, \
-        {exh_safety_rows, EXH_SAFETY_ROWS, 1}, {exh_supply_rows, EXH_SUPPLY_ROWS, 1}, \
-        {drop_own_rows, DROP_OWN_ROWS, 1}, {exh_calib_set_rows, EXH_CALIB_SET_ROWS, 1}, \
+        {exh_chatter_rows, EXH_CHATTER_ROWS, 1}, {exh_safety_rows, EXH_SAFETY_ROWS, 1}, \
+        {exh_supply_rows, EXH_SUPPLY_ROWS, 1}, {drop_own_rows, DROP_OWN_ROWS, 1}, \
+        {exh_calib_set_rows, EXH_CALIB_SET_ROWS, 1}, \
     { \
         exh_tune_rows, EXH_TUNE_ROWS, 1 \
     }
@@ -45,6 +46,7 @@ struct drop_par {
     struct exh_drive_par drive;
     struct exh_tracking_par track;
     struct exh_motion_par watch;
+    struct exh_chatter_par chatter; /* off: falls that oscillate are experiments */
     struct exh_safety_par safety;
     struct exh_supply_par supply;
     struct drop_own_par own;
@@ -74,6 +76,7 @@ struct drop_cfg {
     struct exh_drive_cfg drive;
     struct exh_tracking_cfg track;
     struct exh_motion_cfg watch;
+    struct exh_chatter_cfg chatter;
     struct exh_safety_cfg safety;
     struct exh_supply_cfg supply;
     uint8_t tested; /* 1: the self-test passed */
@@ -87,6 +90,7 @@ struct drop {
     struct exh_drive drive;
     struct exh_tracking track;
     struct exh_motion watch;
+    struct exh_chatter chatter;
     struct exh_safety safety;
     struct exh_supply supply;
     uint8_t broken; /* 1: the guard found a change in configuration; not saved */

@@ -92,13 +92,13 @@ static struct exh_safety safety;
 static uint8_t vouched = EXH_UNCALIBRATED | EXH_UNPOLARISED;
 
 /* Encoder, velocity, no motion monitor, tracking, drive. */
-static const struct exh_axis axis = {
-    &quad, &quad_cfg, &vel, &vel_cfg, NULL, NULL, &track, &track_cfg, &drive, &drive_cfg};
+static const struct exh_axis axis = {&quad, &quad_cfg, &vel, &vel_cfg, NULL, NULL, &track,
+    &track_cfg, &drive, &drive_cfg, NULL, NULL};
 
 static int setup(void)
 {
     static const struct exh_axis_setup parts = {&quad_cfg, &quad_par, &vel_cfg, &vel_par, NULL,
-        NULL, &track_cfg, &track_par, &drive_cfg, &drive_par};
+        NULL, &track_cfg, &track_par, &drive_cfg, &drive_par, NULL, NULL};
     const struct exh_period T = {1, RATE_Hz};
     const struct exh_table force_to_cur = {knot, 2}, no_table = {0, 0};
     int err = exh_table_setup(knot, 2);

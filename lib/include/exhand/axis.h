@@ -18,6 +18,7 @@
 #ifndef EXHAND_AXIS_H
 #define EXHAND_AXIS_H
 
+#include "exhand/chatter.h"
 #include "exhand/drive.h"
 #include "exhand/error.h"
 #include "exhand/frame.h"
@@ -46,7 +47,9 @@ struct exh_axis {
     const struct exh_tracking_cfg *track_cfg; /* its set-up */
     struct exh_drive *drive;                  /* force and current limits */
     const struct exh_drive_cfg
-        *drive_cfg; /* its set-up; for exh_gate_step() one of an array by finger */
+        *drive_cfg;              /* its set-up; for exh_gate_step() one of an array by finger */
+    struct exh_chatter *chatter; /* NULL: nothing watches for a contact that buzzes */
+    const struct exh_chatter_cfg *chatter_cfg; /* its set-up */
 };
 
 /* What one finger measured in this tick. */
@@ -73,6 +76,8 @@ struct exh_axis_setup {
     const struct exh_tracking_par *track_par;    /* read */
     struct exh_drive_cfg *drive;                 /* filled */
     const struct exh_drive_par *drive_par;       /* kept */
+    struct exh_chatter_cfg *chatter;             /* filled */
+    const struct exh_chatter_par *chatter_par;   /* read */
 };
 
 /* Sets up all parts, in the tick's order; divides. T: the board's period; enc_bits: the width of
@@ -91,6 +96,9 @@ static inline int exh_axis_setup(const struct exh_axis_setup *of, struct exh_per
     }
     if (err == 0 && of->track) { err = exh_tracking_setup(of->track, of->track_par, T); }
     if (err == 0 && of->watch) { err = exh_motion_setup(of->watch, of->watch_par, T); }
+    if (err == 0 && of->chatter) {
+        err = exh_chatter_setup(of->chatter, of->chatter_par, of->drive, scale);
+    }
     return err;
 }
 
@@ -107,6 +115,7 @@ static inline struct exh_axis_now exh_axis_sense(
 
     if (a->velocity) { vel_mps_q27 = exh_velocity_window_step(a->velocity, a->velocity_cfg, cnt); }
     if (a->watch) { raised = exh_motion_step(a->watch, a->watch_cfg, &vel_mps_q27, &limits); }
+    if (a->chatter) { raised |= exh_chatter_step(a->chatter, a->chatter_cfg); }
     if (a->quad->lost) { raised |= EXH_FAULT_ENCODER; }
     if (a->track) {
         mon_A_q26 = exh_drive_monitor_A_q26(a->drive_cfg, in->mon_raw[f]);
@@ -161,6 +170,7 @@ static inline void exh_axis_update(const struct exh_axis *a, int32_t cnt, int32_
 {
     if (a->track) { exh_tracking_update(a->track, coded_A_q26); }
     if (a->watch) { exh_motion_update(a->watch, a->watch_cfg, cnt, coded_A_q26); }
+    if (a->chatter) { exh_chatter_update(a->chatter, a->chatter_cfg, cnt, coded_A_q26); }
 }
 
 /* Last, of a scene with one finger: the gate, and what was coded. cnt and *limits: of sense, the

@@ -69,6 +69,7 @@
 /* safety */
 #include "exhand/integrity.h"
 #include "exhand/safety.h"
+#include "exhand/chatter.h"
 #include "exhand/motion.h"
 #include "exhand/polarity.h"
 

@@ -55,9 +55,10 @@ enum exh_fault {
     EXH_FAULT_SUPPLY = 1u << 11,   /* supply voltage outside its range */
     EXH_FAULT_WATCHDOG = 1u << 12, /* a watchdog has fired */
     EXH_FAULT_CONFIG = 1u << 13,   /* CRC of parameters or calibration */
-    EXH_FAULT_LOGIC = 1u << 14     /* a state of the box that cannot be */
+    EXH_FAULT_LOGIC = 1u << 14,    /* a state of the box that cannot be */
+    EXH_FAULT_CHATTER = 1u << 15   /* a contact buzzes, and drives the string */
 };
-#define EXH_FAULTS 15 /* bits of enum exh_fault, from 0 on */
+#define EXH_FAULTS 16 /* bits of enum exh_fault, from 0 on */
 /* Causes that close the gate in the tick that sees them: either the drives are off anyway, or what
  * is coded cannot be trusted to do what it says. All others let the force go by the release law. */
 #define EXH_FAULT_CUT \

@@ -6,7 +6,8 @@ static const char *const states[EXH_STATES] = {"off", "arm", "run", "limit", "re
 static const char *const triggers[EXH_TRIGGERS] = {"refused", "cut", "latched", "released", "cause",
     "off", "armed", "limited", "run", "clear", "none"};
 static const char *const faults[EXH_FAULTS] = {"estop", "drive", "overrun", "encoder", "deadman",
-    "tracking", "stuck", "speed", "glove", "card", "link", "supply", "watchdog", "config", "logic"};
+    "tracking", "stuck", "speed", "glove", "card", "link", "supply", "watchdog", "config", "logic",
+    "chatter"};
 static const char *const limits[EXH_LIMITS] = {"pull", "force", "slew", "peak", "i2t", "dac",
     "gate", "ramp", "release", "speed", "passivity", "person"};
 static const char *const arms[EXH_ARMS] = {

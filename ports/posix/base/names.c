@@ -16,7 +16,7 @@ static const char *const faults[EXH_FAULTS] = {"emergency stop", "a drive is not
     "an encoder stands while current flows", "a finger moved too fast for too long",
     "the glove is not believed", "a card failed", "the link is lost",
     "the supply is out of its range", "the watchdog fired", "parameters or calibration are damaged",
-    "a state that cannot be"};
+    "a state that cannot be", "a contact buzzes"};
 static const char *const limits[EXH_LIMITS] = {"a string only pulls", "the force limit",
     "how fast force may change", "the peak current", "the motor's heat",
     "the end of the D/A's range", "the gate is closed", "the ramp after arming", "the release law",
@@ -101,7 +101,7 @@ const char *names_unit(const char *ascii)
     static const char *const unit[][2] = {{"n", "N"}, {"a", "A"}, {"v", "V"}, {"hz", "Hz"},
         {"n_per_m", "N/m"}, {"ns_per_m", "Ns/m"}, {"m_per_s", "m/s"}, {"n_per_s", "N/s"},
         {"n_per_a", "N/A"}, {"per_a", "1/A"}, {"per_m", "1/m"}, {"rad_per_s", "rad/s"},
-        {"percent", "%"}};
+        {"percent", "%"}, {"w", "W"}, {"j", "J"}};
     for (unsigned i = 0; i < LEN(unit); i++) {
         if (strcmp(ascii, unit[i][0]) == 0) { return unit[i][1]; }
     }

@@ -62,7 +62,7 @@ static struct state {
 } s;
 
 static const struct exh_axis axis = {&s.quad, &cfg.quad_cfg, &s.velocity, &cfg.velocity_cfg,
-    &s.watch, &cfg.watch_cfg, &s.track, &cfg.track_cfg, &s.drive, &cfg.drive_cfg};
+    &s.watch, &cfg.watch_cfg, &s.track, &cfg.track_cfg, &s.drive, &cfg.drive_cfg, NULL, NULL};
 
 /* --- velocity --- */
 

@@ -17,6 +17,7 @@
 #include "exhand/safety.h"
 #include "exhand/signal.h"
 #include "exhand/supply.h"
+#include "exhand/chatter.h"
 #include "exhand/tracking.h"
 #include "exhand/velocity.h"
 #include "exhand/motion.h"
@@ -41,6 +42,7 @@ static const struct exh_signal_group groups[] = {
     {exh_passivity_rows, EXH_PASSIVITY_ROWS, 1},
     {exh_gains_rows, EXH_GAINS_ROWS, 1},
     {exh_tune_rows, EXH_TUNE_ROWS, 1},
+    {exh_chatter_rows, EXH_CHATTER_ROWS, 1},
 };
 static const struct exh_signal_table table = {groups, sizeof groups / sizeof groups[0]};
 
@@ -132,6 +134,8 @@ static const struct exh_signal want[] = {
     {0x1226, 10, EXH_WHEN_SETUP, 0, 1024000000, 0, "rule_k6", "n_per_m", ""},
     {0x1227, 10, EXH_WHEN_SETUP, 0, 1024000000, 0, "rule_k7", "n_per_m", ""},
     {0x1301, 0, EXH_WHEN_SETUP, 0, 1000, 20, "tune_time", "ms", ""},
+    {0x1401, 20, EXH_WHEN_SETUP, 10485, 10485760, 157286, "chatter_power", "w", ""},
+    {0x1402, 24, EXH_WHEN_SETUP, 0, 16777216, 0, "chatter_energy", "j", ""},
 };
 
 TEST(rows_are_what_others_know)
