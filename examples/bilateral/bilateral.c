@@ -68,6 +68,7 @@ int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct
     tell_pulls(cfg);
     if (err == 0) { err = exh_safety_setup(&cfg->safety, &par->safety, board.T); }
     if (err == 0) { err = bilateral_cause_setup(cfg, board.T); }
+    if (err == 0) { err = bilateral_gains_setup(&cfg->gains, par, board.T); }
     return err;
 }
 
@@ -257,6 +258,8 @@ static void defaults(void)
         active.chatter[f].energy_J_q24 = EXH_Q(3, 100, 24);
         active.precontact[f].d_lim_m_q30 = -EXH_Q(8, 1000, EXH_Q_POS);
     }
+    active.gains = bilateral_rule;
+    active.own.rule_on = BILATERAL_RULE_SCALED;
     staged = active;
 }
 
@@ -268,6 +271,23 @@ int bilateral_stage_cal(const struct exh_glove_cal *cal, struct exh_glove_error 
         params.pending = 1;
     }
     return err;
+}
+
+/* As the session: into the parameters, so that registers and the log's header say it. */
+static int soften(struct exh_period T)
+{
+    struct exh_gains_par rule;
+    const int err = bilateral_gains_setup(&rule, &active, T);
+    for (unsigned n = 0; err == 0 && active.own.rule_on && n < BILATERAL_MATERIALS; n++) {
+        bilateral_soften(&rule, &active.material[n]);
+        bilateral_soften(&rule, &staged.material[n]);
+    }
+    return err;
+}
+
+static int allowed(void)
+{
+    return active.own.rule_on ? exh_gains_validate(&params, &cfg.gains, NULL) : 0;
 }
 
 static int setup(struct exh_scene_board board)
@@ -283,7 +303,9 @@ static int setup(struct exh_scene_board board)
         active.own.session = staged.own.session = (int32_t)(exh_board_cycles() >> 1 | 1u);
     }
     err = exh_calib_set_load(&calib, &params, &active.calib, (1u << BILATERAL_FINGERS) - 1u);
+    if (err == 0) { err = soften(board.T); }
     if (err == 0) { err = bilateral_setup(&cfg, &state, &active, board, &calib); }
+    if (err == 0) { err = allowed(); }
     exh_params_slew_setup(&params, &active.tune, board.T);
     exh_integrity_seal(&guard, &cfg, sizeof cfg, &params);
     return err;
@@ -341,4 +363,5 @@ const struct exh_scene exh_scene_bilateral = {
     .tick = tick,
     .show = show,
     .state = state_bytes,
+    .allowed = allowed,
 };

@@ -14,6 +14,9 @@
 #define BILATERAL_FINGERS   EXH_FINGERS
 #define BILATERAL_MATERIALS 8
 
+/* A rule of `exhand advise gains` is of one rate; one that is scaled is a guess for others. */
+enum bilateral_rule_on { BILATERAL_RULE_OFF, BILATERAL_RULE_AS_IT_IS, BILATERAL_RULE_SCALED };
+
 /* Rows of the scene's own parameters. */
 struct bilateral_own_par {
     int32_t fingers;     /* mask: which are in use, thumb in bit 0 */
@@ -23,6 +26,7 @@ struct bilateral_own_par {
     int32_t f0_rest_ms;  /* a string that has run out no farther for so long is wound in */
     int32_t glove_ms;    /* nothing known of a finger in use for so long: a fault; 0: never */
     int32_t link_ms;     /* no planes for so long: a fault; 0: never, contacts are local */
+    int32_t rule_on;     /* enum bilateral_rule_on: k and b of materials outside are refused */
 };
 
 /* All parameters, in the order of the scene's table. */
@@ -33,7 +37,6 @@ struct bilateral_par {
     struct exh_drive_par drive[BILATERAL_FINGERS];
     struct exh_tracking_par track[BILATERAL_FINGERS];
     struct exh_motion_par watch[BILATERAL_FINGERS];
-    struct exh_chatter_par chatter[BILATERAL_FINGERS];
     int32_t kf_NpA_q20[BILATERAL_FINGERS];
     struct exh_hand_par hand[BILATERAL_FINGERS];
     struct exh_precontact_par precontact[BILATERAL_FINGERS];
@@ -47,6 +50,8 @@ struct bilateral_par {
     struct glove_own_par glove_own;
     struct glove_sensor_par sensor[EXH_GLOVE_SENSORS];
     struct exh_tune_par tune;
+    struct exh_chatter_par chatter[BILATERAL_FINGERS];
+    struct exh_gains_par gains; /* of materials; not looked at with rule_on 0 */
 };
 
 /* The paper's nine are these and time. */
@@ -207,6 +212,7 @@ struct bilateral_cfg {
     uint8_t tested;                                  /* 1: known answers came out at set-up */
     uint8_t vouches; /* enum exh_arm: by calibrations of all fingers in use, or waived */
     struct bilateral_wire_cfg wire;
+    struct exh_gains_par gains; /* the rule that materials are held against */
 };
 
 struct bilateral {
@@ -229,7 +235,8 @@ struct bilateral {
 };
 
 /* Configuration from parameters, and of the calibrations that calib has of fingers in use (NULL:
- * none); cfg keeps pointers to par and to s. 0 or -EXH_E…. */
+ * none); cfg keeps pointers to par and to s. 0 or -EXH_E….
+ * Materials are not held against the rule: the scene's own set-up does that. */
 int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct bilateral_par *par,
     struct exh_scene_board board, struct exh_scene_calib *calib);
 
@@ -314,6 +321,16 @@ uint32_t bilateral_finger_age(
 int bilateral_cause_setup(struct bilateral_cfg *cfg, struct exh_period T);
 uint32_t bilateral_causes(
     struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_scene_in *in);
+
+/* The rule for this period. 0, or what exh_gains_setup() says. */
+int bilateral_gains_setup(
+    struct exh_gains_par *rule, const struct bilateral_par *par, struct exh_period T);
+/* A material of the rows' default values that is outside becomes what is inside. */
+void bilateral_soften(const struct exh_gains_par *rule, struct exh_material_par *m);
+/* As exh_params_stage_by(), or exh_gains_stage_by() with rule_on; -EXH_E_UNKNOWN: no such row. */
+int bilateral_gains_stage(const struct bilateral_cfg *cfg, struct exh_params *params,
+    struct exh_authority who, const struct exh_wire_param *ask);
+extern const struct exh_gains_par bilateral_rule;
 
 /* From the newest glove frame. */
 void bilateral_finger_see(struct bilateral_finger *s, const struct bilateral_cfg *cfg, unsigned f,

@@ -24,6 +24,9 @@ static const struct exh_signal own_rows[] = {
         "nothing known of a finger in use for so long: a fault; 0: never"},
     {0x8616, 0, EXH_WHEN_SETUP, 0, 60000, 0, "link_time", "ms",
         "no planes for so long: a fault; 0: never, contacts are local"},
+    {0x8617, 0, EXH_WHEN_SETUP, BILATERAL_RULE_OFF, BILATERAL_RULE_SCALED, BILATERAL_RULE_OFF,
+        "rule_on", "",
+        "materials outside the rule of gains are refused; 2: scaled to the rate; 0: none"},
 };
 
 #define OUT(id, frac, min, max, name, unit, help) \
@@ -105,7 +108,6 @@ static const struct exh_signal_group param_groups[] = {
     EACH(exh_drive_rows, EXH_DRIVE_ROWS),
     EACH(exh_tracking_rows, EXH_TRACKING_ROWS),
     EACH(exh_motion_rows, EXH_MOTION_ROWS),
-    EACH(exh_chatter_rows, EXH_CHATTER_ROWS),
     EACH(kf_rows, LEN(kf_rows)),
     EACH(exh_hand_rows, EXH_HAND_ROWS),
     EACH(exh_precontact_rows, EXH_PRECONTACT_ROWS),
@@ -119,6 +121,8 @@ static const struct exh_signal_group param_groups[] = {
     {glove_own_rows, GLOVE_OWN_ROWS, 1},
     {glove_cal_rows, GLOVE_CAL_ROWS, EXH_GLOVE_SENSORS},
     {exh_tune_rows, EXH_TUNE_ROWS, 1},
+    EACH(exh_chatter_rows, EXH_CHATTER_ROWS),
+    {exh_gains_rows, EXH_GAINS_ROWS, 1},
 };
 const struct exh_signal_table bilateral_params = {param_groups, LEN(param_groups)};
 
@@ -139,7 +143,8 @@ EXH_STATIC_ASSERT(bilateral_par_matches_rows,
                         EXH_HAND_ROWS + EXH_PRECONTACT_ROWS) +
                 BILATERAL_MATERIALS * EXH_MATERIAL_ROWS + EXH_SAFETY_ROWS + EXH_POLARITY_ROWS +
                 EXH_SUPPLY_ROWS + EXH_GLOVE_ROWS + LEN(own_rows) + EXH_CALIB_SET_ROWS +
-                GLOVE_OWN_ROWS + GLOVE_CAL_ROWS * EXH_GLOVE_SENSORS + EXH_TUNE_ROWS));
+                GLOVE_OWN_ROWS + GLOVE_CAL_ROWS * EXH_GLOVE_SENSORS + EXH_TUNE_ROWS +
+                EXH_GAINS_ROWS));
 EXH_STATIC_ASSERT(bilateral_signals_match_rows,
     sizeof(struct bilateral_signals) ==
         sizeof(int32_t) * (BILATERAL_FINGERS * (LEN(paper_rows) + LEN(more_rows)) + LEN(box_rows)));

@@ -46,6 +46,17 @@ static void take_planes(
     }
 }
 
+/* Materials are the world's, and nothing else (authority.h). They are taken at a freeze, by the
+ * rule of gains, and the drive's own limit holds beside theirs. */
+static struct exh_wire_ack stage(const struct bilateral *s, const struct bilateral_cfg *cfg,
+    struct exh_params *params, const struct exh_wire_packet *p)
+{
+    const struct exh_authority world = {EXH_FROM_WORLD, 1, !exh_safety_is_at_rest(s->safety.state)};
+    const struct exh_wire_param *ask = &p->u.param;
+    const int result = bilateral_gains_stage(cfg, params, world, ask);
+    return (struct exh_wire_ack){*ask, (int16_t)result, p->seq};
+}
+
 void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
     const struct exh_scene_mail *in, uint32_t missed, struct exh_params *params)
 {
@@ -76,8 +87,7 @@ void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
         } else if (type == EXH_WIRE_PLANES) {
             take_planes(s, cfg, &p.u.planes);
         } else if (type == EXH_WIRE_PARAM) {
-            const struct exh_wire_ack ack =
-                exh_wire_stage(params, &p, !exh_safety_is_at_rest(s->safety.state));
+            const struct exh_wire_ack ack = stage(s, cfg, params, &p);
             w->set += ack.result == 0;
             w->ack[w->acks++] = ack;
         } else if (type == EXH_WIRE_TRACE_ASK) {

@@ -27,11 +27,11 @@ extern const struct exh_signal drop_more_rows[DROP_MORE_ROWS];
     {exh_quad_rows, EXH_QUAD_ROWS, 1}, {exh_velocity_rows, EXH_VELOCITY_ROWS, 1}, \
         {exh_contact_rows, EXH_CONTACT_ROWS, 1}, {exh_drive_rows, EXH_DRIVE_ROWS, 1}, \
         {exh_tracking_rows, EXH_TRACKING_ROWS, 1}, {exh_motion_rows, EXH_MOTION_ROWS, 1}, \
-        {exh_chatter_rows, EXH_CHATTER_ROWS, 1}, {exh_safety_rows, EXH_SAFETY_ROWS, 1}, \
-        {exh_supply_rows, EXH_SUPPLY_ROWS, 1}, {drop_own_rows, DROP_OWN_ROWS, 1}, \
-        {exh_calib_set_rows, EXH_CALIB_SET_ROWS, 1}, \
+        {exh_safety_rows, EXH_SAFETY_ROWS, 1}, {exh_supply_rows, EXH_SUPPLY_ROWS, 1}, \
+        {drop_own_rows, DROP_OWN_ROWS, 1}, {exh_calib_set_rows, EXH_CALIB_SET_ROWS, 1}, \
+        {exh_tune_rows, EXH_TUNE_ROWS, 1}, \
     { \
-        exh_tune_rows, EXH_TUNE_ROWS, 1 \
+        exh_chatter_rows, EXH_CHATTER_ROWS, 1 \
     }
 /* The first is the paper's, in its order: what a CSV holds. */
 #define DROP_SIGNAL_N 2
@@ -46,12 +46,12 @@ struct drop_par {
     struct exh_drive_par drive;
     struct exh_tracking_par track;
     struct exh_motion_par watch;
-    struct exh_chatter_par chatter; /* off: falls that oscillate are experiments */
     struct exh_safety_par safety;
     struct exh_supply_par supply;
     struct drop_own_par own;
     struct exh_calib_set_par calib;
     struct exh_tune_par tune;
+    struct exh_chatter_par chatter; /* off: falls that oscillate are experiments */
 };
 
 /* The paper's signals, then ours, in the order of the table. */

@@ -40,18 +40,31 @@ extern const struct exh_signal exh_gains_rows[EXH_GAINS_ROWS];
  * not rise; -EXH_E_RATE: the period's rate is more than 1 % off the rule's. */
 int exh_gains_setup(const struct exh_gains_par *rule, struct exh_period T);
 
+/* For another rate: k of all knots and k_min go with the rate, b where the loop is slower alone, as
+ * a count's share of the damper grows with the rate. Divides; rounds and saturates each value at
+ * the end of its row. A guess, where nobody asked `exhand advise gains` at that rate. Errors as
+ * exh_gains_setup(), but for the rate: any that exh_period_ok(). */
+int exh_gains_scale(struct exh_gains_par *rule, struct exh_period T);
+
+/* The largest k inside at this b, N/m, q10; 0 where nothing is. At set-up: it asks 31 times. */
+int32_t exh_gains_k_max(const struct exh_gains_par *rule, int32_t b_Nspm_q20);
+
 /* 1 if the rule allows k and b, else 0; any int32_t. k = b = 0, no wall, is always allowed. Inside
  * means k_min <= k and k on or below the straight line between the two knots around b; nothing is
  * inside before the first knot or behind the last. Exact: products below 2^62. Needs a rule that
  * set-up took. */
 int exh_gains_ok(const struct exh_gains_par *rule, int32_t k_Npm_q10, int32_t b_Nspm_q20);
 
-/* In place of exh_params_stage() where a scene has a rule: stages k or b (the contact's rows, by
- * id) of an instance only if it is inside together with what is staged of the other. -EXH_E_GAINS
- * if not: nothing is staged then. So b before k when both rise, k before b when both fall. Any
- * other value as exh_params_stage(). */
+/* In place of exh_params_stage() where a scene has a rule: stages k or b (the materials' rows, or
+ * the contact's of a scene without materials, by id) of an instance only if it is inside together
+ * with what is staged of the other. -EXH_E_GAINS if not: nothing is staged then. So b before k when
+ * both rise, k before b when both fall. Any other value as exh_params_stage(). */
 int exh_gains_stage(struct exh_params *p, const struct exh_gains_par *rule, uint16_t id,
     uint16_t instance, int32_t raw);
+
+/* The same by index of the value, for whom authority.h may refuse it: as exh_params_stage_by(). */
+int exh_gains_stage_by(struct exh_params *p, const struct exh_gains_par *rule,
+    struct exh_authority who, uint32_t i, int32_t raw);
 
 /* Of a whole image, behind exh_params_load() and before exh_params_apply(): 0, or -EXH_E_GAINS with
  * *instance (may be NULL) the first whose staged k and b are outside. Then what is staged must not

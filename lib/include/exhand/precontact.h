@@ -86,6 +86,7 @@ struct exh_material_par {
     int32_t f_max_N_q20; /* its force limit, N, 0 .. 100; the drive's holds too */
 };
 #define EXH_MATERIAL_ROWS 3
+#define EXH_MATERIAL_K_ID 0x0B01 /* of the row of k; that of b is the next */
 extern const struct exh_signal exh_material_rows[EXH_MATERIAL_ROWS];
 
 /* One finger; rows in exh_precontact_rows[]. */

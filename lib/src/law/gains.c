@@ -5,6 +5,7 @@
 #include "exhand/contact.h"
 #include "exhand/error.h"
 #include "exhand/fix.h"
+#include "exhand/precontact.h"
 
 #include <stddef.h>
 
@@ -82,6 +83,25 @@ int exh_gains_setup(const struct exh_gains_par *rule, struct exh_period T)
     return exh_period_ok(T) && same_rate(rule->rate_Hz_q8, T) ? 0 : -EXH_E_RATE;
 }
 
+int exh_gains_scale(struct exh_gains_par *rule, struct exh_period T)
+{
+    struct exh_gain by;
+    const int err = exh_gains_setup(rule, (struct exh_period){256, (uint32_t)rule->rate_Hz_q8});
+    if (err < 0) { return err; }
+    if (!exh_period_ok(T) || exh_gain_set(&by, (uint64_t)T.den * 256,
+                                 (uint64_t)T.num * (uint32_t)rule->rate_Hz_q8) < 0) {
+        return -EXH_E_RATE;
+    }
+    rule->k_min_Npm_q10 = exh_clamp(exh_gain_mul(by, rule->k_min_Npm_q10), 0, EXH_K_MAX_NPM_Q10);
+    for (int32_t i = 0; i < rule->knots; i++) {
+        const int64_t b = exh_gain_mul(by, rule->b_Nspm_q20[i]);
+        rule->k_Npm_q10[i] = exh_clamp(exh_gain_mul(by, rule->k_Npm_q10[i]), 0, EXH_K_MAX_NPM_Q10);
+        if (b < rule->b_Nspm_q20[i]) { rule->b_Nspm_q20[i] = (int32_t)b; }
+    }
+    rule->rate_Hz_q8 = exh_clamp(exh_gain_mul(by, rule->rate_Hz_q8), RATE_Q8(1), RATE_Q8(20000));
+    return exh_gains_setup(rule, T);
+}
+
 /* --- inside --- */
 
 struct pair {
@@ -115,36 +135,64 @@ int exh_gains_ok(const struct exh_gains_par *rule, int32_t k_Npm_q10, int32_t b_
     return is_under(rule, at) || is_none(at);
 }
 
+int32_t exh_gains_k_max(const struct exh_gains_par *rule, int32_t b_Nspm_q20)
+{
+    struct pair at = {rule->k_min_Npm_q10, b_Nspm_q20};
+    if (!is_under(rule, at)) { return 0; }
+    for (int32_t more = INT32_C(1) << 30; more > 0; more >>= 1) {
+        const struct pair up = {at.k > EXH_K_MAX_NPM_Q10 - more ? at.k : at.k + more, at.b};
+        if (is_under(rule, up)) { at = up; }
+    }
+    return at.k;
+}
+
 /* --- staged --- */
+
+/* A scene with materials does not read the contact's. The row of b is the next. */
+static uint16_t k_id(const struct exh_params *p)
+{
+    const int has = exh_signal_find(p->table, EXH_MATERIAL_K_ID, 0) >= 0;
+    return has ? EXH_MATERIAL_K_ID : EXH_CONTACT_K_ID;
+}
 
 /* Both of an instance, or it has no wall. */
 static int pair_ok(const struct exh_params *p, const struct exh_gains_par *rule, uint16_t instance)
 {
-    const int32_t k = exh_signal_find(p->table, EXH_CONTACT_K_ID, instance);
-    const int32_t b = exh_signal_find(p->table, EXH_CONTACT_B_ID, instance);
+    const uint16_t id = k_id(p);
+    const int32_t k = exh_signal_find(p->table, id, instance);
+    const int32_t b = exh_signal_find(p->table, id + 1, instance);
     return k < 0 || b < 0 || exh_gains_ok(rule, p->staged[k], p->staged[b]);
+}
+
+int exh_gains_stage_by(struct exh_params *p, const struct exh_gains_par *rule,
+    struct exh_authority who, uint32_t i, int32_t raw)
+{
+    uint16_t instance = 0;
+    const struct exh_signal *row = exh_signal_at(p->table, i, &instance);
+    const int32_t was = row != NULL ? p->staged[i] : 0;
+    const uint8_t pending = p->pending, by = p->by;
+    const int err = exh_params_stage_by(p, who, i, raw);
+    if (err < 0 || (row->id != k_id(p) && row->id != k_id(p) + 1) || pair_ok(p, rule, instance)) {
+        return err;
+    }
+    (void)exh_params_stage_at(p, i, was);
+    p->pending = pending;
+    p->by = by;
+    return -EXH_E_GAINS;
 }
 
 int exh_gains_stage(struct exh_params *p, const struct exh_gains_par *rule, uint16_t id,
     uint16_t instance, int32_t raw)
 {
+    const struct exh_authority person = {EXH_FROM_PERSON, 1, 1};
     const int32_t i = exh_signal_find(p->table, id, instance);
-    const int32_t was = i >= 0 ? p->staged[i] : 0;
-    const uint8_t pending = p->pending;
-    const int err = exh_params_stage(p, id, instance, raw);
-    if (err < 0 || (id != EXH_CONTACT_K_ID && id != EXH_CONTACT_B_ID) ||
-        pair_ok(p, rule, instance)) {
-        return err;
-    }
-    (void)exh_params_stage(p, id, instance, was);
-    p->pending = pending;
-    return -EXH_E_GAINS;
+    return i < 0 ? (int)i : exh_gains_stage_by(p, rule, person, (uint32_t)i, raw);
 }
 
 int exh_gains_validate(
     const struct exh_params *p, const struct exh_gains_par *rule, uint16_t *instance)
 {
-    for (uint16_t n = 0; exh_signal_find(p->table, EXH_CONTACT_K_ID, n) >= 0; n++) {
+    for (uint16_t n = 0; exh_signal_find(p->table, k_id(p), n) >= 0; n++) {
         if (!pair_ok(p, rule, n)) {
             if (instance != NULL) { *instance = n; }
             return -EXH_E_GAINS;

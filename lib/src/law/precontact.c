@@ -15,8 +15,8 @@
 #define SLEW_MAX_NPS     10000000
 
 const struct exh_signal exh_material_rows[EXH_MATERIAL_ROWS] = {
-    {0x0B01, EXH_Q_K, EXH_WHEN_MATERIAL, 0, EXH_K_MAX_NPM_Q10, EXH_Q(20000, 1, EXH_Q_K), "mat_k",
-        "n_per_m", "stiffness of the material"},
+    {EXH_MATERIAL_K_ID, EXH_Q_K, EXH_WHEN_MATERIAL, 0, EXH_K_MAX_NPM_Q10, EXH_Q(20000, 1, EXH_Q_K),
+        "mat_k", "n_per_m", "stiffness of the material"},
     {0x0B02, EXH_Q_B, EXH_WHEN_MATERIAL, 0, EXH_B_MAX_NSPM_Q20, EXH_Q(60, 1, EXH_Q_B), "mat_b",
         "ns_per_m", "damping of the material"},
     {0x0B03, EXH_Q_FORCE, EXH_WHEN_MATERIAL, 0, EXH_FORCE_MAX_N_Q20, EXH_Q(12, 1, EXH_Q_FORCE),

@@ -29,6 +29,7 @@ struct bilateral_run_cfg {
     double at_m;                                 /* where, as string */
     double fps, from_s, until_s, again_s, ray_m; /* of the world (peer_cfg); ray 0: no end */
     int32_t session; /* of the controller; 0: of the seed, over UDP of the clock */
+    int trial;       /* an experiment with gains: no rule of gains, no fault for chatter */
     int keep;        /* keep samples */
     const struct exh_glove_cal *glove_cal; /* of board.glove_tty; NULL: nobody's */
     const struct images *images;       /* calibrations of fingers; NULL, or none: uncalibrated */

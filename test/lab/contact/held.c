@@ -117,7 +117,7 @@ static int setup(struct exh_scene_board board)
     const struct exh_velocity_scale scale = {cfg.quad_par.step_m_q42, board.T};
     const struct exh_axis_setup parts = {&cfg.quad_cfg, &cfg.quad_par, &cfg.velocity_cfg,
         &cfg.velocity_par, &cfg.watch_cfg, &cfg.watch_par, &cfg.track_cfg, &cfg.track_par,
-        &cfg.drive_cfg, &cfg.drive_par};
+        &cfg.drive_cfg, &cfg.drive_par, NULL, NULL};
     const struct exh_table to_cur = {cfg.to_cur, 2}, to_force = {cfg.to_force, 2};
     const struct held_law *l = &cfg.law;
     int err = exh_table_setup(cfg.to_cur, 2);

@@ -210,6 +210,7 @@ static int run_finger(const struct faults_base *b)
     c.rate_Hz = b->rate_Hz;
     gains(b->rate_Hz, &c.k_Npm, &c.b_Nspm);
     c.at_m = 0.03;
+    c.trial = 1;
     c.fps = FAULTS_LINK_HZ;
     c.until_s = 1e30;
     c.setting = set;

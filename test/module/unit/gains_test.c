@@ -182,6 +182,45 @@ TEST(a_whole_image_is_asked_and_dropped)
     CHECK_EQ_I64(exh_gains_validate(&params, &rule, &instance), 0);
 }
 
+/* k goes with the rate, b where the loop is slower. */
+TEST(a_rule_for_another_rate)
+{
+    static const struct {
+        struct exh_period T;
+        int32_t k, b, k_min;
+    } row[] = {{{1, 2000}, K(30000), B(20), K(500)}, {{1, 500}, K(7500), B(5), K(125)},
+        {{1, 4000}, K(60000), B(20), K(1000)}, {{1, 1}, K(15), B(20) / 2000, K(500) / 2000}};
+    for (size_t i = 0; i < LEN(row); i++) {
+        struct exh_gains_par r = rule;
+        CHECK_EQ_I64(exh_gains_scale(&r, row[i].T), 0);
+        CHECK(r.k_Npm_q10[1] == row[i].k && r.b_Nspm_q20[1] - row[i].b <= 1 &&
+                  r.k_min_Npm_q10 == row[i].k_min,
+            "row %d: %d %d %d", (int)i, (int)r.k_Npm_q10[1], (int)r.b_Nspm_q20[1],
+            (int)r.k_min_Npm_q10);
+        CHECK_EQ_I64(exh_gains_setup(&r, row[i].T), 0);
+    }
+    {
+        struct exh_gains_par r = rule, stiff = rule;
+        CHECK_EQ_I64(exh_gains_scale(&r, (struct exh_period){0, 1}), -EXH_E_RATE);
+        stiff.k_Npm_q10[1] = K(900000);
+        CHECK_EQ_I64(exh_gains_scale(&stiff, (struct exh_period){1, 4000}), 0);
+        CHECK_EQ_I64(stiff.k_Npm_q10[1], EXH_K_MAX_NPM_Q10);
+        r.knots = 9;
+        CHECK_EQ_I64(exh_gains_scale(&r, T), -EXH_E_RANGE);
+    }
+}
+
+TEST(the_largest_k)
+{
+    for (int32_t b = -B(1); b < B(52); b += B(1) / 7) {
+        const int32_t k = exh_gains_k_max(&rule, b);
+        CHECK(k == 0 || (exh_gains_ok(&rule, k, b) && !exh_gains_ok(&rule, k + 1, b)), "b %d: k %d",
+            (int)b, (int)k);
+        CHECK((k > 0) == exh_gains_ok(&rule, K(500), b), "b %d: k %d", (int)b, (int)k);
+    }
+    CHECK_EQ_I64(exh_gains_k_max(&rule, B(20)), K(30000));
+}
+
 /* From (10000, 0) over the valley to the same k at b = 40: k down to the valley's, through, up
  * again; never up and down by turns. What is dropped half way stands inside. */
 TEST(through_a_valley)
@@ -366,7 +405,7 @@ TEST(rows_may_stand_in_any_order)
 
 TEST_MAIN("gains", pieces_and_ends, setup_refuses, setup_refuses_two_halves,
     setup_asks_for_its_rate, staging_refuses_what_is_outside, a_whole_image_is_asked_and_dropped,
-    through_a_valley, a_damaged_goal_is_not_gone_to, a_goal_that_became_none_is_waited_for,
-    no_wall_is_a_jump_away, rows_are_of_the_struct, half_a_pair_is_none,
-    without_the_lead_both_go_by_themselves, a_damaged_pair_becomes_none,
+    a_rule_for_another_rate, the_largest_k, through_a_valley, a_damaged_goal_is_not_gone_to,
+    a_goal_that_became_none_is_waited_for, no_wall_is_a_jump_away, rows_are_of_the_struct,
+    half_a_pair_is_none, without_the_lead_both_go_by_themselves, a_damaged_pair_becomes_none,
     rows_may_stand_in_any_order);

@@ -36,8 +36,29 @@ static int load_scene(struct bilateral_options *o)
     return 0;
 }
 
+/* Set-up softens a default material that the rate does not allow: what is said of the run is so. */
+static void say_softened(struct bilateral_options *o)
+{
+    const struct exh_params *p = exh_scene_bilateral.params;
+    uint32_t at_k, at_b;
+    double k, b;
+    if (o->scene || !cli_signal_find(p->table, "mat_k", &at_k) ||
+        !cli_signal_find(p->table, "mat_b", &at_b)) {
+        return;
+    }
+    k = cli_signal_value(&exh_material_rows[0], p->active[at_k]);
+    b = cli_signal_value(&exh_material_rows[1], p->active[at_b]);
+    if (k < o->run.k_Npm || b < o->run.b_Nspm) {
+        cli_complain("k %.6g N/m, b %.6g Ns/m: outside the rule of gains at %.6g Hz: softened to "
+                     "k %.6g, b %.6g (--set rule_on=0 keeps them)",
+            o->run.k_Npm, o->run.b_Nspm, (double)o->run.rate_Hz, k, b);
+        o->run.k_Npm = k;
+        o->run.b_Nspm = b;
+    }
+}
+
 /* Whether a run with these parameters begins at all: 0, or 2 after a line on stderr. */
-static int probe(const struct bilateral_options *o)
+static int probe(struct bilateral_options *o)
 {
     struct bilateral_run_cfg c = bilateral_at_speed(o, o->speed[0].mps);
     struct bilateral_run r;
@@ -47,6 +68,7 @@ static int probe(const struct bilateral_options *o)
     c.blackbox = NULL;
     err = bilateral_run(&c, &r);
     bilateral_run_free(&r);
+    if (err == 0) { say_softened(o); }
     if (err == 0 && o->params.save) {
         return params_save_file(o->params.save, exh_scene_bilateral.params);
     }
@@ -180,6 +202,7 @@ static int go(struct bilateral_options *o, double rate_Hz, const struct bilatera
     o->run.rate_Hz = (uint32_t)(rate_Hz + 0.5);
     own_gains(o);
     if (world_line_use(o->udp, o->key, &o->run.board.line)) { return 2; }
+    o->run.trial = o->study;
     if (o->udp) {
         o->run.board.pace = 1;
         o->run.board.slack_s = WORLD_LINE_SLACK_S;
