@@ -124,6 +124,8 @@ TEST(the_default_is_softened)
         {200, 2400, 10}, {100, 1200, 5}, {1990, 20000, 60}, {1600, 19200, 60}};
     for (size_t i = 0; i < LEN(row); i++) {
         exh_scene_bilateral.defaults();
+        CHECK_EQ_I64(exh_params_stage(exh_scene_bilateral.params, 0x0902, 0, 20 << 16), 0);
+        (void)exh_params_apply(exh_scene_bilateral.params); /* a glove's filter for 90 Hz */
         CHECK_EQ_I64(
             exh_scene_bilateral.setup((struct exh_scene_board){{1, row[i].rate_Hz}, 24}), 0);
         CHECK(active("mat_k", 1024) == row[i].k && active("mat_b", 1048576) == row[i].b,
