@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "box/hand.h"
+#include "box/hand_rule.h"
 
 #include "box/arming.h"
 #include "box/dumpfile.h"
@@ -295,26 +296,6 @@ static void put_up(const struct bilateral_run_cfg *c)
     }
 }
 
-/* Which material set-up refused by the rule of gains; 1: that was told. */
-static int gains_complain(const struct bilateral_run_cfg *c, int err)
-{
-    struct bilateral_cfg *cfg;
-    (void)bilateral_memory(&cfg);
-    for (unsigned n = 0; err == -EXH_E_GAINS && n < BILATERAL_MATERIALS; n++) {
-        const struct exh_material_par *m = &cfg->par->material[n];
-        const struct exh_gains_par *rule = &cfg->gains;
-        if (exh_gains_ok(rule, m->k_Npm_q10, m->b_Nspm_q20)) { continue; }
-        cli_complain("material %u: mat_k %.6g, mat_b %.6g: outside the rule of gains at %.6g Hz "
-                     "(mat_b %.6g .. %.6g; mat_k up to %.6g at this one): `exhand advise gains "
-                     "--rule` makes another, --set rule_on=0 waives it",
-            n, m->k_Npm_q10 / 1024.0, m->b_Nspm_q20 / 1048576.0, (double)c->rate_Hz,
-            rule->b_Nspm_q20[0] / 1048576.0, rule->b_Nspm_q20[rule->knots - 1] / 1048576.0,
-            exh_gains_k_max(rule, m->b_Nspm_q20) / 1024.0);
-        return 1;
-    }
-    return 0;
-}
-
 static struct posix_config board_of(const struct bilateral_run_cfg *c)
 {
     struct posix_config b = c->board;
@@ -373,7 +354,7 @@ int bilateral_run(const struct bilateral_run_cfg *c, struct bilateral_run *r)
     r->dumps = dumpfile_close(err < 0);
     if (err == 0 && r->unarmed) {
         err = -EXH_E_STATE; /* that was told */
-    } else if (err < 0 && !c->board.cards.quiet && !gains_complain(c, err) &&
+    } else if (err < 0 && !c->board.cards.quiet && !hand_rule_complain(c->rate_Hz, err) &&
                !images_complain(c->images, &exh_scene_bilateral)) {
         cli_setup_complain(exh_scene_bilateral.params, (double)c->rate_Hz, err);
     }

@@ -27,7 +27,7 @@ TEST(the_papers_figures_stand_beside_the_same_alone)
         {"--link", "delay=0.01", 4, 1, "places (paper 50004)."},
         {"--speed", "slow", 1, 1, "places (paper 50004)."},
         {"--speed", "0.5", 1, 1, "places (paper 50004)."},
-        {"--rate", "500", 0, 0, "0 settled"},
+        {"--rate", "500", 0, 1, "500 Hz, k 6000 N/m, b 25 Ns/m"},
         {"--k", "5000", 0, 1, "over the wall's places.\n"},
         {"--set", "mat_k=5000", 0, 1, "over the wall's places.\n"},
         {"--set", "mat_b=20", 0, 1, "2000 Hz, k 20000 N/m, b 20 Ns/m"},

@@ -122,6 +122,12 @@ static void print_run(const struct bilateral_options *o, const struct bilateral_
            "%.1f ms\n",
         r->box.accepted, r->box.missing, r->box.reordered, r->box.duplicate, r->box.old,
         r->box.corrupt + r->box.version + r->box.unknown + r->box.stranger, r->box.trip_us / 1e3);
+    if (r->refused) {
+        printf(
+            "  materials: %d of %d values asked for were refused (at this rate the rule of gains "
+            "may be narrower): the box's own hold\n",
+            r->refused, r->params);
+    }
     if (c->trace_every) {
         printf("  trace: %lu frames of every %d ticks, ticks %lu to %lu; %lu missed\n",
             (unsigned long)r->trace.frames, c->trace_every, (unsigned long)r->trace.first_tick,
