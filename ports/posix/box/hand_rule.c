@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "box/hand_rule.h"
 
+#include "box/hand.h"
 #include "base/option.h"
-
-#include "bilateral/bilateral.h"
 
 int hand_rule_complain(uint32_t rate_Hz, int err)
 {
