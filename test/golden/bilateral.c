@@ -100,6 +100,7 @@ static void any_finger(unsigned f, struct golden_rng *r, uint32_t rate_Hz)
     golden_track_par(&p->track[f], r, rate_Hz);
     golden_watch_par(&p->watch[f], r, rate_Hz);
     p->kf_NpA_q20[f] = (int32_t)golden_draw(r, 104858, 104857600);
+    golden_chatter_par(&p->chatter[f], r);
     p->hand[f].arm1_m_q30 = (int32_t)golden_draw(r, 4294968, 53687091);
     p->hand[f].arm2_m_q30 = (int32_t)golden_draw(r, 0, 53687091);
     p->hand[f].arm3_m_q30 = (int32_t)golden_draw(r, 0, 53687091);

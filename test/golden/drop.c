@@ -40,6 +40,7 @@ static void any_par(
     golden_supply_par(&p->supply, rail, r, rate_Hz, 31);
     p->own.q_lim_m_q30 = (int32_t)golden_draw(r, -(INT32_C(1) << 26), INT32_C(1) << 26);
     p->own.kf_NpA_q20 = (int32_t)golden_draw(r, 104858, 104857600);
+    golden_chatter_par(&p->chatter, r);
     p->calib.uncalibrated = 1;
 }
 
@@ -117,6 +118,7 @@ static void put_state(struct golden *g, struct drop *s)
     GOLDEN_STATE(g, exh_drive_serialize, &s->drive);
     GOLDEN_STATE(g, exh_tracking_serialize, &s->track);
     GOLDEN_STATE(g, exh_motion_serialize, &s->watch);
+    GOLDEN_STATE(g, exh_chatter_serialize, &s->chatter);
     GOLDEN_STATE(g, exh_safety_serialize, &s->safety);
     GOLDEN_STATE(g, exh_supply_serialize, &s->supply);
 }

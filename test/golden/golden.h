@@ -9,6 +9,7 @@
 #define TEST_GOLDEN_GOLDEN_H
 
 #include "exhand/bytes.h"
+#include "exhand/chatter.h"
 #include "exhand/drive.h"
 #include "exhand/glove.h"
 #include "exhand/safety.h"
@@ -99,6 +100,8 @@ void golden_drive_par(struct exh_drive_par *p, struct golden_rng *r, uint32_t ra
 /* Any parameters of exh_tracking_setup(), with a short time. */
 void golden_track_par(struct exh_tracking_par *p, struct golden_rng *r, uint32_t rate_Hz);
 void golden_safety_par(struct exh_safety_par *p, struct golden_rng *r, uint32_t rate_Hz);
+/* In this order: power, energy. */
+void golden_chatter_par(struct exh_chatter_par *p, struct golden_rng *r);
 void golden_watch_par(struct exh_motion_par *p, struct golden_rng *r, uint32_t rate_Hz);
 
 /* The drives' supply: a code between the limits, and while it is off what it is then. */

@@ -182,6 +182,7 @@ MODULE(drive);
 MODULE(track);
 MODULE(passivity);
 MODULE(watch);
+MODULE(chatter);
 MODULE(guard);
 MODULE(supply);
 MODULE(safety);
@@ -209,6 +210,6 @@ MODULE(bilateral);
 
 TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, record, ring, signal, slots, quad,
     quad_ab, velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table, drive,
-    track, watch, guard, supply, passivity, safety, calibrate, probe, home, weigh, filter,
+    track, watch, chatter, guard, supply, passivity, safety, calibrate, probe, home, weigh, filter,
     filter_cheap, quantizer, gains, glove, glove_every, glove_cal, angle, hand, precontact, wire,
     mirror, modbus, modbus_rtu, drop, guarded, bilateral);

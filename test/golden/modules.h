@@ -28,6 +28,7 @@ GOLDEN_MODULE(drive);
 GOLDEN_MODULE(track);
 GOLDEN_MODULE(passivity);
 GOLDEN_MODULE(watch);
+GOLDEN_MODULE(chatter);
 GOLDEN_MODULE(guard);
 GOLDEN_MODULE(supply);
 GOLDEN_MODULE(safety);

@@ -87,7 +87,7 @@ def read_record(buf):
         return bad(SHORT)
     if zlib.crc32(buf[:14 + n]) != int.from_bytes(buf[14 + n:18 + n], "little"):
         return bad(CRC)
-    if buf[3] != 2:
+    if buf[3] != 3:
         return bad(VERSION)
     return (18 + n, buf[2], buf[3], n, int.from_bytes(buf[6:10], "little"),
             int.from_bytes(buf[10:14], "little"))
@@ -100,13 +100,13 @@ def record(rate):
         kind, seq, n = r.draw(0, 255), r.u64() & 0xFFFFFFFF, r.draw(0, 40)
         cap = r.draw(0, 63) if r.draw(0, 7) == 0 else 64
         payload = bytes(r.draw(0, 255) for _ in range(n))
-        whole = pack("<HBBHII", 0x5845, kind, 2, n, seq, k) + payload
+        whole = pack("<HBBHII", 0x5845, kind, 3, n, seq, k) + payload
         whole += pack("<I", zlib.crc32(whole))
         size = len(whole) if len(whole) <= cap else 0
         how, where, version = r.draw(0, 3), r.draw(0, 8 * len(whole) - 1), r.draw(0, 9)
         buf = bytearray(whole)
         if version == 0:  # a record of another version, whole otherwise
-            buf[3] = 3
+            buf[3] = 4
             buf[-4:] = pack("<I", zlib.crc32(bytes(buf[:-4])))
         if how & 1:
             at = where if how == 1 else where & 15

@@ -5,6 +5,7 @@ import zlib
 from struct import Struct, pack, unpack_from
 
 from . import precontact as pre
+from .chatter import Chatter, any_par as any_chatter
 from .contact import Contact
 from .drive import SLEW, Drive, Table, any_par as any_drive
 from .filter import Channel
@@ -46,6 +47,7 @@ class FingerPar:
         self.drive, self.track, self.watch = (any_drive(rng, rate), any_track(rng, rate),
                                               any_watch(rng, rate))
         self.kf = rng.draw(104858, 104857600)
+        self.chatter = any_chatter(rng)
         self.arms = rng.draw(4294968, 53687091), rng.draw(0, 53687091), rng.draw(0, 53687091)
         self.pad, self.materials = rng.draw(0, 26843545), MATERIALS
         self.from_slope, self.printed_sign = rng.draw(0, 1), rng.draw(0, 1)
@@ -137,6 +139,7 @@ class Finger:
         self.pre.setup(par, T)
         peak = par.drive[3]
         top = sat32(shr(par.kf * peak, 26))
+        self.chatter = Chatter(par.chatter, (top, peak), par.step, T)
         self.drive = Drive(par.drive, T, Table([(0, 0), (top, peak)]),
                            Table([(-peak, -top), (peak, top)]))
         self.slew_up = self.drive.up
@@ -185,7 +188,7 @@ class Finger:
     def state(self):
         quad = self.quad.state() if self.quad else bytes(10)
         return (quad + self.velocity.state() + self.contact.state() + self.drive.state() +
-                self.track.state() + self.watch.state() + self.pre.state() +
+                self.track.state() + self.watch.state() + self.chatter.state() + self.pre.state() +
                 self.where(self.out, self.rest, *self.joint, *self.tip, *self.slope, self.clamped))
 
 
@@ -331,7 +334,7 @@ class Bilateral:
             s.cnt = cnt = s.quad.tick(enc[f])
             fast, v, early[f] = s.watch.step(s.velocity.tick(cnt))
             moved[f] = position(cnt, s.par.step), v
-            raised |= (fast | (ENCODER if s.quad.lost else 0) |
+            raised |= (fast | s.chatter.step() | (ENCODER if s.quad.lost else 0) |
                        (TRACKING if s.track.step(seen[f][0]) else 0))
         placed = din & 255 | sum(1 << 8 + k for k, f in enumerate(at) if din >> 8 + f & 1)
         age = glove_age if glove_age < 65535 else M32
@@ -352,7 +355,7 @@ class Bilateral:
                                          [felt[f][6] for f in at],
                                          [felt[f][4] | early[f] for f in at])
         paper, more = [[0] * 8 for _ in range(FINGERS)], [[0] * 17 for _ in range(FINGERS)]
-        dac, enabled = [par.finger[at[0]].drive[6]] * FINGERS, 0
+        dac, enabled = [f.drive[6] for f in par.finger], 0
         for k, f in enumerate(at):
             s, (bits, d, lim, c, _, force, _) = self.finger[f], felt[f]
             limits, _, _, coded, dac[f] = gated[k]
@@ -360,6 +363,7 @@ class Bilateral:
             paper[f] = [*moved[f], force, coded, c, seen[f][1], d, lim]
             s.track.coded(coded)
             s.watch.coded(s.cnt, coded)
+            s.chatter.coded(s.cnt, coded)
             s.last = coded
             p = s.pre
             more[f] = [bits, limits, *s.joint, s.clamped, *s.tip,

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The scenes drop and guarded: one tick from an encoder's counter to a D/A code."""
 
+from .chatter import Chatter, any_par as any_chatter
 from .contact import Contact
 from .drive import Drive, Table, any_par
 from .guard import Rail, Supply, any_supply
@@ -14,7 +15,8 @@ from .watch import Watch, any_par as any_watch
 
 
 class Drop:
-    def __init__(self, step, speed, p, law, drive, track, watch, safety, supply, lim, kf, T):
+    def __init__(self, step, speed, p, law, drive, track, watch, safety, supply, lim, kf, chatter,
+                 T):
         self.step, self.law, self.drive_par, self.lim = step, law, drive, lim
         self.quad, self.bits = narrowest(step, speed, T)
         self.velocity, self.contact, self.safety = Window(step, T, p), Contact(), Safety(safety, T)
@@ -22,6 +24,7 @@ class Drop:
         self.track, self.watch, self.last = Track(track, T), Watch(watch, T), 0
         peak = drive[3]
         top = sat32(shr(kf * peak, 26))
+        self.chatter = Chatter(chatter, (top, peak), step, T)
         self.drive = Drive(drive, T, Table([(0, 0), (top, peak)]),
                            Table([(-peak, -top), (peak, top)]))
 
@@ -30,6 +33,7 @@ class Drop:
         q, v = position(cnt, self.step), self.velocity.tick(cnt)
         i_mon, f_mon = self.drive.monitor(mon)
         raised = (ENCODER if self.quad.lost else 0) | (TRACKING if self.track.step(i_mon) else 0)
+        raised |= self.chatter.step()
         raised |= SUPPLY if self.supply.step(supply, missed) else 0
         fast, v, limits = self.watch.step(v)
         permit = self.safety.step(din, raised | fast, missed, command, 1,
@@ -42,6 +46,7 @@ class Drop:
             [self.drive_par], [i0 + peak + i2t], [limits | bit | told | more])
         self.track.coded(coded)
         self.watch.coded(cnt, coded)
+        self.chatter.coded(cnt, coded)
         self.last = coded
         more = self.after(force, pull, coded, term)
         return (q, v, force, coded, c, f_mon, limits, self.safety.state_,
@@ -59,7 +64,8 @@ class Drop:
     def state(self):
         return (self.quad.state() + self.velocity.state() + self.contact.state() +
                 self.drive.state() +
-                self.track.state() + self.watch.state() + self.safety.state() + self.supply.state())
+                self.track.state() + self.watch.state() + self.chatter.state() +
+                self.safety.state() + self.supply.state())
 
 
 class Guarded(Drop):
@@ -92,10 +98,11 @@ def drop(rate, name="drop", kind=Drop):
             watch, safety, supply = (any_watch(rng, rate), any_safety(rng, rate),
                                      any_supply(rng, rate, 31))
             lim, kf = rng.draw(-(1 << 26), 1 << 26), rng.draw(104858, 104857600)
+            chatter = any_chatter(rng)
             # Quiet enough to run, not touching at first, and to and fro through the wall.
             drive, lim = drive[:2] + (10000000,) + drive[3:], abs(lim >> 8)
             s = kind(step, speed, p, law, drive, track, watch, safety, supply, lim, kf,
-                     period(rate, k))
+                     chatter, period(rate, k))
             if kind is Guarded:
                 s.guard(rng.draw(0, 2), period(rate, k))
             jump = s.quad.jump if kind is Drop else s.passivity.way

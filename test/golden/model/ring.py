@@ -50,7 +50,7 @@ class Ring:
             length, kind, tick = unpack_from("<HBI", rest)
             if HEAD + length > len(rest):
                 return
-            body = pack("<HBBHII", 0x5845, kind, 2, length, seq, tick) + rest[HEAD:HEAD + length]
+            body = pack("<HBBHII", 0x5845, kind, 3, length, seq, tick) + rest[HEAD:HEAD + length]
             yield body + pack("<I", zlib.crc32(body))
             del rest[:HEAD + length]
             seq = seq + 1 & M32
