@@ -101,8 +101,8 @@ static struct bilateral_box arm(enum fault fault, unsigned finger, uint32_t rate
     c.board.wires_out = wires_out;
     c.setting = set;
     c.settings = LEN(set);
-    c.k_Npm = 5000;
-    c.b_Nspm = 20;
+    c.k_Npm = 200; /* inside the rule of gains at each of the rates */
+    c.b_Nspm = 2;
     c.at_m = 0.03;
     c.fps = 100;
     c.until_s = 1e30;

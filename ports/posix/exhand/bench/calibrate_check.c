@@ -13,17 +13,6 @@
 #include <inttypes.h>
 #include <string.h>
 
-int calibrate_complain(const char *what, int err, const struct exh_calib_error *bad)
-{
-    char point[24] = "";
-    if (bad->what == EXH_CALIB_FORCE_TABLE || bad->what == EXH_CALIB_MONITOR_TABLE) {
-        snprintf(point, sizeof point, ", point %d", bad->at + 1);
-    }
-    cli_complain("%s: %s%s: %s: calibrate again", what, exh_calib_error_text(bad->what), point,
-        exh_error_text(err));
-    return 1;
-}
-
 /* what is written into the files */
 /* Whose, when, and the scales of the device as they are now. The monitor's zero is for
  * who uses the image to copy, so here it is the image's. */

@@ -11,6 +11,17 @@
 
 static double si(int32_t raw) { return (double)raw / (1 << EXH_Q_FORCE); }
 
+int calibrate_complain(const char *what, int err, const struct exh_calib_error *bad)
+{
+    char point[24] = "";
+    if (bad->what == EXH_CALIB_FORCE_TABLE || bad->what == EXH_CALIB_MONITOR_TABLE) {
+        snprintf(point, sizeof point, ", point %d", bad->at + 1);
+    }
+    cli_complain("%s: %s%s: %s: calibrate again", what, exh_calib_error_text(bad->what), point,
+        exh_error_text(err));
+    return 1;
+}
+
 int calibrate_far(const char *what, const struct exh_calib *c, double kf_NpA, const char *whose,
     const char *advice)
 {
