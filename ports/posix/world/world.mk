@@ -23,8 +23,8 @@ world_part := main live alone bench solo link link_put link_param link_trace vie
 world_core_obj := $(patsubst %.c,$(B)/posix/%.o,$(world_core) $(patsubst %,ports/posix/sim/%.c,lag \
                   plant device))
 world_obj  := $(world_core_obj) $(world_mesh) $(world_part:%=$(B)/posix/ports/posix/world/%.o) \
-              $(patsubst %,$(B)/posix/ports/posix/base/%.o,ends fifo outpart outfile option key near \
-              lines none) \
+              $(patsubst %,$(B)/posix/ports/posix/base/%.o,ends fifo outpart outfile option key \
+              near lines none) \
               $(B)/posix/examples/bilateral/tables.o \
               $(B)/posix/examples/glove/cal.o \
               $(B)/posix/lib/src/run/calib_set.o

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The modules that have golden vectors: {name: (columns, run(rate) -> (row, state) a tick)}."""
 
-from . import (basics, bilateral, calibrate, chatter, contact, drive, drop, filter, filter_cheap, gains,
-               glove, glove_cal, guard, hand, modbus, passivity, precontact, probe, quad, ring,
-               safety, signal, slots, track, velocity, watch, wire)
+from . import (basics, bilateral, calibrate, chatter, contact, drive, drop, filter,
+               filter_cheap, gains, glove, glove_cal, guard, hand, modbus, passivity, precontact,
+               probe, quad, ring, safety, signal, slots, track, velocity, watch, wire)
 
 MODULES = {}
 for part in (basics, ring, signal, slots, quad, velocity, contact, drive, track, passivity, watch,

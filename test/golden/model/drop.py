@@ -72,7 +72,8 @@ class Guarded(Drop):
     def guard(self, on, T):
         top, peak = self.drive.to_cur.knots[-1]
         self.on = on
-        self.passivity = Passivity(self.drive.top, Table([(0, 0), (peak, top)]), self.step, T, self.watch.most)
+        self.passivity = Passivity(self.drive.top, Table([(0, 0), (peak, top)]), self.step, T,
+                                   self.watch.most)
 
     def behind(self, cnt, c, asked):
         return self.passivity.tick(self.on, self.drive_par[0], cnt, c, asked)

@@ -68,14 +68,16 @@ def passivity(rate):
     rng = Rng("passivity", rate, 0)
     for k in range(TICKS):
         if k in (0, AGAIN):
-            f_max = any_par(rng, rate)[0]
+            drive = any_par(rng, rate)
+            f_max, person_f = drive[0], drive[11]
             knots = [(0, 0)]
             for _ in range(2):
                 x = knots[-1][0] + rng.draw(1 << 20, 1 << 25)
                 knots.append((x, knots[-1][1] + rng.draw(1 << 24, 1 << 27)))
             step, speed = scale(rng), rng.draw(13421773, 1342177280)
             to_cur = Table(knots)
-            p = Passivity(knots[-1][0], to_cur.invert(), step, period(rate, k), speed)
+            p = Passivity(min(knots[-1][0], person_f), to_cur.invert(), step, period(rate, k),
+                          speed)
             cnt, touching, on = rng.draw(MIN32, MAX32), 0, 2
         if rng.draw(0, 9) == 0:
             on = rng.draw(0, 2)

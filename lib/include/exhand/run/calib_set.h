@@ -31,16 +31,16 @@ struct exh_calib_tables {
 
 /* First thing of a set-up: every image must be sound, of one of these fingers (bits), of no other
  * one's finger, of this device and good today. Of three or more, each must have a force over
- * current within half of their median (exh_calib_near()), unless `far_calibration`. Then the zero of each finger's monitor becomes the
- * parameter, which a log's header has, as DRIVE parameters of instance `finger`. 0, or -EXH_E_…
- * with *k saying of which image and what, and nothing taken. */
+ * current within half of their median (exh_calib_near()), unless `far_calibration`. Then the zero
+ * of each finger's monitor becomes the parameter, which a log's header has, as DRIVE parameters of
+ * instance `finger`. 0, or -EXH_E_… with *k saying of which image and what, and nothing taken. */
 int exh_calib_set_load(struct exh_scene_calib *k, struct exh_params *params,
     const struct exh_calib_set_par *par, uint32_t fingers);
 
 /* Then tables of a finger: those of its image, made with the scales in use (else -EXH_E_STALE, and
- * *k says so) and within half of kf (else -EXH_E_RANGE, unless `far_calibration`); or, of a finger without one, straight lines by kf, N/A, to the peak current, vouched
- * for only where `uncalibrated` waives it. k may be NULL: there are no images. 0 or -EXH_E_….
- * Divides. */
+ * *k says so) and within half of kf (else -EXH_E_RANGE, unless `far_calibration`); or, of a finger
+ * without one, straight lines by kf, N/A, to the peak current, vouched for only where
+ * `uncalibrated` waives it. k may be NULL: there are no images. 0 or -EXH_E_…. Divides. */
 struct exh_calib_finger {
     unsigned f;
     const struct exh_drive_par *drive;
