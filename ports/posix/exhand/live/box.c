@@ -6,10 +6,12 @@
 #include "slave/slave.h"
 #include "box/world_line.h"
 #include "box/table2.h"
+#include "base/param.h"
 
 #include "exhand/error.h"
 
 #include <limits.h>
+#include <math.h>
 #include <string.h>
 
 /* --- who is told what happens --- */
@@ -95,16 +97,29 @@ static unsigned lowest(unsigned mask)
     return i;
 }
 
+/* The paper's gains are a falling mass's. Who asks for none must not be refused: where a hand's
+ * rule of gains is narrower at this rate, its own, so at any rule_on. */
+static void hand_gains(struct bilateral_run_cfg *c, double rate_Hz)
+{
+    const struct table2_row *g = table2_gains(rate_Hz);
+    struct exh_gains_par rule = bilateral_rule;
+    c->k_Npm = g->k_Npm;
+    c->b_Nspm = g->b_Nspm;
+    if (exh_gains_scale(&rule, (struct exh_period){1, c->rate_Hz}) < 0) { return; }
+    c->b_Nspm =
+        fmin(c->b_Nspm, cli_signal_value(&exh_material_rows[1], rule.b_Nspm_q20[rule.knots - 1]));
+    c->k_Npm = fmin(c->k_Npm, cli_signal_value(&exh_material_rows[0],
+                                  exh_gains_k_max(&rule, (int32_t)(c->b_Nspm * 0x1p20))));
+}
+
 static struct bilateral_run_cfg hand_cfg(struct live_options *o)
 {
-    const struct table2_row *g = table2_gains(o->rate_Hz);
     struct bilateral_run_cfg c;
     o->hand.seed = o->seed;
     o->hand.approaches = 0; /* for ever */
     c = bilateral_at_speed(&o->hand, o->hand.speed[0].mps);
     c.rate_Hz = (uint32_t)(o->rate_Hz + 0.5);
-    c.k_Npm = g->k_Npm;
-    c.b_Nspm = g->b_Nspm;
+    hand_gains(&c, o->rate_Hz);
     return c;
 }
 
