@@ -109,7 +109,14 @@ static void write_all(struct rig *r, const struct exh_signal_table *t, const int
     CHECK_EQ_I64(rig_input(r, RIG_HEAD(EXH_HEAD_STAGED)), 0);
 }
 
-/* In one request what may change goes to its lower end; discarded; again, and applied. */
+/* The upper end, but of a material: all at their upper ends are outside the rule of gains, no wall
+ * never is. */
+static int32_t far_end(const struct exh_signal *row)
+{
+    return row->when == EXH_WHEN_MATERIAL ? row->min : row->max;
+}
+
+/* In one request what may change goes to an end; discarded; again, and applied. */
 static void apply_all(struct rig *r, const struct exh_signal_table *t, const int32_t *was)
 {
     static int32_t now[VALUES];
@@ -119,7 +126,7 @@ static void apply_all(struct rig *r, const struct exh_signal_table *t, const int
         for (uint32_t i = 0; i < n; i++) {
             const struct exh_signal *row = exh_signal_at(t, i, NULL);
             if (exh_signal_is_fixed(row)) { continue; }
-            CHECK_EQ_I64(rig_write(r, RIG_RAW + 2 * i, (uint32_t)row->max), 0);
+            CHECK_EQ_I64(rig_write(r, RIG_RAW + 2 * i, (uint32_t)far_end(row)), 0);
         }
         CHECK_EQ_I64(rig_coil(r, apply ? EXH_COIL_APPLY : EXH_COIL_DISCARD), 0);
         CHECK(rig_wait(r, RIG_HEAD(EXH_HEAD_DONE), done + 1 + apply) == 0, "not done");
@@ -128,7 +135,7 @@ static void apply_all(struct rig *r, const struct exh_signal_table *t, const int
         for (uint32_t i = 0; i < n; i++) {
             const struct exh_signal *row = exh_signal_at(t, i, NULL);
             const int changed = apply && !exh_signal_is_fixed(row);
-            CHECK(now[i] == (changed ? row->max : was[i]), "%s", row->name);
+            CHECK(now[i] == (changed ? far_end(row) : was[i]), "%s", row->name);
         }
     }
 }
