@@ -195,7 +195,7 @@ TEST(experiments_take_and_leave_them)
     CHECK(b.status == 3 && strstr(b.err, "/nowhere/at/all"), "%d: %s", b.status, b.err);
     said(&a, dir, cli_bilateral,
         WORDS("bilateral", "--rate", "500", "--speed", "fast", "--approaches", "1", "--k", "3000",
-            "--save-params", file));
+            "--b", "12", "--save-params", file));
     CHECK(a.status < 2 && a.err[0] == '\0', "%d: %s", a.status, a.err);
     said(&b, dir, cli_bilateral,
         WORDS("bilateral", "--rate", "500", "--speed", "fast", "--approaches", "1", "--load-params",

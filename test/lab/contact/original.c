@@ -148,6 +148,7 @@ static struct bilateral_run_cfg original_of(
     c.setting = setting;
     c.settings = box->settings + 3;
     c.rate_Hz = ORIGINAL_RATE_HZ;
+    c.trial = 1; /* as it was, which no rule of gains has at 90 Hz */
     c.k_Npm = g->k_Npm;
     c.b_Nspm = g->b_Nspm;
     c.board.stock = 1;
