@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "bringup.h"
 
-void bringup_start(struct bringup *s)
-{
-    *s = (struct bringup){0};
-}
+void bringup_start(struct bringup *s) { *s = (struct bringup){0}; }
 
 /* --- doubt, while current flows --- */
 

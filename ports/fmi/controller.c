@@ -103,9 +103,9 @@ void unit_var(uint32_t i, struct unit_var *v)
     if (row == NULL) { row = exh_signal_at(scene->params->table, i - OWN, &instance); }
     *v = (struct unit_var){
         .type = row->frac ? UNIT_FLOAT64 : UNIT_INT32, .unit = row->unit, .help = row->help};
-    v->role = row->when == EXH_WHEN_OUTPUT  ? UNIT_OUTPUT
-              : exh_signal_is_fixed(row) ? UNIT_FIXED
-                                            : UNIT_TUNABLE;
+    v->role = row->when == EXH_WHEN_OUTPUT ? UNIT_OUTPUT
+              : exh_signal_is_fixed(row)   ? UNIT_FIXED
+                                           : UNIT_TUNABLE;
     (void)snprintf(
         v->name, sizeof v->name, instance ? "%s_%u" : "%s", row->name, (unsigned)instance);
     v->min = scaled(row, row->min);

@@ -24,8 +24,7 @@ static int set_parameters(void)
     int err;
     exh_scene_drop.defaults();
     p = exh_scene_drop.params;
-    err =
-        exh_params_stage(p, exh_calib_set_rows[2].id, 0, 1); /* uncalibrated */
+    err = exh_params_stage(p, exh_calib_set_rows[2].id, 0, 1); /* uncalibrated */
     if (err == 0) {
         err = exh_params_stage(p, exh_contact_rows[0].id, 0, EXH_Q(20000, 1, EXH_Q_K));
     }

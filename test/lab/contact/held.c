@@ -287,10 +287,10 @@ static void take(const struct held_law *l, const struct bilateral_run_cfg *c)
     cfg.velocity_par.p = l->estimator == HELD_WINDOW ? l->of : 1;
     cfg.contact_par = (struct exh_contact_par){fix(l->k_Npm, EXH_Q_K), fix(l->b_Nspm, EXH_Q_B),
         EXH_Q(107, 1000, EXH_Q_FORCE), EXH_Q(2, 10000, EXH_Q_POS), fix(l->hyst_m, EXH_Q_POS)};
-    cfg.drive_par = (struct exh_drive_par){fix(40, EXH_Q_FORCE), 200000, 200000,
-        EXH_Q(66, 10, EXH_Q_CUR), EXH_Q(33, 10, EXH_Q_CUR), 2700, 32768, 12184,
-        fix(d->dac_perA, EXH_Q_DAC), 0, fix(d->mon_apc, EXH_Q_MON), fix(40, EXH_Q_FORCE),
-        EXH_Q(66, 10, EXH_Q_CUR)};
+    cfg.drive_par =
+        (struct exh_drive_par){fix(40, EXH_Q_FORCE), 200000, 200000, EXH_Q(66, 10, EXH_Q_CUR),
+            EXH_Q(33, 10, EXH_Q_CUR), 2700, 32768, 12184, fix(d->dac_perA, EXH_Q_DAC), 0,
+            fix(d->mon_apc, EXH_Q_MON), fix(40, EXH_Q_FORCE), EXH_Q(66, 10, EXH_Q_CUR)};
     cfg.track_par = (struct exh_tracking_par){fix(0.25, EXH_Q_CUR), 20};
     cfg.watch_par = (struct exh_motion_par){fix(3, EXH_Q_VEL), 20, 0, fix(0.25, EXH_Q_CUR)};
     cfg.safety_par = (struct exh_safety_par){1, fix(1, EXH_Q_FORCE), 50, 500, 15};
