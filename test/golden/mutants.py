@@ -38,7 +38,7 @@ VELOCITY, QUAD, DRIVE, SAFETY = (L + "sense/velocity.c", L + "sense/quad.c", L +
                                  L + "safe/safety.c")
 TRACK, WATCH, GATE, TABLE = (L + "act/tracking.c", L + "safe/motion.c", L + "act/gate.c",
                              L + "act/table.c")
-PASSIVITY, GAINS = L + "law/passivity.c", L + "law/gains.c"
+PASSIVITY, GAINS, CHATTER = (L + "law/passivity.c", L + "law/gains.c", L + "safe/chatter.c")
 
 # module, source, text, what stands there instead. A changed header is compiled into the module's
 # own run, which is where its inline functions are.
@@ -181,6 +181,12 @@ MUTANTS = (
     ("watch", WATCH, "return !on ? 0 :", "return !on ? ticks :"),
     ("watch", WATCH, "    s->cnt = cnt;", ""),
     ("watch", WATCH, "exh_ticks_in(ms, T) + 1;", "exh_ticks_in(ms, T) + 2;"),
+    ("chatter", CHATTER, "s->net_Acnt_q20 >= cfg->energy_Acnt_q20", "s->net_Acnt_q20 > 0"),
+    ("chatter", CHATTER, "back > SWING_A_Q26", "back > SWING_A_Q26 / 2"),
+    ("chatter", CHATTER, "return turns && s->rises;", "return turns;"),
+    ("chatter", CHATTER, "was < -leak ? was + leak : 0", "was < -leak ? was + leak : was"),
+    ("chatter", CHATTER, "s->ticks < cfg->ticks", "s->ticks <= cfg->ticks"),
+    ("chatter", CHATTER, "turns || back < 0", "turns"),
     ("guard", L + "safe/integrity.c", "if (g->crc != g->want) {", "if (g->crc > g->want) {"),
     ("guard", L + "safe/integrity.c", "    g->at = g->crc = 0;\n}", "    g->at = 0;\n}"),
     ("guard", L + "num/params.c", "!p->pending && !p->moving;", "!p->moving;"),
