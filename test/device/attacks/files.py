@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: MIT
+"""Forged images at the start, and forged pieces of a log."""
+
+import csv
+import glob
+import os
+import re
+import signal
+import socket
+import struct
+import subprocess
+import time
+import zlib
+
+import rig
+import wire
+
+DATA_B = 1000
+N_Q20, A_Q26 = 1 << 20, 1 << 26
+
+
+def run(words):
+    done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+    return done.returncode, done.stdout.decode(errors="replace")
+
+
+def sealed(body):
+    return body + struct.pack("<I", zlib.crc32(body))
+
+
+def write(path, data):
+    with open(path, "wb") as f:
+        f.write(data)
+    return path
+
+
+def read(path):
+    with open(path, "rb") as f:
+        return f.read()
+
+
+def image_forged(report, options, folder):
+    """Every 40 N of an image becomes 100 N, the person's ceiling among them."""
+    path = os.path.join(folder, "p.bin")
+    words = [options.exhand, "drop", "--rate", "500", "--falls", "1", "--runs", "1"]
+    status, said = run(words + ["--save-params", path])
+    if status != 0:
+        raise RuntimeError("no image: " + said)
+    whole = read(path)
+    at = [n for n in range(12, len(whole) - 4) if whole[n:n + 4] == struct.pack("<i", 40 * N_Q20)]
+    body = whole[:-4].replace(struct.pack("<i", 40 * N_Q20), struct.pack("<i", 100 * N_Q20))
+    kinds = (("image-crc", "a parameter image, its sum not made right", body + whole[-4:], False),
+             ("image", "40 N of an image become 100 N, its sum right", sealed(body), True))
+    for name, what, data, may_start in kinds:
+        log = os.path.join(folder, name + ".exh")
+        status, said = run([options.exhand, "run", "--seconds", "3", "--rate", "500", "--log", log,
+                            "--load-params", write(path, data), "--set", "k=20000", "--set",
+                            "person_i=%g" % rig.PERSON_A] +
+                           ["--set", "person_f=%g" % rig.PERSON_N])
+        wrong = []
+        if status == 0:
+            _, text = run([options.exhand, "csv", log, "--all"])
+            force = rig.above(list(csv.DictReader(text.splitlines())))
+            wrong += [force] if force else []
+            wrong += [] if may_start else ["it was taken"]
+        if len(at) < 2:
+            wrong.append("no ceiling in the image: not judged")
+        report.row(name, what, len(at), "status %d" % status, wrong)
+
+
+def calibration(folder, exhand):
+    status, said = run([exhand, "calibrate", "--rate", "100", "--mass", "0.3,0.6", "--out", folder])
+    if status != 0:
+        raise RuntimeError("no calibration: " + said)
+    return read(os.path.join(folder, "calibration.bin"))
+
+
+def heavier(whole, times):
+    """The same forces from so many times the current. A point is force, current, and two more."""
+    body = bytearray(whole[:-4])
+    for at in range(len(body) - 32, len(body), 16):
+        current, = struct.unpack_from("<i", body, at + 4)
+        struct.pack_into("<i", body, at + 4, int(min(current * times, 31.0 * A_Q26)))
+    return sealed(bytes(body))
+
+
+def calibration_forged(report, options, folder):
+    whole = calibration(folder, options.exhand)
+    damaged = bytearray(whole)
+    damaged[55] ^= 4
+    for name, what, data, may_start in (
+            ("calib-crc", "a damaged calibration", bytes(damaged), False),
+            ("calib-tenth", "1 N is ten times the current", heavier(whole, 10), False),
+            ("calib-1.9", "1 N is 1.9 times the current", heavier(whole, 1.9), True)):
+        out = os.path.join(folder, name)
+        status, _ = run([options.exhand, "drop", "--rate", "500", "--falls", "1", "--runs", "1",
+                         "--set", "person_f=%g" % rig.PERSON_N,
+                         "--set", "person_i=%g" % rig.PERSON_A, "--out", out,
+                         "--calibration", write(os.path.join(folder, name + ".bin"), data)])
+        wrong, logs = [], glob.glob(os.path.join(out, "*.exh"))
+        for log in logs if status == 0 else []:
+            _, text = run([options.exhand, "csv", log, "--all"])
+            force = rig.above(list(csv.DictReader(text.splitlines())))
+            wrong += [force] if force else []
+        if status == 0 and not may_start:
+            wrong.append("it was taken")
+        if may_start and (status != 0 or not logs):
+            wrong.append("status %d, %d logs: not judged" % (status, len(logs)))
+        report.row(name, what, 1, "status %d" % status, wrong)
+
+
+def attack(report, options, folder):
+    image_forged(report, options, folder)
+    calibration_forged(report, options, folder)
+
+
+# --- pieces of a log -------------------------------------------------------------
+
+def piece(session, number, place, last, data, key=None):
+    body = (b"EXL3" if key else b"EXL2") + struct.pack(
+        "<IIII", session, number, place & 0xFFFFFFFF, last) + data
+    body = sealed(body)
+    return body + (struct.pack("<Q", wire.mac(key, body)) if key else b"")
+
+
+def lies(session, number, place, key):
+    """What once ended or falsified a recording."""
+    junk = b"Z" * 400
+    return [piece(session, 0, 0xFFFFFFFF, 0, junk, key),
+            piece(session, number, 0x90000000, 0, junk, key),
+            piece(session, number, place, 1, junk, key),
+            piece(session, number + 5000, 0, 0, junk, key),
+            piece(session, number + 1, place + (1 << 31), 0, junk, key),
+            piece(session + 1, number, place, 0, junk, key),
+            piece(session, number, place, 0, junk, key)[:-3]]
+
+
+def port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+        sock.bind(("127.0.0.1", 0))
+        return sock.getsockname()[1]
+
+
+def recorded(options, folder, name, log, key):
+    """A log sent to `exhand listen`, between lies: (lies told, status, what it said, the file)."""
+    at, out = ("127.0.0.1", port()), os.path.join(folder, name + ".out")
+    words = [options.exhand, "listen", "--at", "%s:%d" % at, "--out", out, "--silence", "3",
+             "--wait", "20"]
+    if key:
+        path = os.path.join(folder, "listen.key")
+        with open(os.open(path, os.O_CREAT | os.O_WRONLY | os.O_TRUNC, 0o600), "wb") as f:
+            f.write(key.hex().encode() + b"\n")
+        words += ["--key", path]
+    program = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    box, other = (socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(2))
+    time.sleep(0.5)
+    told, n = 0, -(-len(log) // DATA_B)
+    # With a key the liar has the box's own address and not its key; without, another port.
+    liar, false = (box, os.urandom(16)) if key else (other, None)
+    for k in range(n):
+        for lie in lies(7, k, k * DATA_B, false) if k % 5 == 0 else []:
+            liar.sendto(lie, at)
+            told += 1
+        box.sendto(piece(7, k, k * DATA_B, int(k == n - 1), log[k * DATA_B:(k + 1) * DATA_B], key),
+                   at)
+        time.sleep(0.002)
+    try:
+        said = program.communicate(timeout=30)[0].decode(errors="replace")
+    except subprocess.TimeoutExpired:
+        program.send_signal(signal.SIGKILL)
+        said = program.communicate()[0].decode(errors="replace")
+    return told, program.returncode, said, read(out) if os.path.exists(out) else b""
+
+
+def on_listen(report, options, folder):
+    path = os.path.join(folder, "sent.exh")
+    status, said = run([options.exhand, "run", "--seconds", "2", "--rate", "500", "--log", path])
+    if status != 0:
+        raise RuntimeError("no log: " + said)
+    log = read(path)
+    for name, what, key, pattern in (
+            ("listen", "pieces of another, from another port", None,
+             r"(\d+) datagrams from \S+ were not"),
+            ("listen-key", "the box's address, another key", os.urandom(16),
+             r"(\d+) pieces have another key")):
+        told, status, said, got = recorded(options, folder, name, log, key)
+        found = re.search(pattern, said)
+        counted = int(found[1]) if found else 0
+        wrong = [] if got == log else ["%d bytes of %d, or others" % (len(got), len(log))]
+        wrong += [] if status == 0 else ["status %d: %s" % (status, said)]
+        wrong += [] if counted >= 0.7 * told else ["%d of %d counted" % (counted, told)]
+        report.row(name, what, told, "%d counted" % counted, wrong)

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: MIT
+"""The box under attack, the true world that it hears, and what its log says afterwards."""
+
+import csv
+import io
+import os
+import re
+import signal
+import socket
+import subprocess
+import threading
+import time
+
+import wire
+
+NORMAL = (-0.3382, 0.0345, 0.94044)  # of a wall across the index finger's way
+DISTANCE_M = 0.1253                  # of it from the palm: met at some 25 mm of string
+RATE_HZ = 500
+PERSON_N, PERSON_A = 2.0, 0.5
+
+
+class World(threading.Thread):
+    """The true peer: answers each STATE, says HELLO twice a second, and notes what it sent."""
+
+    def __init__(self, key=None):
+        super().__init__(daemon=True)
+        self.sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.sock.bind(("127.0.0.1", 0))
+        self.sock.settimeout(0.05)
+        self.at = "127.0.0.1:%d" % self.sock.getsockname()[1]
+        self.key, self.keyed = key, key and wire.Keyed(key)
+        self.box, self.version, self.stamp, self.answers, self.state = None, 0, 0, 0, 0
+        self.tick = self.touching = self.number = 0
+        self.mute, self.ended = False, False
+        self.sent, self.before, self.session = [], [], 0
+        self.lock = threading.RLock()
+        self.anew()
+
+    def anew(self):
+        with self.lock:
+            self.before += self.sent
+            self.session = int.from_bytes(os.urandom(4), "little") | 1
+            self.number, self.sent = 0, []
+            self.keyed = self.key and wire.Keyed(self.key)
+
+    def make(self, kind, payload, number=None):
+        """A packet as the true peer would make it."""
+        stamp = time.monotonic_ns() // 1000
+        with self.lock:
+            if number is None:
+                self.number += 1
+                number = self.number
+            return wire.packet(kind, self.session, number, stamp, payload)
+
+    def put(self, data):
+        """As it is, from the peer's address."""
+        if self.box:
+            try:
+                self.sock.sendto(data, self.box)
+            except OSError:
+                pass  # the box is gone, or its queue is full
+
+    def say(self, kind, payload):
+        with self.lock:
+            data = self.make(kind, payload)
+            data = self.keyed.seal(data) if self.keyed else data
+            self.sent.append(data)
+            self.put(data)
+
+    def plane(self, normal=NORMAL, distance_m=DISTANCE_M):
+        return wire.planes(self.answers, self.stamp, normal, distance_m)
+
+    def run(self):
+        due = 0.0
+        while not self.ended:
+            try:
+                data, self.box = self.sock.recvfrom(2048)
+            except TimeoutError:
+                data = b""
+            if self.keyed:
+                data = self.keyed.opened(data)
+            got = wire.parts(data)
+            if self.mute or self.box is None:
+                continue
+            if got and got[0] == wire.HELLO:
+                self.version = int.from_bytes(got[4][1:5], "little")
+            if self.version and time.monotonic() >= due:
+                due = time.monotonic() + 0.5
+                self.say(wire.HELLO, wire.hello(self.version))
+            if got and got[0] == wire.STATE:
+                _, _, self.answers, self.stamp, body = got
+                self.tick, self.state = int.from_bytes(body[:4], "little"), body[5]
+                self.touching = body[7]
+                self.say(wire.PLANES, self.plane())
+
+
+class Box:
+    """`exhand run`, its log and what it says."""
+
+    def __init__(self, exhand, folder, name, words):
+        self.exhand = exhand
+        self.log = os.path.join(folder, name + ".exh")
+        self.said = os.path.join(folder, name + ".said")
+        with open(self.said, "wb") as said:
+            self.process = subprocess.Popen(
+                [exhand, "run", "--pace", "--rate", str(RATE_HZ), "--slack", "1", "--log",
+                 self.log, "--set", "person_f=%g" % PERSON_N, "--set",
+                 "person_i=%g" % PERSON_A] + words, stdout=said, stderr=said)
+
+    def text(self):
+        with open(self.said, encoding="utf-8", errors="replace") as said:
+            return said.read()
+
+    def port(self):
+        for _ in range(600):
+            found = re.search(r"modbus: tcp:127\.0\.0\.1:(\d+)", self.text())
+            if found:
+                return int(found[1])
+            if self.process.poll() is not None:
+                break
+            time.sleep(0.05)
+        raise RuntimeError("no Modbus: " + self.text())
+
+    def end(self):
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGINT)
+        try:
+            return self.process.wait(60)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            return self.process.wait()
+
+    def rows(self):
+        words = [self.exhand, "csv", self.log, "--all"]
+        if "--scene" in self.process.args:
+            words += ["--finger", "index"]
+        out = subprocess.run(words, stdout=subprocess.PIPE, check=True).stdout.decode()
+        return list(csv.DictReader(io.StringIO(out)))
+
+    def changes(self):
+        """[(tick, line)] of the log's changes of parameters. It must replay, too."""
+        done = subprocess.run([self.exhand, "replay", self.log, "--timeline"],
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+        text = done.stdout.decode(errors="replace")
+        if done.returncode != 0:
+            raise RuntimeError("the log does not replay: " + text[-300:])
+        return [(int(line.split()[0]), line.split(None, 2)[2]) for line in text.splitlines()
+                if re.match(r"\s*\d+\s+[\d.]+\s+parameter ", line)]
+
+
+def above(rows):
+    """The first row above the person's ceiling, in words; else None."""
+    for row in rows:
+        if float(row["f_des_n"]) > PERSON_N + 2e-6 or float(row["i_des_a"]) > PERSON_A + 2e-6:
+            return "%s N and %s A at %s s" % (row["f_des_n"], row["i_des_a"], row["t_s"])
+    return None
