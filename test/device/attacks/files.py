@@ -24,6 +24,10 @@ def run(words):
     return done.returncode, done.stdout.decode(errors="replace")
 
 
+def most(text, column):
+    return max(float(row[column]) for row in csv.DictReader(text.splitlines()))
+
+
 def sealed(body):
     return body + struct.pack("<I", zlib.crc32(body))
 
@@ -63,6 +67,7 @@ def image_forged(report, options, folder):
             force = rig.above(list(csv.DictReader(text.splitlines())))
             wrong += [force] if force else []
             wrong += [] if may_start else ["it was taken"]
+            wrong += [] if most(text, "f_des_n") > 1 else ["no force"]
         if len(at) < 2:
             wrong.append("no ceiling in the image: not judged")
         report.row(name, what, len(at), "status %d" % status, wrong)
@@ -98,13 +103,14 @@ def calibration_forged(report, options, folder):
                          "--set", "person_i=%g" % rig.PERSON_A, "--out", out,
                          "--calibration", write(os.path.join(folder, name + ".bin"), data)])
         wrong, logs = [], glob.glob(os.path.join(out, "*.exh"))
-        for log in logs if status == 0 else []:
+        for log in logs:
             _, text = run([options.exhand, "csv", log, "--all"])
             force = rig.above(list(csv.DictReader(text.splitlines())))
             wrong += [force] if force else []
+            wrong += [] if most(text, "i_des_a") > 0.9 * rig.PERSON_A else ["no current"]
         if status == 0 and not may_start:
             wrong.append("it was taken")
-        if may_start and (status != 0 or not logs):
+        if may_start and (status not in (0, 1) or not logs):  # 1: it fell as nothing measured
             wrong.append("status %d, %d logs: not judged" % (status, len(logs)))
         report.row(name, what, 1, "status %d" % status, wrong)
 
@@ -189,4 +195,4 @@ def on_listen(report, options, folder):
         wrong = [] if got == log else ["%d bytes of %d, or others" % (len(got), len(log))]
         wrong += [] if status == 0 else ["status %d: %s" % (status, said)]
         wrong += [] if counted >= 0.7 * told else ["%d of %d counted" % (counted, told)]
-        report.row(name, what, told, "%d counted" % counted, wrong)
+        report.row(name, what, told, "%d refused" % counted, wrong)
