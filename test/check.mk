@@ -41,6 +41,7 @@ check:
 	@$(timed) world boot-built contract-built nic-built hil-built
 	@$(timed) $(check_runs)
 	@$(timed) kill-short
+	@$(timed) attacks-short
 	@$(timed) stress-short
 	@$(timed) size
 	@$(timed) fmt-check

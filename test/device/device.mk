@@ -37,6 +37,20 @@ modbus:
 	    $(B)/test/sim/modbus_fuzz_test
 	@B=$(B) test/device/modbus/modbus.sh
 
+attacks_run = PYTHONDONTWRITEBYTECODE=1 test/device/attacks/attacks.py $(1) $(exhand)
+
+## Attack the box's link, ports, files and log, and judge it by its log (a minute; ARGS="--long
+## --only key").
+.PHONY: attacks attacks-short
+attacks: all
+	@.ci/deps "the attacks" "test -f /usr/include/modbus/modbus.h && command -v python3" \
+	    libmodbus-dev python3 || exit 3
+	@$(call attacks_run,$(ARGS))
+
+attacks-short:
+	@$(call attacks_run) > $(B)/attacks.txt || { cat $(B)/attacks.txt; exit 1; }
+	@tail -n 1 $(B)/attacks.txt
+
 # The host program for an emulated Linux, with either libgpiod in it.
 gpio_src := $(sort $(filter-out $(by_modbus),$(cli_src)) ports/posix/slave/none.c \
             ports/posix/exhand/live/watch_none.c)

@@ -175,7 +175,8 @@ def recorded(options, folder, name, log, key):
     except subprocess.TimeoutExpired:
         program.send_signal(signal.SIGKILL)
         said = program.communicate()[0].decode(errors="replace")
-    return told, program.returncode, said, read(out) if os.path.exists(out) else b""
+    sane = os.path.exists(out) and os.path.getsize(out) <= 2 * len(log)
+    return told, program.returncode, said, read(out) if sane else b""
 
 
 def on_listen(report, options, folder):
@@ -192,7 +193,7 @@ def on_listen(report, options, folder):
         told, status, said, got = recorded(options, folder, name, log, key)
         found = re.search(pattern, said)
         counted = int(found[1]) if found else 0
-        wrong = [] if got == log else ["%d bytes of %d, or others" % (len(got), len(log))]
+        wrong = [] if got == log else ["%d bytes of %d, or not the log's" % (len(got), len(log))]
         wrong += [] if status == 0 else ["status %d: %s" % (status, said)]
         wrong += [] if counted >= 0.7 * told else ["%d of %d counted" % (counted, told)]
         report.row(name, what, told, "%d refused" % counted, wrong)
