@@ -55,28 +55,22 @@ def until(what, seconds, said):
         time.sleep(0.02)
 
 
-def holes(rows, first, last):
-    """Ticks from `first` to the first packet taken, and the longest without one behind that."""
-    ticks = [t for t in range(first + 1, last)
-             if rows[t]["accepted"] != rows[t - 1]["accepted"]]
-    if not ticks:
-        return last - first, last - first
-    return ticks[0] - first, max(b - a for a, b in zip(ticks, ticks[1:] + [last]))
+def hole(ticks, first, last):
+    """The longest time in which no question of the true peer was answered."""
+    inside = [first] + [t for t in ticks if first < t < last] + [last]
+    return max(b - a for a, b in zip(inside, inside[1:])) / rig.RATE_HZ
 
 
-def heard(rows, span, must):
+def heard(ticks, span, must):
     """What is wrong with how the true peer was heard."""
     start, end, behind = span
-    wrong = []
     settled = end + int(HEARD_S[must] * rig.RATE_HZ)
-    worst = max(holes(rows, settled, behind)) / rig.RATE_HZ
+    wrong, worst = [], hole(ticks, settled, behind)
     if worst > GAP_S:
         wrong.append("%.1f s behind the end the peer is not heard for %.1f s" % (HEARD_S[must],
                      worst))
-    if must == "stays":
-        out = max(holes(rows, start, end)) / rig.RATE_HZ
-        if out > GAP_S:
-            wrong.append("the peer was not heard for %.1f s" % out)
+    if must == "stays" and hole(ticks, start, end) > GAP_S:
+        wrong.append("the peer was not heard for %.1f s" % hole(ticks, start, end))
     return wrong
 
 
@@ -94,18 +88,18 @@ def counts(rows, span, text, keyed):
     return many
 
 
-def judge(report, box, table, done, keyed):
+def judge(report, box, table, done, world):
     """Each row of the table by the log of the box."""
     rows, text, changes = box.rows(), box.text(), box.changes()
     most = max(float(r["f_des_n"]) for r in rows)
-    for (name, what, _, want, must), (tried, *span) in zip(table, done):
-        start, _, behind = span[0], span[1], min(span[2], len(rows))
-        span = (start, span[1], behind)
-        many = counts(rows, span, text, keyed)
+    for (name, what, _, want, must), (tried, start, end, last) in zip(table, done):
+        behind = min(last, len(rows))
+        span = (start, end, behind)
+        many = counts(rows, span, text, world.key)
         force = rig.above(rows[start:behind])
         wrong = [force] if force else []
         wrong += [line for tick, line in changes if start <= tick <= behind]
-        wrong += heard(rows, span, must)
+        wrong += heard(world.heard, span, must)
         wrong += ["%s: %d of %d" % (c, many.get(c, 0), tried) for c, share in want.items()
                   if many.get(c, 0) < share * tried]
         if many["set"]:
@@ -147,7 +141,7 @@ def on_link(report, options, folder, table, key):
         world.ended = True
     if status != 130:
         raise RuntimeError("the box ended with %d: %s" % (status, box.text()))
-    judge(report, box, table, done, key)
+    judge(report, box, table, done, world)
 
 
 def main():

@@ -20,7 +20,11 @@ PERSON_N, PERSON_A = 2.0, 0.5
 
 
 class World(threading.Thread):
-    """The true peer: answers each STATE, says HELLO twice a second, and notes what it sent."""
+    """The true peer: answers each STATE, says HELLO twice a second, and notes what it sent.
+
+    Ten times a second it asks for no trace. The answer names the question by its number, so that
+    nothing that others send can pass for the peer that is heard.
+    """
 
     def __init__(self, key=None):
         super().__init__(daemon=True)
@@ -33,6 +37,7 @@ class World(threading.Thread):
         self.tick = self.touching = self.number = 0
         self.mute, self.ended = False, False
         self.sent, self.before, self.session = [], [], 0
+        self.asked, self.heard = 0, []  # number of the newest question; ticks with an answer
         self.lock = threading.RLock()
         self.anew()
 
@@ -40,7 +45,7 @@ class World(threading.Thread):
         with self.lock:
             self.before += self.sent
             self.session = int.from_bytes(os.urandom(4), "little") | 1
-            self.number, self.sent = 0, []
+            self.number, self.sent, self.asked = 0, [], 0
             self.keyed = self.key and wire.Keyed(self.key)
 
     def make(self, kind, payload, number=None):
@@ -66,12 +71,13 @@ class World(threading.Thread):
             data = self.keyed.seal(data) if self.keyed else data
             self.sent.append(data)
             self.put(data)
+            return self.number
 
     def plane(self, normal=NORMAL, distance_m=DISTANCE_M):
         return wire.planes(self.answers, self.stamp, normal, distance_m)
 
     def run(self):
-        due = 0.0
+        due = ask_due = 0.0
         while not self.ended:
             try:
                 data, self.box = self.sock.recvfrom(2048)
@@ -87,6 +93,11 @@ class World(threading.Thread):
             if self.version and time.monotonic() >= due:
                 due = time.monotonic() + 0.5
                 self.say(wire.HELLO, wire.hello(self.version))
+            if self.version and time.monotonic() >= ask_due:
+                ask_due = time.monotonic() + 0.1
+                self.asked = self.say(wire.TRACE_ASK, bytes(12))
+            if got and got[0] == wire.TRACE and got[4][:4] == self.asked.to_bytes(4, "little"):
+                self.heard.append(self.tick)
             if got and got[0] == wire.STATE:
                 _, _, self.answers, self.stamp, body = got
                 self.tick, self.state = int.from_bytes(body[:4], "little"), body[5]

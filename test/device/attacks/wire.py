@@ -5,7 +5,7 @@ import os
 import struct
 import zlib
 
-HELLO, STATE, PLANES, PARAM = 1, 2, 3, 4
+HELLO, STATE, PLANES, PARAM, TRACE_ASK, TRACE = 1, 2, 3, 4, 6, 7
 WORD = (1 << 64) - 1
 
 
