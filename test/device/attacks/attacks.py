@@ -110,16 +110,17 @@ def judge(report, box, table, done, world):
                "at most %.3f N" % most, wrong + [w for w in [rig.above(rows)] if w])
 
 
-def on_link(report, options, folder, table, key):
+def on_link(report, options, folder, table, key=None, approaches=0):
     """One box, one world, and a table of attacks one after the other."""
     world = rig.World(key)
-    words = ["--scene", "bilateral", "--udp", world.at]
+    words = ([] if approaches else ["--scene", "bilateral"]) + ["--udp", world.at]
+    name = "approaches" if approaches else "keyed" if key else "open"
     if key:
         path = os.path.join(folder, "key")
         with open(os.open(path, os.O_CREAT | os.O_WRONLY, 0o600), "w", encoding="ascii") as f:
             f.write(key.hex() + "\n")
         words += ["--key", path]
-    box = rig.Box(options.exhand, folder, "keyed" if key else "open", words)
+    box = rig.Box(options.exhand, folder, name, words, approaches)
     aim, done = link.Aim(world, options.flood), []
     try:
         world.start()
@@ -139,7 +140,7 @@ def on_link(report, options, folder, table, key):
     finally:
         status = box.end()
         world.ended = True
-    if status != 130:
+    if status not in ((0, 1) if approaches else (130,)):  # 1: an approach while nobody was heard
         raise RuntimeError("the box ended with %d: %s" % (status, box.text()))
     judge(report, box, table, done, world)
 
@@ -149,14 +150,16 @@ def main():
     parser.add_argument("exhand")
     parser.add_argument("--long", action="store_true", help="each attack ten times")
     parser.add_argument("--flood", type=int, default=100000, help="datagrams of a flood (100000)")
-    parser.add_argument("--only", default="link,key,modbus,files,listen",
-                        help="some of these parts (link,key,modbus,files,listen)")
+    parser.add_argument("--only", default="link,key,bilateral,modbus,files,listen",
+                        help="some of these parts (link,key,bilateral,modbus,files,listen)")
     parser.add_argument("--keep", help="leave logs in this folder")
     options = parser.parse_args()
     folder, report = options.keep or tempfile.mkdtemp(prefix="exhand-attacks-"), Report()
     os.makedirs(folder, exist_ok=True)
-    parts = {"link": lambda: on_link(report, options, folder, link.OPEN, None),
+    parts = {"link": lambda: on_link(report, options, folder, link.OPEN),
              "key": lambda: on_link(report, options, folder, link.KEYED, os.urandom(16)),
+             "bilateral": lambda: on_link(report, options, folder, link.APPROACHES,
+                                          approaches=(40 if options.long else 8)),
              "modbus": lambda: ports.attack(report, options, folder),
              "files": lambda: files.attack(report, options, folder),
              "listen": lambda: files.on_listen(report, options, folder)}

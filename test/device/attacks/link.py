@@ -137,9 +137,9 @@ def flood_as_peer(aim):
 
 
 # name, what it does, by what, what is counted: column -> least share of what was tried; what the
-# true peer is: it "stays" heard, or is heard "again" within a second after the end, or "anew". Where
-# an attack goes by the peer's address with the numbers that come next, a link without a key believes
-# it (docs/WIRE.md, "Whom to answer"), and the peer is heard with its next HELLO behind `quiet`.
+# true peer is: it "stays" heard, or is heard "again" within a second of the end, or "anew". Where
+# an attack goes by the peer's address with the numbers that come next, a link without a key
+# believes it (docs/WIRE.md, "Whom to answer"): the peer's next HELLO behind `quiet` is heard.
 OPEN = (
     ("param-port", "PARAM mat_k 1e6, mat_f_max 100, another port", param_other_port,
      {"others": 0.9}, "stays"),
@@ -165,4 +165,11 @@ KEYED = (
     ("key-earlier", "packets of the run before", replay_earlier, {"not proved": 0.9}, "stays"),
     ("key-misshapen", "cut off and too long", misshapen, {"damaged": 0.3}, "stays"),
     ("flood-port", "random bytes, another port", flood_other_port, {"others": 0.0}, "again"),
+)
+# Of `exhand bilateral`, which tells no senders.
+APPROACHES = (
+    ("bil-session", "PARAM of the true session, another port", param_of_session, {}, "stays"),
+    ("bil-storm", "HELLO of fresh sessions", hello_storm, {"late": 0.9}, "stays"),
+    ("bil-param", "PARAM, the peer's address, next numbers", param_as_peer,
+     {"accepted": 0.9, "set": 0.0}, "anew"),
 )

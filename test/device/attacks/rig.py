@@ -106,17 +106,22 @@ class World(threading.Thread):
 
 
 class Box:
-    """`exhand run`, its log and what it says."""
+    """`exhand run`, its log and what it says; or `exhand bilateral`, which ends by itself."""
 
-    def __init__(self, exhand, folder, name, words):
-        self.exhand = exhand
+    def __init__(self, exhand, folder, name, words, approaches=0):
+        self.exhand, self.ends = exhand, approaches > 0
         self.log = os.path.join(folder, name + ".exh")
+        command = ["run", "--pace", "--slack", "1", "--log", self.log]
+        if self.ends:
+            self.log = os.path.join(folder, name, "bilateral_natural.exh")
+            command = ["bilateral", "--speed", "natural", "--approaches", str(approaches), "--out",
+                       os.path.join(folder, name)]
         self.said = os.path.join(folder, name + ".said")
         with open(self.said, "wb") as said:
             self.process = subprocess.Popen(
-                [exhand, "run", "--pace", "--rate", str(RATE_HZ), "--slack", "1", "--log",
-                 self.log, "--set", "person_f=%g" % PERSON_N, "--set",
-                 "person_i=%g" % PERSON_A] + words, stdout=said, stderr=said)
+                [exhand] + command + ["--rate", str(RATE_HZ), "--set", "person_f=%g" % PERSON_N,
+                                      "--set", "person_i=%g" % PERSON_A] + words,
+                stdout=said, stderr=said)
 
     def text(self):
         with open(self.said, encoding="utf-8", errors="replace") as said:
@@ -133,7 +138,7 @@ class Box:
         raise RuntimeError("no Modbus: " + self.text())
 
     def end(self):
-        if self.process.poll() is None:
+        if self.process.poll() is None and not self.ends:
             self.process.send_signal(signal.SIGINT)
         try:
             return self.process.wait(60)
@@ -143,7 +148,7 @@ class Box:
 
     def rows(self):
         words = [self.exhand, "csv", self.log, "--all"]
-        if "--scene" in self.process.args:
+        if "--udp" in self.process.args:
             words += ["--finger", "index"]
         out = subprocess.run(words, stdout=subprocess.PIPE, check=True).stdout.decode()
         return list(csv.DictReader(io.StringIO(out)))
