@@ -39,7 +39,7 @@ modbus:
 
 attacks_run = PYTHONDONTWRITEBYTECODE=1 test/device/attacks/attacks.py $(1) $(exhand)
 
-## Attack the box's link, ports, files and log, and judge it by its log (a minute; ARGS="--long
+## Attack the box's link, ports, files and log, and judge it by its log (half a minute; ARGS="--long
 ## --only key").
 .PHONY: attacks attacks-short
 attacks: all

@@ -159,7 +159,7 @@ def main():
     parts = {"link": lambda: on_link(report, options, folder, link.OPEN),
              "key": lambda: on_link(report, options, folder, link.KEYED, os.urandom(16)),
              "bilateral": lambda: on_link(report, options, folder, link.APPROACHES,
-                                          approaches=(40 if options.long else 8)),
+                                          approaches=(24 if options.long else 8)),
              "modbus": lambda: ports.attack(report, options, folder),
              "files": lambda: files.attack(report, options, folder),
              "listen": lambda: files.on_listen(report, options, folder)}

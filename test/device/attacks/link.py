@@ -17,10 +17,16 @@ FAR = (0.0, 0.0, 1.0)
 class Aim:
     """Whom to hit: by the peer's own address, or by another port of its machine."""
 
-    def __init__(self, world, flood, other=None):
-        self.world, self.flood, self.other = world, flood, other
-        self.chance = random.Random(1)
+    def __init__(self, world, flood):
+        self.world, self.flood = world, flood
+        self.chance, self.ahead = random.Random(1), 0
         self.stray = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+
+    def next_numbers(self, n):
+        """The first of n that the peer has not come to, and that were not used here."""
+        first = max(self.world.number + 500, self.ahead)
+        self.ahead = first + n
+        return first
 
     def by_peer(self, data):
         self.world.put(data)
@@ -51,7 +57,7 @@ def param_of_session(aim):
 
 def param_as_peer(aim):
     """The best that he can do who sees the link and has the peer's address: next numbers."""
-    at = aim.world.number + 500
+    at = aim.next_numbers(400)
     return paced(aim.by_peer, [aim.world.make(wire.PARAM, HARDER[n % 2], at + n)
                                for n in range(400)])
 
@@ -83,14 +89,14 @@ def hello_storm(aim):
 
 
 def planes_far(aim):
-    at = aim.world.number + 500
+    at = aim.next_numbers(400)
     return paced(aim.by_peer, (
         aim.world.make(wire.PLANES, aim.world.plane(FAR, (-1.9, 1.9)[n % 2]), at + n)
         for n in range(400)))
 
 
 def planes_long(aim):
-    at = aim.world.number + 500
+    at = aim.next_numbers(400)
     return paced(aim.by_peer, (
         aim.world.make(wire.PLANES, aim.world.plane((1.2, 1.2, -1.06), 0.5), at + n)
         for n in range(400)))
