@@ -69,7 +69,7 @@ $(eval $(call tests,device/serial,$(in_san),$(serial_obj)))
 
 # The parts of the pc104 port that need no machine.
 pc104_net := $(patsubst %.c,$(in_san)/%.o,test/image/pc104/frames.c ports/pc104/net.c \
-             lib/src/run/stream.c lib/src/num/bytes.c lib/src/num/crc.c)
+             lib/src/run/stream.c lib/src/talk/mac.c lib/src/num/bytes.c lib/src/num/crc.c)
 $(in_san)/test/image/pc104/%.o $(in_san)/ports/pc104/%.o $(in_san)/test/fuzz/%.o: \
     tflags += -Iports -Itest/image/pc104
 $(eval $(call tests,image/pc104,$(in_san),$(san_support) $(pc104_net)))
