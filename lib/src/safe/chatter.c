@@ -34,8 +34,8 @@ int exh_chatter_setup(struct exh_chatter_cfg *cfg, const struct exh_chatter_par 
     const struct exh_table t = drive->force_to_cur;
     struct exh_gain joule, tick; /* A counts q20 per J q24; seconds */
     uint64_t ApN_q38;
-    int64_t second;
-    unsigned down = 0;
+    int64_t second;    /* power in one second */
+    unsigned down = 0; /* its size */
 
     if (!exh_period_ok(scale.T)) { return -EXH_E_RATE; }
     if (!exh_inside(par->power_W_q20, POWER_MIN, POWER_MAX) ||
@@ -52,8 +52,11 @@ int exh_chatter_setup(struct exh_chatter_cfg *cfg, const struct exh_chatter_par 
     }
     cfg->energy_Acnt_q20 = exh_gain_mul(joule, par->energy_J_q24);
     second = exh_gain_mul(joule, par->power_W_q20 * (1 << (24 - 20)));
-    while (second >> down > INT32_MAX) { down++; }
-    cfg->leak_Acnt_q20 = exh_gain_mul(tick, (int32_t)(second >> down)) * (INT64_C(1) << down);
+    if (cfg->energy_Acnt_q20 > SUM_MAX_ACNT || second > SUM_MAX_ACNT) { return -EXH_E_RANGE; }
+    for (; second > INT32_MAX; second >>= 1) { down++; }
+    /* A tick is a second at most (exh_period_ok()). */
+    cfg->leak_Acnt_q20 =
+        exh_clamp(exh_gain_mul(tick, (int32_t)second), 0, (int32_t)second) * (INT64_C(1) << down);
     cfg->ticks = exh_ticks_in(CYCLE_MS, scale.T) + 1;
     if (cfg->ticks < CYCLE_TICKS + 1) { cfg->ticks = CYCLE_TICKS + 1; }
     return 0;

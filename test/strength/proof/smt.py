@@ -169,8 +169,20 @@ def line_is_below_32():
                             fi + c * f <= most * (ii + c * c)))
 
 
-LEMMAS = [shr_is_floor, from_u64_keeps_bits, wrapped_sum_is_the_sum, gain_floor_is_no_more,
-          share_of_limit, whole_codes_are_no_more, release_ends, release_step_is_bounded,
+def cycle_is_within_60_bits():
+    """chatter.c: a cycle's sum, within 2^58 as bytes leave it, and what the ticks that count add."""
+    was, given, ticks, most = z3.Ints("was given ticks most")
+    bound = (1 << 58) + ticks * (1 << 49)
+    box = z3.And(ticks >= 0, ticks < most, most <= 1100, given <= 1 << 49, given >= -(1 << 49),
+                 was <= bound, was >= -bound)
+    now = was + given
+    return holds(z3.Implies(box, z3.And(now <= bound + (1 << 49), now >= -bound - (1 << 49),
+                                        now <= 1 << 60, now >= -(1 << 60))))
+
+
+LEMMAS = [cycle_is_within_60_bits, shr_is_floor, from_u64_keeps_bits, wrapped_sum_is_the_sum,
+          gain_floor_is_no_more, share_of_limit, whole_codes_are_no_more, release_ends,
+          release_step_is_bounded,
           unit_has_components_of_one, toward_stays_between, mean_is_within_32_bits,
           excess_is_a_square_at_most, line_is_below_32] + smt_passivity.LEMMAS + smt_hand.LEMMAS
 

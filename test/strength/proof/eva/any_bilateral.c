@@ -6,7 +6,7 @@
  * a tick leaves is a state that a tick takes. Any parameters in their rows.
  *
  * EVA: -eva-slevel 5 -kernel-warn-key annot:missing-spec=abort
- * WITH: examples/glove/cal.c lib/src/sense/glove_cal.c examples/bilateral/finger.c examples/bilateral/frame.c examples/bilateral/cause.c examples/bilateral/wire.c examples/bilateral/trace.c examples/bilateral/tables.c lib/src/talk/trace.c
+ * WITH: examples/glove/cal.c lib/src/sense/glove_cal.c examples/bilateral/finger.c examples/bilateral/gains.c examples/bilateral/frame.c examples/bilateral/cause.c examples/bilateral/wire.c examples/bilateral/trace.c examples/bilateral/tables.c lib/src/talk/trace.c
  * PLANT: examples/bilateral/bilateral.h: return f & (0u - (f < BILATERAL_FINGERS)); -> return f;
  * PLANT: examples/bilateral/bilateral.h: return n > 0 ? n : 1; -> return n;
  * PLANT: examples/bilateral/trace.c: if (t->result > 0) { t->result = 0; } -> (void)0;
@@ -130,8 +130,10 @@ static void any_finger_cfg(struct bilateral_finger_cfg *c, unsigned f)
     ANY(c->velocity);
     ANY(c->track);
     ANY(c->watch);
+    ANY(c->chatter);
+    ANY(c->polarity);
     ANY(c->precontact);
-    /*@ admit quad_cfg(&c->quad) && velocity_cfg(&c->velocity) && track_cfg(&c->track) && precontact_made(&c->precontact); */
+    /*@ admit chatter_cfg(&c->chatter) && quad_cfg(&c->quad) && velocity_cfg(&c->velocity) && track_cfg(&c->track) && precontact_made(&c->precontact); */
     c->quad.par = &active.quad[f];
     c->watch.par = &active.watch[f];
     c->hand = any_hand();
@@ -171,6 +173,8 @@ static void any_cfg(void)
     cfg.rest_ticks = any_u32();
     cfg.tested = any8() & 1;
     cfg.vouches = any8();
+    ANY(cfg.gains);
+    /*@ admit rule(&cfg.gains); */
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
         struct exh_drive_par *const drive = &active.drive[f];
         struct exh_motion_par *const watch = &active.watch[f];
@@ -190,7 +194,7 @@ static void kept(void)
 {
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
         const struct bilateral_finger *const now = &state.finger[f];
-        /*@ assert next_finger: velocity(&now->velocity) && contact(&now->contact) && drive(&now->drive) &&
+        /*@ assert next_finger: velocity(&now->velocity) && contact(&now->contact) && drive(&now->drive) && chatter(&now->chatter) &&
               precontact(&now->precontact); */
     }
     /*@ assert next: safety(&state.safety) && state.wire.trace.result <= 0 && state.wire.trace.answer <= 1 &&

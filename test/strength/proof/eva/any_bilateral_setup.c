@@ -4,11 +4,11 @@
  * the tick is proved with, every place is a finger, and the first are those in use.
  *
  * EVA: -eva-slevel 20 -eva-split-return-function setup:0,bilateral_setup:0,bilateral_finger_setup:0 -kernel-warn-key annot:missing-spec=abort
- * WITH: examples/glove/cal.c lib/src/sense/glove_cal.c examples/bilateral/finger.c examples/bilateral/frame.c examples/bilateral/cause.c examples/bilateral/wire.c examples/bilateral/tables.c
+ * WITH: examples/glove/cal.c lib/src/sense/glove_cal.c examples/bilateral/finger.c examples/bilateral/gains.c examples/bilateral/frame.c examples/bilateral/cause.c examples/bilateral/wire.c examples/bilateral/tables.c
  * PLANT: examples/bilateral/bilateral.c: if (!(mask >> f & 1u)) { cfg->at[at++] = (uint8_t)f; } -> cfg->at[at++] = (uint8_t)f;
  * PLANT: examples/bilateral/bilateral.c: cfg->drive[k] = cfg->drive[0]; -> (void)0;
  * PLANT: examples/bilateral/bilateral.c: if (cfg->n == 0) { return -EXH_E_RANGE; } -> (void)0;
- * PLANT: examples/bilateral/finger.c: &cfg->drive[place], drive}; -> &cfg->drive[place], drive + BILATERAL_FINGERS};
+ * PLANT: examples/bilateral/finger.c: &cfg->drive[place], drive, -> &cfg->drive[place], drive + 1000,
  * PLANT: examples/bilateral/finger.c: err = exh_hand_couple(&c->hand, &exh_hit2_map, f); -> err = exh_hand_couple(&c->hand, &exh_hit2_map, f + 1);
  * PLANT: examples/bilateral/finger.c: UINT32_C(1) << joint->sensor[t]; -> UINT32_C(1) << (joint->sensor[t] + 64);
  */
@@ -83,7 +83,7 @@ static void chosen(int32_t fingers)
         /*@ assert finger: f < 5; */
         /*@ assert first_those_in_use: k < cfg.n ? used == 1 : used == 0; */
         /*@ assert made_drive: drive_cfg(drive); */
-        /*@ assert made_finger: quad_cfg(&c->quad) && velocity_cfg(&c->velocity) && track_cfg(&c->track) && watch_cfg(&c->watch) &&
+        /*@ assert made_finger: quad_cfg(&c->quad) && velocity_cfg(&c->velocity) && track_cfg(&c->track) && watch_cfg(&c->watch) && chatter_cfg(&c->chatter) &&
               hand(&c->hand) && precontact_cfg(&c->precontact); */
     }
     /*@ assert made: safety_cfg(&cfg.safety) && glove_cfg(&cfg.glove) && guard(&guard); */

@@ -8,7 +8,7 @@
  * PLANT: examples/drop/drop.c: &of, 1, box); -> &of, 6, box);
  * PLANT: lib/include/exhand/axis.h: exh_gate_step(s, a->drive_cfg, 1, -> exh_gate_step(s, a->drive_cfg, 2,
  * PLANT: lib/include/exhand/axis.h: uint32_t raised = 0, limits = 0; -> uint32_t raised = 0, limits;
- * PLANT: examples/drop/drop.c: (starved ? EXH_FAULT_SUPPLY : 0u) -> (starved ? EXH_FAULT_SUPPLY << 4 : 0u)
+ * PLANT: examples/drop/drop.c: (starved ? EXH_FAULT_SUPPLY : 0u) -> (starved ? EXH_FAULT_SUPPLY << 5 : 0u)
  * PLANT: examples/drop/drop.c: sig->faults = exh_from_u32(s->safety.faults); -> sig->faults = (int32_t)s->safety.faults;
  * PLANT: examples/drop/drop.c: exh_integrity_seal(&guard, &cfg, sizeof cfg, -> exh_integrity_seal(&guard, &cfg, sizeof cfg + 1,
  * PLANT: examples/drop/drop.c: const struct exh_calib_finger finger = {0, &par->drive -> const struct exh_calib_finger finger = {0, NULL

@@ -18,6 +18,15 @@
 
 static struct exh_gains_par rule;
 
+/* Unit fix shows what it leaves. */
+int exh_gain_set(struct exh_gain *g, uint64_t num, uint64_t den)
+{
+    (void)num;
+    (void)den;
+    ANY_GAIN(*g);
+    return Frama_C_interval(-1, 0);
+}
+
 static struct pair any_pair(void)
 {
     struct pair p;
@@ -35,6 +44,7 @@ static void setup(void)
 
 static void ask(int32_t knots)
 {
+    struct exh_gains_par scaled;
     struct pair at;
     int ok;
     ANY(rule);
@@ -44,8 +54,12 @@ static void ask(int32_t knots)
         rule.b_Nspm_q20[i] = Frama_C_interval(0, EXH_B_MAX_NSPM_Q20);
         rule.k_Npm_q10[i] = Frama_C_interval(0, EXH_K_MAX_NPM_Q10);
     }
+    (void)exh_gains_k_max(&rule, any32());
     ok = exh_gains_ok(&rule, any32(), any32());
     /*@ assert says: ok == 0 || ok == 1; */
+    scaled = rule;
+    scaled.rate_Hz_q8 = any32();
+    (void)exh_gains_scale(&scaled, (struct exh_period){any_u32(), any_u32()});
     at = stepped(&rule, any_pair(), any_pair(), Frama_C_unsigned_int_interval(0, 31));
 }
 

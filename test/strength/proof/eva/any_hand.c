@@ -6,7 +6,7 @@
  * EVA: -eva-slevel 40
  * PLANT: lib/src/sense/hand.c: map->bent[f][j] >= EXH_GLOVE_SENSORS -> map->bent[f + 1][j] >= EXH_GLOVE_SENSORS
  * PLANT: lib/src/sense/hand.c: (int64_t)j->gain_q24[t] * sensor_turn_q32[j->sensor[t]] -> j->gain_q24[t] * sensor_turn_q32[j->sensor[t]]
- * PLANT: lib/src/sense/hand.c: exh_clamp32(want, j->lo_turn_q32, j->hi_turn_q32) -> want
+ * PLANT: lib/src/sense/hand.c: exh_from_u32((uint32_t)((uint64_t)sum_q56 -> ((int32_t)((uint64_t)sum_q56
  * PLANT: lib/src/sense/hand.c: if (sum_q44 > PULL_MAX_RADPM_Q20 || sum_q44 < -PULL_MAX_RADPM_Q20) -> if (sum_q44 > PULL_MAX_RADPM_Q20)
  * PLANT: lib/src/sense/hand_hit2.c: #define SPREAD_GAIN EXH_Q(1, 4, 24) -> #define SPREAD_GAIN EXH_Q(9, 1, 24)
  */

@@ -4,7 +4,7 @@
  * two frames with anything in them, staged or commanded: one register, two, all, and one more, of any bytes. Any coils; what
  * is staged handed on, forgotten, taken; commands of anything. A value never leaves the table's own range.
  *
- * EVA: -eva-slevel 100 -eva-slevel-function block:1000 -eva-slevel-merge-after-loop exh_regs_validate,exh_regs_write -eva-split-return-function judge:0,written:0,from_float:0
+ * EVA: -eva-slevel 100 -eva-slevel-function block:1000 -eva-slevel-merge-after-loop exh_regs_validate,write_all -eva-split-return-function judge:0,written:0,from_float:0
  * PLANT: lib/src/talk/regs_stage.c: if ((uint32_t)at + n > EXH_COILS) { return EXH_MODBUS_ADDRESS; } -> (void)0;
  * PLANT: lib/src/talk/regs_stage.c: r->touched[i >> 5] &= ~bit; -> r->touched[i >> 2] &= ~bit;
  * PLANT: lib/src/talk/regs_stage.c: const int high = 2 * i >= s->from, low = 2 * i + 1 < s->end; -> const int high = 2 * i >= s->from, low = 1;

@@ -63,6 +63,8 @@ static void drive(struct exh_period T, uint8_t forces, uint8_t currents)
     const struct exh_table force_to_cur = {knot, forces}, cur_to_force = {knot, currents};
     ANY(par);
     any_table(KNOTS);
+    cfg.f_top_N_q20 = 1; /* set, or as they were */
+    cfg.top_limit = EXH_LIMIT_FORCE;
     if (exh_drive_setup(&cfg, &par, T, force_to_cur, cur_to_force) == 0) {
         /*@ assert drive_taken: drive_cfg(&cfg); */
         (void)exh_drive_monitor_N_q20(&cfg, any32());

@@ -37,7 +37,7 @@ int main(void)
     }
     (void)exh_signal_count(&t);
     at = exh_signal_at(&t, any_u32(), &instance);
-    if (at != NULL) { (void)at->dflt; }
+    if (at != NULL) { (void)exh_signal_is_fixed(at); }
     at = exh_signal_at(&t, any_u32(), NULL);
     if (at != NULL) { (void)at->dflt; }
     found = exh_signal_find(&t, (uint16_t)any_u32(), (uint16_t)any_u32());

@@ -5,7 +5,7 @@
  *
  * EVA: -eva-slevel 10 -eva-min-loop-unroll 8
  * PLANT: lib/src/law/gains.c: k < 0 || b < 0 || exh_gains_ok -> k < 0 || exh_gains_ok
- * PLANT: lib/src/law/gains.c: i >= 0 ? p->staged[i] : 0; -> p->staged[i];
+ * PLANT: lib/src/law/gains.c: row != NULL ? p->staged[i] : 0; -> p->staged[i];
  * PLANT: lib/src/law/gains.c: if (instance != NULL) { *instance = n; } -> *instance = n;
  * PLANT: lib/src/law/gains.c: if (b < 0) { continue; } -> (void)0;
  */
@@ -60,9 +60,12 @@ static void any_pairs(void)
 int main(void)
 {
     uint16_t instance = 0;
+    struct exh_authority who;
+    ANY(who);
     any_rule();
     any_params();
     (void)exh_gains_stage(&p, &rule, (uint16_t)any_u32(), (uint16_t)any_u32(), any32());
+    for (uint32_t i = 0; i <= TABLE_VALUES; i++) { (void)exh_gains_stage_by(&p, &rule, who, i, any32()); }
     (void)exh_gains_validate(&p, &rule, &instance);
     (void)exh_gains_validate(&p, &rule, NULL);
     exh_gains_enable(&p, any32());

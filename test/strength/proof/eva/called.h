@@ -283,6 +283,40 @@ void exh_motion_serialize(struct exh_bytes *c, struct exh_motion *s)
     ANY(*s);
 }
 
+int exh_chatter_setup(struct exh_chatter_cfg *cfg, const struct exh_chatter_par *par,
+    const struct exh_drive_cfg *drive, struct exh_velocity_scale scale)
+{
+    struct exh_chatter_cfg made;
+    (void)scale;
+    /*@ assert chatter_setup: \valid_read(par) && table(&drive->force_to_cur); */
+    if (REFUSED()) { return -EXH_E_RANGE; }
+    ANY(made);
+    /*@ admit chatter_cfg(&made); */
+    *cfg = made;
+    return 0;
+}
+
+uint32_t exh_chatter_step(const struct exh_chatter *s, const struct exh_chatter_cfg *cfg)
+{
+    /*@ assert chatter_step: chatter(s) && chatter_cfg(cfg); */
+    return any8() & 1 ? EXH_FAULT_CHATTER : 0u;
+}
+
+void exh_chatter_update(
+    struct exh_chatter *s, const struct exh_chatter_cfg *cfg, int32_t cnt, int32_t coded_A_q26)
+{
+    (void)cnt;
+    (void)coded_A_q26;
+    /*@ assert chatter_update: chatter(s) && chatter_cfg(cfg); */
+    *s = any_chatter();
+}
+
+void exh_chatter_serialize(struct exh_bytes *c, struct exh_chatter *s)
+{
+    (void)c;
+    *s = any_chatter();
+}
+
 int exh_polarity_setup(struct exh_polarity_cfg *cfg, const struct exh_polarity_par *par,
     int32_t step_m_q42, struct exh_period T)
 {

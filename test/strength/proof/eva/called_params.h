@@ -88,6 +88,43 @@ void exh_gains_step(struct exh_params *p, const struct exh_gains_par *r)
     p->moving = any8();
 }
 
+int exh_gains_scale(struct exh_gains_par *r, struct exh_period T)
+{
+    (void)T;
+    /*@ assert gains_scale: \valid(r); */
+    ANY(*r);
+    if (REFUSED()) { return -EXH_E_RANGE; }
+    /*@ admit scaled: rule(r); */
+    return 0;
+}
+
+int32_t exh_gains_k_max(const struct exh_gains_par *r, int32_t b_Nspm_q20)
+{
+    (void)b_Nspm_q20;
+    /*@ assert gains_k_max: rule(r); */
+    return Frama_C_interval(0, 1024000000);
+}
+
+/* --- with authority --- */
+
+int exh_params_stage_by(struct exh_params *p, struct exh_authority who, uint32_t i, int32_t raw)
+{
+    (void)who;
+    (void)i;
+    (void)raw;
+    /*@ assert params_stage_by: params(p); */
+    p->pending = any8();
+    p->by = any8();
+    return REFUSED() ? -EXH_E_STATE : 0;
+}
+
+int exh_gains_stage_by(struct exh_params *p, const struct exh_gains_par *r,
+    struct exh_authority who, uint32_t i, int32_t raw)
+{
+    /*@ assert gains_stage_by: params(p) && rule(r); */
+    return exh_params_stage_by(p, who, i, raw);
+}
+
 /* --- guard, self-test, calibrations --- */
 
 void exh_integrity_seal(

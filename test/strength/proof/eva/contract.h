@@ -12,7 +12,7 @@
     predicate fall(struct exh_gain *g) = 0 <= g->mant && 31 <= g->shift <= 62;
     predicate bit(integer v) = 0 <= v <= 1;
     predicate limits(integer v) = 0 <= v < 1 << 12;
-    predicate causes(integer v) = 0 <= v < 1 << 15;
+    predicate causes(integer v) = 0 <= v < 1 << 16;
     predicate table(struct exh_table *t) = 2 <= t->n && \valid_read(t->knot + (0 .. t->n - 1));
     predicate table_or_none(struct exh_table *t) = t->n == 0 || table(t); */
 
@@ -31,7 +31,7 @@
       0 <= p->dac_zero_raw <= 65535 && 0 <= p->dac_span_raw <= 32767 && -32768 <= p->mon_zero_raw <= 32767 &&
       131072 <= p->person_N_q20 <= 104857600 && 0 <= p->person_A_q26 <= 442918502;
     predicate drive_made(struct exh_drive_cfg *c) = 1 <= c->f_top_N_q20 && 0 <= c->i_top_A_q26 <= 442918502 &&
-      (c->top_limit == 2 || c->top_limit == 2048) && gain(&c->tick_N_q20) && gain(&c->i2t_fold) &&
+      2 <= c->top_limit <= 2048 && gain(&c->tick_N_q20) && gain(&c->i2t_fold) &&
       gain(&c->dac_A_q26) && 0 <= c->i2t_budget_q32 <= 1 << 60 && c->i2t_shift <= 62;
     predicate drive_cfg(struct exh_drive_cfg *c) = \valid_read(c->par) && drive_par(c->par) && table(&c->force_to_cur) &&
       table_or_none(&c->cur_to_force) && drive_made(c);
@@ -42,6 +42,11 @@
     predicate asked_current(struct exh_current_ledger *i) = \initialized(&i->table_A_q26) && \initialized(&i->peak_A_q26) &&
       \initialized(&i->i2t_A_q26);
     predicate force(struct exh_force_ledger *f) = 0 <= f->force_N_q20 <= 104857600; */
+
+/*@ predicate chatter_cfg(struct exh_chatter_cfg *c) = 0 <= c->energy_Acnt_q20 <= 1 << 58 && 0 <= c->leak_Acnt_q20 <= 1 << 58 &&
+      9 <= c->ticks <= 1100;
+    predicate chatter(struct exh_chatter *s) = -(1 << 58) <= s->net_Acnt_q20 <= 1 << 58 &&
+      -(1 << 60) <= s->cycle_Acnt_q20 <= 1 << 60 && bit(s->rises); */
 
 /*@ predicate track_cfg(struct exh_tracking_cfg *c) = 6710886 <= c->tol_A_q26 <= 67108864 && 5 <= c->ticks;
     predicate watch_par(struct exh_motion_par *p) = 13421772 <= p->speed_mps_q27 <= 1342177280;
@@ -104,6 +109,14 @@ static struct exh_drive any_drive(void)
     struct exh_drive s;
     ANY(s);
     /*@ admit drive(&s); */
+    return s;
+}
+
+static struct exh_chatter any_chatter(void)
+{
+    struct exh_chatter s;
+    ANY(s);
+    /*@ admit chatter(&s); */
     return s;
 }
 
