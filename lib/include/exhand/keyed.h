@@ -24,23 +24,23 @@
 extern "C" {
 #endif
 
-#define EXH_KEYED_B     EXH_WIRE_SEAL_B /* behind a packet */
-#define EXH_KEYED_MAX_B (EXH_WIRE_MAX_B + EXH_KEYED_B)
+#define EXH_KEYED_B     EXH_WIRE_SEAL_B                /* behind a packet */
+#define EXH_KEYED_MAX_B (EXH_WIRE_MAX_B + EXH_KEYED_B) /* of a packet with it, at most */
 
 /* One end. Its counts are modulo 2^32; each datagram raises one of them. */
 struct exh_keyed {
-    struct exh_mac_key key;
-    uint64_t next;      /* number of the next packet that goes out */
-    uint64_t since;     /* `next` when the run was believed: an echo before is no proof */
-    uint64_t heard;     /* newest number with a right tag, of whatever run; 0: none */
-    uint64_t newest;    /* of the run that is believed; 0: there is none */
-    uint64_t seen;      /* bit k: newest - k came, or was before it was believed */
-    uint32_t taken;     /* handed on */
-    uint32_t no_key;    /* whole packets without number, echo and tag */
-    uint32_t other_key; /* a tag that is wrong, of a whole packet */
-    uint32_t unproved;  /* a right tag, but no echo of us: it begins, or was recorded */
-    uint32_t again;     /* came before, too late to tell, or our own */
-    uint32_t damaged;   /* all else */
+    struct exh_mac_key key; /* of both ends */
+    uint64_t next;          /* number of the next packet that goes out */
+    uint64_t since;         /* `next` when the run was believed: an echo before is no proof */
+    uint64_t heard;         /* newest number with a right tag, of whatever run; 0: none */
+    uint64_t newest;        /* of the run that is believed; 0: there is none */
+    uint64_t seen;          /* bit k: newest - k came, or was before it was believed */
+    uint32_t taken;         /* handed on */
+    uint32_t no_key;        /* whole packets without number, echo and tag */
+    uint32_t other_key;     /* a tag that is wrong, of a whole packet */
+    uint32_t unproved;      /* a right tag, but no echo of us: it begins, or was recorded */
+    uint32_t again;         /* came before, too late to tell, or our own */
+    uint32_t damaged;       /* all else */
 };
 
 /* start: any number that has not been used under this key; 63 random bits, or a clock that goes on

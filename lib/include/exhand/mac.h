@@ -21,7 +21,7 @@ extern "C" {
 
 /* A key: its bytes 0..7 and 8..15, each least significant first. */
 struct exh_mac_key {
-    uint64_t k[2];
+    uint64_t k[2]; /* k0, k1 of the paper */
 };
 
 /* Of 16 bytes, all of them random: a word for people is no key. */

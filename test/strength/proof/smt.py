@@ -170,7 +170,7 @@ def line_is_below_32():
 
 
 def cycle_is_within_60_bits():
-    """chatter.c: a cycle's sum, within 2^58 as bytes leave it, and what the ticks that count add."""
+    """chatter.c: a cycle's sum: within 2^58 as bytes leave it, then what ticks that count add."""
     was, given, ticks, most = z3.Ints("was given ticks most")
     bound = (1 << 58) + ticks * (1 << 49)
     box = z3.And(ticks >= 0, ticks < most, most <= 1100, given <= 1 << 49, given >= -(1 << 49),
