@@ -4,6 +4,7 @@
  * than IN_A_TICK of them: what a flood leaves is dropped by the card. */
 #include "pc104.h"
 
+#include "io.h"
 #include "net.h"
 #include "nic.h"
 #include "exhand/run/stream.h"
@@ -24,6 +25,7 @@
 #define CABLE_US  4000000u /* both sides agree on a speed */
 #define PEER_US   1000000u
 #define FLUSH_US  20000u
+#define CLOCK_AT  0x70 /* register number, then data (MC146818) */
 
 static struct {
     uint32_t ip, peer;
@@ -146,15 +148,26 @@ static void wait_for_peer(void)
         net.known ? "link: the peer answers\n" : "link: the peer does not answer yet: goes on\n");
 }
 
-/* Year to second of the machine's clock, which goes on while the power is off, and the processor's
- * cycles: no number of another start. */
+/* A field of the machine's clock, two decimal digits. */
+static unsigned clock_field(uint8_t at)
+{
+    uint8_t v;
+    pc104_out8(CLOCK_AT, at);
+    v = pc104_in8(CLOCK_AT + 1);
+    return 10u * (v >> 4) + (v & 15u);
+}
+
+/* The machine's clock, in seconds as a year of 13 months of 32 days counts them: it goes on while
+ * the power is off. A second is 2^26 numbers, more than a run sends: no start takes a number of
+ * another. */
 static void open_key(void)
 {
-    static const uint8_t at[] = {9, 8, 7, 4, 2, 0};
+    static const struct {
+        uint8_t at, values;
+    } field[] = {{9, 100}, {8, 13}, {7, 32}, {4, 24}, {2, 60}, {0, 60}};
     uint64_t start = 0;
-    for (unsigned i = 0; i < sizeof at; i++) {
-        exh_io_out8(0x70, at[i]);
-        start = start << 6 | (exh_io_in8(0x71) & 0x3Fu);
+    for (unsigned i = 0; i < sizeof field / sizeof field[0]; i++) {
+        start = start * field[i].values + clock_field(field[i].at);
     }
     exh_keyed_setup(&keyed, &key, EXH_WIRE_CONTROLLER, start << 26 | exh_board_cycles() >> 6);
     stream_key(&key);

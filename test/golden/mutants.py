@@ -426,7 +426,7 @@ MUTANTS = (
 # must be seen at all the same, and what tells it besides. Open: stimuli that come to these at every
 # rate.
 THIN = {
-    "if (p->phase == EXH_PRECONTACT_FROZEN &&": 0.62,  # sim/bilateral
+    "if (p->phase == EXH_PRECONTACT_FROZEN &&": 0.60,  # sim/bilateral
     # a plane that comes near the finger is rare among random ones: unit/precontact, sim/late
     "s->phase == EXH_PRECONTACT_TRACK && !s->near": 0.80,
     "s->phase == EXH_PRECONTACT_IDLE && s->met": 0.80,
@@ -443,6 +443,9 @@ THIN = {
     # codes are few to an ampere: only then a limit is another
     "exh_clamp(peak, 0, most)": 0.50,                  # unit/gate, proof
     "coded(cfg, now) >>": 0.80,                        # unit/drive
+    # a person's ceiling that is drawn is seldom below i_peak
+    "top = person ? cfg->i_top_A_q26 : drive;": 0.10,  # unit/drive, proof
+    "s->ticks < cfg->ticks": 0.37,                     # unit/chatter
     "to->a >= from->a": 0.28,                          # unit/filter; two high kinds are rare
     # Of 768 requests, 256 on the line, few come there; unit/modbus, unit/trace and unit/modbus_rtu
     # tell them.
@@ -451,7 +454,9 @@ THIN = {
     "r->touched[i >> 5] &= ~bit;": 0.78,
     "} else if (bits == exh_float_from_raw(row->min, row->frac)) {": 0.68,
     "} else if (bits == exh_float_from_raw(row->max, row->frac)) {": 0.90,
-    "raw < row->min || raw > row->max": 0.90,
+    "raw < row->min || raw > row->max": 0.85,
+    "cell == RISE && raw > was": 0.48,                 # unit/authority, as of the next
+    "cell >= REST && !who.open": 0.19,
     "if ((on & discard) && (r->asked & apply)) { return EXH_MODBUS_BUSY; }": 0.68,
     "if (asked >> EXH_COIL_CLEAR & 1u) { return EXH_CMD_CLEAR; }": 0.82,
     "what->index[i] >= r->trace->signals": 0.72,

@@ -42,7 +42,8 @@ enum exh_signal_when {
  *   02 quad   03 velocity   04 contact   05 drive     06 safety       07 filter     08 quantizer
  *   09 glove  0A hand       0B material  0C precontact
  *   0D tracking (rows 01..10), supply (rows 11..)     0E motion       0F passivity
- *   12 gains  13 tune       80..8F scenes; 89 calibrations of the runtime (exhand/run)
+ *   12 gains  13 tune       14 chatter   80..8F scenes; 89 calibrations of the runtime
+ *   (exhand/run)
  */
 
 /* One row: what a value is. Constant, in ROM. */

@@ -52,7 +52,7 @@ int exh_chatter_setup(struct exh_chatter_cfg *cfg, const struct exh_chatter_par 
     }
     cfg->energy_Acnt_q20 = exh_gain_mul(joule, par->energy_J_q24);
     second = exh_gain_mul(joule, par->power_W_q20 * (1 << (24 - 20)));
-    if (cfg->energy_Acnt_q20 > SUM_MAX_ACNT || second > SUM_MAX_ACNT) { return -EXH_E_RANGE; }
+    if (second > SUM_MAX_ACNT) { return -EXH_E_RANGE; } /* energy is 1/10 of it at most */
     for (; second > INT32_MAX; second >>= 1) { down++; }
     /* A tick is a second at most (exh_period_ok()). */
     cfg->leak_Acnt_q20 =

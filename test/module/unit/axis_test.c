@@ -12,12 +12,14 @@ struct finger {
     struct exh_velocity_window_cfg velocity_cfg;
     struct exh_motion_cfg watch_cfg;
     struct exh_tracking_cfg track_cfg;
+    struct exh_chatter_cfg chatter_cfg;
     struct exh_drive_cfg drive_cfg;
     struct exh_safety_cfg safety_cfg;
     struct exh_quad quad;
     struct exh_velocity_window velocity;
     struct exh_motion watch;
     struct exh_tracking track;
+    struct exh_chatter chatter;
     struct exh_drive drive;
     struct exh_safety safety;
 };
@@ -28,6 +30,8 @@ static const struct exh_velocity_par velocity_par = {2};
 static const struct exh_motion_par watch_par = {
     EXH_Q(1, 10, EXH_Q_VEL), 2, 100, EXH_Q(1, 4, EXH_Q_CUR)};
 static const struct exh_tracking_par track_par = {EXH_Q(1, 4, EXH_Q_CUR), 20};
+/* Told at once: a mJ is given out as the string goes back. */
+static const struct exh_chatter_par chatter_par = {EXH_Q(1, 100, 20), EXH_Q(1, 1000, 24)};
 static const struct exh_drive_par drive_par = {.f_max_N_q20 = EXH_Q(10, 1, EXH_Q_FORCE),
     .slew_up_Nps = 1000,
     .slew_down_Nps = 1000,
@@ -46,7 +50,7 @@ static struct exh_knot knot[2] = {
 static const struct exh_period T = {1, 1000};
 static const struct exh_table no_table = {NULL, 0};
 
-enum { VELOCITY = 1, WATCH = 2, TRACK = 4, SUBSETS = 8 };
+enum { VELOCITY = 1, WATCH = 2, TRACK = 4, CHATTER = 8, SUBSETS = 16 };
 
 static struct exh_table to_cur(void)
 {
@@ -64,6 +68,8 @@ static struct exh_axis_setup parts_of(struct finger *f, unsigned parts)
         .watch_par = &watch_par,
         .track = parts & TRACK ? &f->track_cfg : NULL,
         .track_par = &track_par,
+        .chatter = parts & CHATTER ? &f->chatter_cfg : NULL,
+        .chatter_par = &chatter_par,
         .drive = &f->drive_cfg,
         .drive_par = &drive_par};
 }
@@ -78,6 +84,8 @@ static struct exh_axis axis_of(struct finger *f, unsigned parts)
         .watch_cfg = &f->watch_cfg,
         .track = parts & TRACK ? &f->track : NULL,
         .track_cfg = &f->track_cfg,
+        .chatter = parts & CHATTER ? &f->chatter : NULL,
+        .chatter_cfg = &f->chatter_cfg,
         .drive = &f->drive,
         .drive_cfg = &f->drive_cfg};
 }
@@ -129,6 +137,7 @@ static struct exh_drive_out by_hand(
     if (parts & WATCH) {
         now->raised |= exh_motion_step(&f->watch, &f->watch_cfg, &now->vel_mps_q27, &now->limits);
     }
+    if (parts & CHATTER) { now->raised |= exh_chatter_step(&f->chatter, &f->chatter_cfg); }
     if (parts & TRACK) {
         now->mon_A_q26 = exh_drive_monitor_A_q26(&f->drive_cfg, in.mon_raw[2]);
         if (exh_tracking_step(&f->track, &f->track_cfg, now->mon_A_q26)) {
@@ -144,6 +153,9 @@ static struct exh_drive_out by_hand(
     exh_gate_step(&f->safety, &f->drive_cfg, 1, &i, &now->limits, &out);
     if (parts & TRACK) { exh_tracking_update(&f->track, i.coded_A_q26); }
     if (parts & WATCH) { exh_motion_update(&f->watch, &f->watch_cfg, now->cnt, i.coded_A_q26); }
+    if (parts & CHATTER) {
+        exh_chatter_update(&f->chatter, &f->chatter_cfg, now->cnt, i.coded_A_q26);
+    }
     return out;
 }
 
@@ -206,20 +218,22 @@ TEST(each_subset_of_parts_is_its_modules_in_order)
 TEST(setup_refuses_as_its_parts_do)
 {
     static struct finger a;
-    const struct exh_axis_setup good = parts_of(&a, VELOCITY | WATCH | TRACK);
+    const struct exh_axis_setup good = parts_of(&a, VELOCITY | WATCH | TRACK | CHATTER);
     static const struct exh_velocity_par no_window = {5};
     static const struct exh_motion_par no_speed = {0, 1, 0, EXH_Q(1, 4, EXH_Q_CUR)};
     static const struct exh_tracking_par no_time = {EXH_Q(1, 4, EXH_Q_CUR), 0};
     static const struct exh_drive_par no_drive;
     static const struct exh_quad_par no_step = {0, EXH_Q(10, 1, EXH_Q_VEL)};
-    struct exh_axis_setup bad[5] = {good, good, good, good, good};
+    static const struct exh_chatter_par no_power;
+    struct exh_axis_setup bad[6] = {good, good, good, good, good, good};
     bad[0].quad_par = &no_step;
     bad[1].velocity_par = &no_window;
     bad[2].watch_par = &no_speed;
     bad[3].track_par = &no_time;
     bad[4].drive_par = &no_drive;
+    bad[5].chatter_par = &no_power;
     CHECK_EQ_I64(exh_axis_setup(&good, T, 24, to_cur(), no_table), 0);
-    for (size_t k = 0; k < 5; k++) {
+    for (size_t k = 0; k < 6; k++) {
         CHECK_EQ_I64(exh_axis_setup(&bad[k], T, 24, to_cur(), no_table), -EXH_E_RANGE);
     }
     /* A part that is left out is not asked. */

@@ -144,12 +144,13 @@ TEST(near_is_within_half_of_kf)
 TEST(a_ratio_saturates)
 {
     static const struct exh_calib_point p[] = {
-        {N(9000), A(3000), A(2000), 0}, {N(1), 0, -5, 0}, {N(100000), 1, 2, 0}};
+        {N(9000), A(3000), A(2000), 0}, {N(1), 0, -5, 0}, {N(100000), 1, 2, 0}, {-1, 1, 2, 0}};
     CHECK_EQ_I64(exh_calib_ratio_NpA_q20(&p[0], EXH_CALIB_CURRENT), N(3000));
     CHECK_EQ_I64(exh_calib_ratio_NpA_q20(&p[0], EXH_CALIB_MONITOR), N(4500));
     CHECK_EQ_I64(exh_calib_ratio_NpA_q20(&p[1], EXH_CALIB_CURRENT), 0);
     CHECK_EQ_I64(exh_calib_ratio_NpA_q20(&p[1], EXH_CALIB_MONITOR), 0);
     CHECK_EQ_I64(exh_calib_ratio_NpA_q20(&p[2], EXH_CALIB_MONITOR), INT32_MAX);
+    CHECK_EQ_I64(exh_calib_ratio_NpA_q20(&p[3], EXH_CALIB_MONITOR), 0);
 }
 
 /* A year is believed, a day more is neither written nor read. */

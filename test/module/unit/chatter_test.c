@@ -155,6 +155,36 @@ TEST(setup_refuses_what_is_out_of_range)
     knot[1].y = EXH_Q(6, 1, EXH_Q_CUR);
 }
 
+#define STEP EXH_Q(1, 10000, EXH_Q_STEP)
+
+/* Of a table or a step that no device has: no gain, or sums that would not fit. */
+TEST(setup_refuses_what_no_device_has)
+{
+    static const struct {
+        int32_t x, y, step_m_q42;
+        uint8_t n;
+        int err;
+    } row[] = {
+        {EXH_Q(18, 1, EXH_Q_FORCE), EXH_Q(6, 1, EXH_Q_CUR), STEP, 2, 0},
+        {EXH_Q(18, 1, EXH_Q_FORCE), EXH_Q(6, 1, EXH_Q_CUR), 0, 2, -EXH_E_RANGE},
+        {EXH_Q(18, 1, EXH_Q_FORCE), EXH_Q(6, 1, EXH_Q_CUR), STEP, 1, -EXH_E_RANGE},
+        {0, EXH_Q(6, 1, EXH_Q_CUR), STEP, 2, -EXH_E_RANGE},
+        {1, INT32_MAX, 1, 2, -EXH_E_RANGE},             /* no gain */
+        {1, (1 << 30) - 1, INT32_MAX, 2, -EXH_E_RANGE}, /* 2^58.3 in a second */
+    };
+    for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
+        const struct exh_chatter_par p = {EXH_Q(10, 1, 20), EXH_Q(1, 1, 24)};
+        struct exh_knot at[2] = {{0, 0, {0, 0}}, {row[i].x, row[i].y, {0, 0}}};
+        struct exh_drive_cfg drive = {0};
+        struct exh_chatter_cfg c;
+        int err;
+        drive.force_to_cur = (struct exh_table){at, row[i].n};
+        err = exh_chatter_setup(
+            &c, &p, &drive, (struct exh_velocity_scale){row[i].step_m_q42, {1, 1000}});
+        CHECK(err == row[i].err, "row %zu: %d", i, err);
+    }
+}
+
 /* Any bytes: within what a sum takes, and the next cycles bring it back. */
 TEST(damaged_state)
 {
@@ -185,4 +215,4 @@ TEST(damaged_state)
 
 TEST_MAIN("unit/chatter", cycles_that_drive_the_string, what_is_none,
     what_was_taken_in_is_not_given_out, taps_are_none, it_goes_away,
-    setup_refuses_what_is_out_of_range, damaged_state);
+    setup_refuses_what_is_out_of_range, setup_refuses_what_no_device_has, damaged_state);

@@ -4,6 +4,7 @@
 
 #include "exhand/contact.h"
 #include "exhand/error.h"
+#include "exhand/precontact.h"
 
 #include "check.h"
 
@@ -165,6 +166,22 @@ TEST(staging_refuses_what_is_outside)
     CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 1, -1), -EXH_E_RANGE);
     CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 1, K(20000)), -EXH_E_GAINS);
     CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0403, 1, B(2)), 0);
+}
+
+/* A scene with materials has no contact of its own to ask. */
+TEST(materials_are_asked_by_index)
+{
+    static const struct exh_signal_group of[] = {{exh_material_rows, EXH_MATERIAL_ROWS, 2}};
+    static const struct exh_signal_table materials = {of, 1};
+    static const struct exh_authority person = {EXH_FROM_PERSON, 1, 1};
+    struct exh_params p;
+    int32_t is[2 * EXH_MATERIAL_ROWS], wanted[2 * EXH_MATERIAL_ROWS];
+    exh_params_setup(&p, &materials, is, wanted);
+    CHECK_EQ_I64(exh_gains_stage_by(&p, &rule, person, 1, B(20)), 0);
+    CHECK_EQ_I64(exh_gains_stage_by(&p, &rule, person, 0, K(30000)), 0);
+    CHECK_EQ_I64(exh_gains_stage_by(&p, &rule, person, 0, K(30001)), -EXH_E_GAINS);
+    CHECK_EQ_I64(wanted[0], K(30000));
+    CHECK_EQ_I64(exh_gains_stage_by(&p, &rule, person, 2 * EXH_MATERIAL_ROWS, 0), -EXH_E_UNKNOWN);
 }
 
 TEST(a_whole_image_is_asked_and_dropped)
@@ -404,8 +421,8 @@ TEST(rows_may_stand_in_any_order)
 }
 
 TEST_MAIN("gains", pieces_and_ends, setup_refuses, setup_refuses_two_halves,
-    setup_asks_for_its_rate, staging_refuses_what_is_outside, a_whole_image_is_asked_and_dropped,
-    a_rule_for_another_rate, the_largest_k, through_a_valley, a_damaged_goal_is_not_gone_to,
-    a_goal_that_became_none_is_waited_for, no_wall_is_a_jump_away, rows_are_of_the_struct,
-    half_a_pair_is_none, without_the_lead_both_go_by_themselves, a_damaged_pair_becomes_none,
-    rows_may_stand_in_any_order);
+    setup_asks_for_its_rate, staging_refuses_what_is_outside, materials_are_asked_by_index,
+    a_whole_image_is_asked_and_dropped, a_rule_for_another_rate, the_largest_k, through_a_valley,
+    a_damaged_goal_is_not_gone_to, a_goal_that_became_none_is_waited_for, no_wall_is_a_jump_away,
+    rows_are_of_the_struct, half_a_pair_is_none, without_the_lead_both_go_by_themselves,
+    a_damaged_pair_becomes_none, rows_may_stand_in_any_order);

@@ -412,6 +412,10 @@ TEST(what_may_not_be)
     ASK(16, 0x50, 2, 0, 2, 4, 0, 0, 0x01, 0xF4);        /* as it is */
     GIVES(16, 0x50, 2, 0, 2);
     untouched(__LINE__);
+    CHECK(g.r.refused > 8, "%u refused", (unsigned)g.r.refused);
+    g.r.refused = 0x1234;
+    ASK(4, 0, 2 * EXH_HEAD_REFUSED, 0, 2);
+    GIVES(4, 4, 0, 0, 0x12, 0x34);
 }
 
 TEST(floats_that_may_not_be)

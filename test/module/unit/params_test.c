@@ -159,6 +159,28 @@ TEST(image_in_mid_way)
     CHECK_EQ_I64(staged[GAIN], 900);
 }
 
+/* A person's values come with his own image alone. */
+TEST(a_persons_values)
+{
+    static const struct exh_signal mine[] = {
+        {0x7301, 0, EXH_WHEN_PERSON, 0, 100, 50, "ceiling", "n", "nobody else's"},
+        {0x7302, 0, EXH_WHEN_SETUP, 0, 100, 50, "other", "", "anybody's"}};
+    static const struct exh_signal_group group = {mine, LEN(mine), 1};
+    static const struct exh_signal_table of = {&group, 1};
+    uint8_t image[16 + 4 * 2];
+    exh_params_setup(&p, &of, active, staged);
+    staged[0] = 90;
+    staged[1] = 91;
+    CHECK_EQ_I64(exh_params_save(&p, image, sizeof image), sizeof image);
+    exh_params_setup(&p, &of, active, staged);
+    CHECK_EQ_I64(exh_params_load(&p, image, sizeof image, NULL), 0);
+    CHECK(staged[0] == 50 && staged[1] == 91, "%d, %d", (int)staged[0], (int)staged[1]);
+    CHECK_EQ_I64(exh_params_restore(&p, image, sizeof image, NULL), 0);
+    CHECK(staged[0] == 90 && staged[1] == 91, "%d, %d", (int)staged[0], (int)staged[1]);
+    image[12] ^= 1u;
+    CHECK_EQ_I64(exh_params_restore(&p, image, sizeof image, NULL), -EXH_E_CRC);
+}
+
 /* From a keyframe in mid-way it goes on with the same values. */
 TEST(keyframe_in_mid_way)
 {
@@ -262,7 +284,11 @@ TEST(taken_back)
     memcpy(was, staged, sizeof was);
     CHECK_EQ_I64(exh_params_stage(&p, 0x7101, 0, 4711), 0);
     CHECK_EQ_I64(exh_params_stage(&p, 0x7201, 0, -900), 0);
+    exh_params_rollback(&p, was, 1);
+    CHECK(p.pending && p.by, "what was pending is pending no more");
+    CHECK_EQ_I64(exh_params_stage(&p, 0x7101, 0, 4711), 0);
     exh_params_rollback(&p, was, 0);
+    CHECK_EQ_I64(p.by, 0);
     CHECK(staged[0] == 0 && staged[GAIN] == 900 && !p.pending && p.moving, "%d", (int)staged[GAIN]);
     for (int k = 0; k < 100; k++) {
         (void)exh_params_apply(&p);
@@ -367,6 +393,7 @@ TEST(the_sum_is_of_both_arrays)
 }
 
 TEST_MAIN("unit/params", steps_worked_out, slewed_and_not, damaged_while_another_moves,
-    before_the_loop_at_once, shift_of_a_time, image_in_mid_way, keyframe_in_mid_way, bad_keyframes,
-    guard_in_mid_way, taken_back, keyframe_at_rest, images_of_a_head, a_table_of_none,
-    a_limit_falls_at_once, what_may_be_staged, the_sum_is_of_both_arrays);
+    before_the_loop_at_once, shift_of_a_time, image_in_mid_way, a_persons_values,
+    keyframe_in_mid_way, bad_keyframes, guard_in_mid_way, taken_back, keyframe_at_rest,
+    images_of_a_head, a_table_of_none, a_limit_falls_at_once, what_may_be_staged,
+    the_sum_is_of_both_arrays);

@@ -378,6 +378,15 @@ TEST(library_rows_are_well_formed)
     }
 }
 
+TEST(classes_of_rows)
+{
+    for (unsigned when = 0; when < EXH_WHENS; when++) {
+        const struct exh_signal row = {1, 0, (uint8_t)when, 0, 1, 0, "a", "", "b"};
+        const int fixed = when == EXH_WHEN_SETUP || when == EXH_WHEN_PERSON;
+        CHECK(exh_signal_is_fixed(&row) == fixed, "%u", when);
+    }
+}
+
 /* Rows and struct fields in the same order, one int32_t each. */
 TEST(library_rows_match_their_structs)
 {
@@ -402,4 +411,4 @@ TEST_MAIN("unit/signal", rows_and_instances_in_order, empty_table, crc_tells_tab
     ends_of_the_range_are_allowed, lock_spares_what_may_change, image_layout,
     image_round_trip_and_short_buffers, truncated_at_every_byte, every_flipped_bit_is_refused,
     honest_image_with_bad_values, locked_image_as_it_stands, library_rows_are_well_formed,
-    library_rows_match_their_structs);
+    classes_of_rows, library_rows_match_their_structs);
