@@ -65,6 +65,7 @@ NEEDS = {
     ("watch", "finger"): ["--listen", "127.0.0.1:0", *COMMANDS["watch"]],
     ("watch", "plot"): ["--listen", "127.0.0.1:0", *COMMANDS["watch"]],
     ("watch", "peer"): ["--listen", "127.0.0.1:0", *COMMANDS["watch"]],
+    ("watch", "key"): ["--listen", "127.0.0.1:0", *COMMANDS["watch"]],
 }
 
 # (command, option, value, finding) as patterns, and why that is no mistake.

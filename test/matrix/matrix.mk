@@ -54,7 +54,7 @@ avr_not    := $(patsubst %,test/golden/%.c,digests golden_test explain $(SUITE_W
 avr_src    := $(filter-out $(avr_not),$(golden_src) test/support.c $(lib_src))
 avr_module := $(filter-out $(SUITE_WITHOUT),$(shell sed -n 's/.* digest_\(\w*\)\[.*/\1/p' \
               test/golden/digests.inc))
-avr_large  := bilateral precontact
+avr_large  := precontact
 avr_link   := -Wl,--gc-sections -Wl,--defsym=__DATA_REGION_LENGTH__=0xFF00
 $(avr_module:%=$(B)/suite/avr/%.elf): $(B)/suite/avr/%.elf: test/matrix/avr.c \
     $(patsubst %.c,$(B)/suite/plain/%.o,$(avr_src))
@@ -64,9 +64,6 @@ $(avr_module:%=$(B)/suite/avr/%.elf): $(B)/suite/avr/%.elf: test/matrix/avr.c \
 	$(Q)$(CC) -O$(O) $(CFLAGS) $(suite_lto) $(avr_link) \
 	    $(if $(filter $*,$(avr_large)),-Wl$(comma)--defsym=__stack=0xFFFF) \
 	    -o $@ $(@:.elf=.main.o) $(filter %.o,$^)
-# A size at which this compiler fails; inlined, the image would not fit.
-avr_as := suite_def += -O2 -fno-inline
-$(if $(filter avr,$(SUITE_METAL)),$(B)/suite/plain/test/golden/bilateral.o: $(avr_as))
 $(B)/suite/avr_run: test/matrix/avr_run.c $(stamp)
 	@mkdir -p $(@D)
 	$(Q)gcc -std=gnu99 -O2 -Wall -Wextra -Werror -o $@ $< -lsimavr -lelf

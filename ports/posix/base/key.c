@@ -38,15 +38,14 @@ int key_read(const char *path, struct exh_mac_key *key)
     uint8_t byte[EXH_MAC_KEY_B];
     struct stat is;
     size_t n;
+    int open_to_all;
     FILE *f = fopen(path, "rb");
     if (f == NULL) {
         cli_complain("--key: %s: %s: give a file of 32 hexadecimal digits", path, strerror(errno));
         return 2;
     }
     setbuf(f, NULL); /* no copy of it stays in memory that is freed */
-    if (fstat(fileno(f), &is) == 0 && is.st_mode & (S_IRGRP | S_IROTH)) {
-        cli_complain("--key: %s: others may read it: chmod 600 %s", path, path);
-    }
+    open_to_all = fstat(fileno(f), &is) == 0 && is.st_mode & (S_IRGRP | S_IROTH);
     n = fread(text, 1, sizeof text, f);
     (void)fclose(f);
     if (take(text, n, byte)) {
@@ -55,6 +54,7 @@ int key_read(const char *path, struct exh_mac_key *key)
             path);
         return 2;
     }
+    if (open_to_all) { cli_complain("--key: %s: others may read it: chmod 600 %s", path, path); }
     *key = exh_mac_key(byte);
     return 0;
 }

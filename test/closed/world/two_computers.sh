@@ -3,7 +3,7 @@
 # two_computers.sh EXHAND WORLD: the whole command and the whole world program, with nothing between
 # them but UDP: as two processes on loopback, and in two network namespaces with a cable between
 # where the machine lets this (root, or user namespaces; it says so where not). The world's material
-# is stiffer than the controller's own and must be what is felt, also by a controller that was
+# is softer than the controller's own and must be what is felt, also by a controller that was
 # started anew.
 exhand=$1 world=$2
 if [ ! -x "$exhand" ] || [ ! -x "$world" ]; then
@@ -108,17 +108,18 @@ traced()
 meet() # WHERE WORLD-PREFIX CONTROLLER-PREFIX
 {
     where=$1 there=$2 here=$3
-    scene 30000
+    scene 15000
     start_world $there
-    felt "$where" 1 30000 $here
-    felt "$where" 2 30000 $here
+    felt "$where" 1 15000 $here
+    sleep 2 # without a key a world hears nobody else within a second (docs/WIRE.md)
+    felt "$where" 2 15000 $here
     end_world
     check "$where: traces (controllers, thousands of frames, odd): $(traced)" \
         [ "$(traced | sed 's/ [1-9][0-9]* / n /')" = "2 n 0" ]
     check "$where: nothing is said: $(cat "$dir/world.err")" [ ! -s "$dir/world.err" ]
-    scene 25000
+    scene 12000
     start_world $there
-    felt "$where, another world" 3 25000 $here
+    felt "$where, another world" 3 12000 $here
     end_world
 }
 

@@ -40,11 +40,11 @@ fast="supply=0 ad_settle=0"
 # The glove's scan runs while the tick before computes.
 box="--loop --glove-age 1"
 # The most a class of ticks may vary in the scene's instructions, ppm of its dearest tick.
-even="--spread 50000"
+even="--spread 52000"
 # The most instructions that a tick of the full box may take, the image's part and the scene's: with
 # a glove frame in every tick, and with one in every twentieth, computed and taken in parts.
-dear="--most 22500"
-dear_parts="--most 16000"
+dear="--most 24500"
+dear_parts="--most 17500"
 # With as few accesses as a tick can do with (docs/CARDS.md); the glove at 500 Hz, in parts.
 sparing="monitor=2 turns=1"
 parts="--loop --turns --glove-last --set every=20"

@@ -143,7 +143,7 @@ if [ -x "$exhand" ]; then
     # Sound in all else, but of a motor with twice the force: refused, unless that is waived.
     calibrated 2 0 --device kf=7
     MODULES=$out/2/calibration.bin
-    boots 1 '^calibration 1: force over current, finger 0, point 1: 6[.].*: refused$' ticks=1000 \
+    boots 2 '^calibration 1: force over current, finger 0, point 1: 6[.].*: refused$' ticks=1000 \
         device_id=1 day=20000
     says 'far_calibration=1 believes it$'
     boots 0 ', enable 0x00000001$' ticks=1000 device_id=1 day=20000 far_calibration=1

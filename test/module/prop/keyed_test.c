@@ -51,7 +51,7 @@ static void spoil(struct kept *k)
 {
     const struct kept was = *k, *const from = any();
     const size_t at = (size_t)(check_u64() % k->len_B);
-    const size_t tail_B = EXH_KEYED_B - check_u64() % 2 * EXH_MAC_B;
+    const size_t tail_B = EXH_KEYED_B - (check_u64() & 1 ? EXH_MAC_B : 0);
     switch (check_u64() % 4) {
     case 0: k->byte[at] = (uint8_t)(k->byte[at] ^ 1u << check_u64() % 8); break;
     case 1: k->len_B = at; break;
