@@ -147,12 +147,15 @@ static void put_right(unsigned right, uint8_t *q, uint32_t *len_B)
 static void must_answer(
     const struct box *was, const uint8_t *q, uint32_t len_B, const uint8_t *a, int n)
 {
+    struct box same = *was;
     MUST(n >= 0 && n <= EXH_MODBUS_PDU_B && (n == 0) == (len_B == 0));
     if (n == 0) { return; }
     if (a[0] & 0x80u) {
         MUST(
             n == 2 && a[0] == (q[0] | 0x80u) && (a[1] == 1 || a[1] == 2 || a[1] == 3 || a[1] == 6));
-        MUST(memcmp(was, &b, sizeof b) == 0);
+        same.r.refused = b.r.refused; /* what may not be is counted */
+        MUST(b.r.refused - was->r.refused <= (a[1] == 3));
+        MUST(memcmp(&same, &b, sizeof b) == 0);
     } else {
         MUST(a[0] == q[0] && n >= 3);
         MUST(q[0] > 4 || n == 2 + a[1]);
