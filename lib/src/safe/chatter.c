@@ -71,12 +71,19 @@ uint32_t exh_chatter_step(const struct exh_chatter *s, const struct exh_chatter_
 /* 1 at a valley: a current that fell and has risen by a swing. */
 static int valley(struct exh_chatter *s, int32_t now_A_q26)
 {
-    const int64_t up = (int64_t)now_A_q26 - s->end_A_q26;
-    const int64_t back = s->rises ? -up : up;
+    const int32_t up = exh_wrap_diff(now_A_q26, s->end_A_q26); /* both within 2^30 */
+    const int32_t back = s->rises ? -up : up;
     const int turns = back > SWING_A_Q26;
     if (turns || back < 0) { s->end_A_q26 = now_A_q26; }
     s->rises = (uint8_t)(s->rises ^ turns);
     return turns && s->rises;
+}
+
+/* v, nearer to 0 by `by` at most. */
+static int64_t leaked(int64_t v, int64_t by)
+{
+    const int64_t sign = v >> 63, left = (v ^ sign) - sign - by, size = left & ~(left >> 63);
+    return (size ^ sign) - sign;
 }
 
 void exh_chatter_update(
@@ -84,15 +91,16 @@ void exh_chatter_update(
 {
     const int32_t moved = exh_clamp32(exh_wrap_diff(cnt, s->cnt), -WAY_MAX_CNT, WAY_MAX_CNT);
     const int64_t given = -(int64_t)(s->held_A_q26 >> (EXH_Q_CUR - Q_ACNT)) * moved;
-    const int64_t leak = cfg->leak_Acnt_q20, was = s->net_Acnt_q20;
-    const int64_t left = was > leak ? was - leak : was < -leak ? was + leak : 0;
     const int counts = s->ticks < cfg->ticks;
-    const int64_t cycle = counts ? s->cycle_Acnt_q20 + given : 0;
-    const int ends = valley(s, coded_A_q26);
 
-    s->net_Acnt_q20 = exh_clamp64(left + (ends ? cycle : 0), cfg->energy_Acnt_q20);
-    s->cycle_Acnt_q20 = ends ? 0 : cycle;
-    s->ticks = ends ? 0 : s->ticks + (uint32_t)counts;
+    if (s->net_Acnt_q20 != 0) { s->net_Acnt_q20 = leaked(s->net_Acnt_q20, cfg->leak_Acnt_q20); }
+    s->cycle_Acnt_q20 = counts ? s->cycle_Acnt_q20 + given : 0;
+    s->ticks += (uint32_t)counts;
+    if (valley(s, coded_A_q26)) {
+        s->net_Acnt_q20 = exh_clamp64(s->net_Acnt_q20 + s->cycle_Acnt_q20, cfg->energy_Acnt_q20);
+        s->cycle_Acnt_q20 = 0;
+        s->ticks = 0;
+    }
     s->held_A_q26 = coded_A_q26;
     s->cnt = cnt;
 }

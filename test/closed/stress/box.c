@@ -67,7 +67,7 @@ static int cuts(uint32_t c)
 {
     return (c & ~(uint32_t)(EXH_FAULT_OVERRUN | EXH_FAULT_ENCODER | EXH_FAULT_DEADMAN |
                             EXH_FAULT_STUCK | EXH_FAULT_SPEED | EXH_FAULT_GLOVE | EXH_FAULT_LINK |
-                            EXH_FAULT_SUPPLY)) != 0;
+                            EXH_FAULT_SUPPLY | EXH_FAULT_CHATTER)) != 0;
 }
 
 /* While force may act. */

@@ -2,7 +2,7 @@
 /* The rules that must hold in every tick, listed in stress.c. */
 #include "stress.h"
 
-#define LIMITS_ALL 0x3FF /* PASSIVITY is not in this scene */
+#define LIMITS_ALL (0x3FF | EXH_LIMIT_PERSON) /* PASSIVITY is not in this scene */
 
 /* what the scene does not show */
 struct hidden {
@@ -58,6 +58,7 @@ static void shadow_tick(struct drop *s, const struct exh_scene_in *in, struct hi
         box.ready &= (uint8_t)~EXH_ARM_ENCODER;
     }
     box.raised |= exh_motion_step(&s->watch, &rig.cfg.watch, &q.vel_mps_q27, &h->limits);
+    box.raised |= exh_chatter_step(&s->chatter, &rig.cfg.chatter);
     box_tick(box, h);
     permit = exh_safety_step(&s->safety, &rig.cfg.safety, box);
     h->touching = exh_contact_step(&s->contact, &par->contact, q, &h->f);
@@ -66,6 +67,7 @@ static void shadow_tick(struct drop *s, const struct exh_scene_in *in, struct hi
     exh_gate_step(&s->safety, &rig.cfg.drive, 1, &h->i, &h->limits, &h->out);
     exh_tracking_update(&s->track, h->i.coded_A_q26);
     exh_motion_update(&s->watch, &rig.cfg.watch, cnt, h->i.coded_A_q26);
+    exh_chatter_update(&s->chatter, &rig.cfg.chatter, cnt, h->i.coded_A_q26);
 }
 
 static int64_t asked_of(const struct exh_force_ledger *f)

@@ -211,6 +211,7 @@ static void begin(const char *name, uint32_t rate_Hz)
     if (box) {
         (void)exh_params_stage(scene->params, 0x8903, 0, 1);
         (void)exh_params_stage(scene->params, 0x8610, 0, (1 << PIPE_FINGERS) - 1);
+        (void)exh_params_stage(scene->params, 0x8617, 0, 0); /* any gains */
         (void)exh_params_stage(scene->params, 0x0B01, 0, k * 1024);
         (void)exh_params_stage(scene->params, 0x0B02, 0, b * (1 << 20));
         for (uint16_t f = 0; f < PIPE_FINGERS; f++) {

@@ -185,7 +185,7 @@ TEST(setup_refuses_what_no_device_has)
     }
 }
 
-/* Any bytes: within what a sum takes, and the next cycles bring it back. */
+/* Any bytes: within what a sum takes, and the next valley brings it back. */
 TEST(damaged_state)
 {
     const struct exh_chatter_cfg cfg = cfg_of(&par, 2000);
@@ -208,6 +208,7 @@ TEST(damaged_state)
         for (int k = 0; k < 10; k++) {
             exh_chatter_update(&s, &cfg, (int32_t)check_u64(), (int32_t)check_u64());
         }
+        for (int k = 0; k < 4; k++) { exh_chatter_update(&s, &cfg, 0, k & 1 ? AMPERE : 0); }
         CHECK(s.net_Acnt_q20 <= cfg.energy_Acnt_q20 && s.net_Acnt_q20 >= -cfg.energy_Acnt_q20,
             "out of bounds");
     }
