@@ -16,7 +16,7 @@ static const struct exh_signal own_rows[] = {
         "ticks from one state packet to the next"},
     {0x8612, 0, EXH_WHEN_SETUP, 0, INT32_MAX, 0, "session", "",
         "of the link, another at every start; 0: of the board's cycle counter"},
-    {0x8613, 0, EXH_WHEN_ANY, 100, 60000, 1000, "quiet", "ms",
+    {0x8613, 0, EXH_WHEN_ANY, 100, 60000, EXH_WIRE_QUIET_MS, "quiet", "ms",
         "nothing heard for so long: any hello begins anew"},
     {0x8614, 0, EXH_WHEN_SETUP, 1, 60000, 20, "f0_rest", "ms",
         "a string that runs out no farther for so long is wound in"},

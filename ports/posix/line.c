@@ -8,8 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#define PUMP     64      /* datagrams taken a call, at most: a flood holds no tick up */
-#define QUIET_US 1000000 /* the socket's peer: nothing heard for so long, any HELLO begins anew */
+#define PUMP 64 /* datagrams taken a call, at most: a flood holds no tick up */
 
 static struct {
     struct posix_line cfg;
@@ -95,7 +94,8 @@ static void pump(double now_s)
 {
     uint8_t buf[SIM_LINK_PACKET_B + EXH_KEYED_B];
     int n;
-    (void)exh_wire_poll(&line.rx, (uint32_t)fmin(1e6 * (now_s - line.heard_s), 4e9), QUIET_US);
+    (void)exh_wire_poll(
+        &line.rx, (uint32_t)fmin(1e6 * (now_s - line.heard_s), 4e9), 1000u * EXH_WIRE_QUIET_MS);
     line.heard_s = now_s;
     while ((n = sim_link_recv(&line.link.way[SIM_LINK_OUT], now_s, buf, SIM_LINK_PACKET_B)) > 0) {
         put(buf, n, sizeof buf);
