@@ -63,7 +63,14 @@ const struct exh_keyed *posix_line_keyed(void)
     return line.udp_open && line.cfg.key ? &line.keyed : NULL;
 }
 
-uint64_t posix_line_strangers(void) { return line.udp_open ? line.udp.strangers : 0; }
+struct posix_line_drops posix_line_drops(void)
+{
+    const struct posix_line_drops none = {0, 0},
+                                  some = {line.udp.strangers,
+                                      line.udp.bad_length +
+                                          line.link.way[SIM_LINK_IN].counts.too_long};
+    return line.udp_open ? some : none;
+}
 
 struct sim_link *posix_link(void) { return &line.link; }
 

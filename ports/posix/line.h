@@ -41,8 +41,12 @@ void line_advance(double now_s);
 int line_send(double now_s, const void *buf, size_t len_B);
 int line_recv(double now_s, void *buf, size_t cap_B);
 
-/* Packets that came to the socket from elsewhere than its peer. */
-uint64_t posix_line_strangers(void);
+/* Packets that came to the socket and went no further. */
+struct posix_line_drops {
+    uint64_t strangers;  /* from elsewhere than its peer */
+    uint64_t bad_length; /* the peer's, empty or longer than any */
+};
+struct posix_line_drops posix_line_drops(void);
 
 /* What came to a socket with a key, counted; NULL: there is no key. */
 const struct exh_keyed *posix_line_keyed(void);

@@ -107,13 +107,14 @@ int udp_recv(struct udp *u, void *buf, size_t cap_B)
         n = recvmsg(u->fd, &m, 0);
         if (n < 0 && errno == EINTR) { continue; }
         if (n < 0) { return 0; }
-        if (n == 0 || m.msg_flags & MSG_TRUNC) { continue; }
         u->from = from;
         if (!u->learns && !udp_from(u, &u->peer)) {
             u->strangers++;
-            continue;
+        } else if (n == 0 || m.msg_flags & MSG_TRUNC) {
+            u->bad_length++;
+        } else {
+            return (int)n;
         }
-        return (int)n;
     }
     return 0;
 }

@@ -14,6 +14,7 @@ struct udp {
     struct sockaddr_in peer;
     struct sockaddr_in from; /* who sent the newest packet */
     uint64_t strangers;      /* packets from others, dropped */
+    uint64_t bad_length;     /* longer than the buffer, or empty: dropped */
     uint64_t unsent;         /* not taken by the system, or there was no peer yet */
 };
 
@@ -30,7 +31,7 @@ unsigned udp_port(const struct udp *u);
 int udp_send(struct udp *u, const void *buf, size_t len_B);
 
 /* The next packet, or 0: none, or too much that is none for one call. One longer than cap_B is
- * dropped, as are empty ones. */
+ * dropped and counted, as are empty ones. */
 int udp_recv(struct udp *u, void *buf, size_t cap_B);
 
 /* 1: the packet just received came from this peer. */

@@ -192,7 +192,7 @@ void world_line_after(const struct bilateral_box *box)
         went(box, now_s);
     }
     look_who(box, now_s);
-    if (!world.strangers && posix_line_strangers()) {
+    if (!world.strangers && posix_line_drops().strangers) {
         world.strangers = 1;
         cli_complain(
             "--udp %s: packets of another sender come, too: they are dropped and counted", given);
@@ -212,12 +212,14 @@ const char *world_line_word(void)
 void world_line_print(FILE *f, const struct bilateral_box *box)
 {
     const struct exh_keyed *const k = posix_line_keyed();
+    const struct posix_line_drops drops = posix_line_drops();
     fprintf(f,
         "world %s: %" PRId32 " packets came, %" PRId32 " missing, %" PRId32
-        " refused; %lu sessions; %" PRIu64 " packets of other senders\n",
+        " refused; %lu sessions; %" PRIu64 " packets of other senders, %" PRIu64
+        " of the world's too long or empty\n",
         given, box->accepted, box->missing,
         box->corrupt + box->version + box->unknown + box->stranger + box->far, world.sessions,
-        posix_line_strangers());
+        drops.strangers, drops.bad_length);
     if (k == NULL) { return; }
     fprintf(f,
         "key: %" PRIu32 " packets taken; %" PRIu32 " without a key, %" PRIu32

@@ -235,7 +235,8 @@ TEST(strangers_and_cut_packets_are_dropped)
     CHECK_EQ_I64(udp_send(&b, buf, 64), 64);
     CHECK_EQ_I64(udp_send(&b, buf, 10), 10);
     CHECK_EQ_I64(udp_recv(&a, buf, 63), 10); /* the one that does not fit is gone */
-    CHECK_EQ_I64(udp_send(&a, buf, 8), 0);   /* nobody has looked at it */
+    CHECK_EQ_I64((int64_t)a.bad_length, 1);
+    CHECK_EQ_I64(udp_send(&a, buf, 8), 0); /* nobody has looked at it */
     udp_learn(&a);
     udp_learn(&b); /* has its peer */
     CHECK_EQ_I64(udp_send(&a, buf, 8), 8);

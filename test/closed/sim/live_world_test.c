@@ -278,6 +278,18 @@ static void put(int fd, const struct sockaddr_in *to, int n)
     }
 }
 
+/* Longer than a scene's packet, than any of ours, and none. */
+static void put_long(int fd, const struct sockaddr_in *to)
+{
+    static const char junk[2000] = "XW";
+    static const size_t len_B[] = {257, sizeof junk, 0};
+    for (int i = 0; i < 3; i++) {
+        CHECK(sendto(fd, junk, len_B[i], 0, (const struct sockaddr *)to, sizeof *to) ==
+                  (ssize_t)len_B[i],
+            "send");
+    }
+}
+
 /* What came from the right place and is no world's, and what came from elsewhere. */
 TEST(packets_that_are_no_worlds_are_said_and_counted)
 {
@@ -289,12 +301,15 @@ TEST(packets_that_are_no_worlds_are_said_and_counted)
     box = heard(here);
     put(other, &box, 3);
     put(here, &box, 7);
+    put_long(here, &box);
     said_end(&s, dir, pid);
     CHECK(s.status == 1, "%d %s", s.status, s.err);
     CHECK(strstr(s.err, "packets of another sender come, too"), "%s", s.err);
     CHECK(strstr(s.err, "no world answers: 7 packets came that no world of this version sends"),
         "%s", s.err);
-    CHECK(strstr(s.out, " 7 refused; 0 sessions; 3 packets of other senders"), "%s", s.out);
+    CHECK(strstr(s.out,
+              " 7 refused; 0 sessions; 3 packets of other senders, 3 of the world's too long"),
+        "%s", s.out);
     close(other);
     close(here);
     said_clean(dir);

@@ -96,10 +96,11 @@ static int go(struct listen *l, struct udp *u)
     return err;
 }
 
-static int report(const struct listen *l, int ended)
+static int report(const struct listen *l, uint64_t bad_length, int ended)
 {
     const struct pieces *p = &l->pieces;
     pieces_complain(p);
+    if (bad_length) { cli_complain("%" PRIu64 " datagrams were too long or empty", bad_length); }
     if (!p->begun) {
         cli_complain("--at: %s: nothing of a log came%s: is it the box's log_port=, and this "
                      "machine its peer=?",
@@ -109,7 +110,8 @@ static int report(const struct listen *l, int ended)
     printf("%s: %" PRIu64 " bytes in %" PRIu64 " pieces; missing %" PRIu64 ", late %" PRIu64
            ", twice %" PRIu64 ", not the log's %" PRIu64 "; %s%s\n",
         l->out, l->bytes, p->pieces, p->missing, p->late, p->twice,
-        p->foreign + p->damaged + p->old + p->beyond + p->keyed + p->no_key + p->other_key,
+        p->foreign + p->damaged + p->old + p->beyond + p->keyed + p->no_key + p->other_key +
+            bad_length,
         l->in_mid ? "it begins in mid-run, at a keyframe; " : "",
         !p->ended ? "its end did not come"
         : ended   ? "its end came"
@@ -177,6 +179,6 @@ int cli_listen(int argc, char **argv)
     }
     udp_close(&u);
     if (err) { return err; }
-    err = report(&l, ended);
+    err = report(&l, u.bad_length, ended);
     return posix_interrupted() ? 130 : err;
 }
