@@ -253,7 +253,7 @@ static void complain_of_keys(const struct pieces *p)
     }
 }
 
-void pieces_complain(const struct pieces *p)
+void pieces_complain(const struct pieces *p, uint64_t bad_length)
 {
     char name[INET_ADDRSTRLEN];
     uint64_t named = 0;
@@ -274,6 +274,7 @@ void pieces_complain(const struct pieces *p)
                      "be: none of them was taken",
             p->damaged, p->beyond);
     }
+    if (bad_length) { cli_complain("%" PRIu64 " datagrams were too long or empty", bad_length); }
     complain_of_keys(p);
     if (p->old > 0) {
         cli_complain("%" PRIu64 " pieces are of version 1, this program's is 2: give the box the "

@@ -63,7 +63,8 @@ void pieces_open(struct pieces *p, const struct sockaddr_in *peer, const struct 
 /* A datagram as it came: 1, *part is the log's, or 0. */
 int pieces_take(struct pieces *p, const struct sockaddr_in *from, const uint8_t *datagram, size_t n,
     struct pieces_part *part);
-/* A line on stderr for each who sent what is not the log's, and what it was. */
-void pieces_complain(const struct pieces *p);
+/* A line on stderr for each who sent what is not the log's, and what it was. bad_length: what the
+ * socket dropped. */
+void pieces_complain(const struct pieces *p, uint64_t bad_length);
 
 #endif

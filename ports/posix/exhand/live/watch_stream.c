@@ -50,7 +50,7 @@ int watch_stream_open(const char *at, const char *peer, const char *key)
 void watch_stream_close(void)
 {
     udp_close(&in.udp);
-    pieces_complain(&in.pieces);
+    pieces_complain(&in.pieces, in.udp.bad_length);
 }
 
 /* --- records --- */

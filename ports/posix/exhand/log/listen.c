@@ -99,8 +99,7 @@ static int go(struct listen *l, struct udp *u)
 static int report(const struct listen *l, uint64_t bad_length, int ended)
 {
     const struct pieces *p = &l->pieces;
-    pieces_complain(p);
-    if (bad_length) { cli_complain("%" PRIu64 " datagrams were too long or empty", bad_length); }
+    pieces_complain(p, bad_length);
     if (!p->begun) {
         cli_complain("--at: %s: nothing of a log came%s: is it the box's log_port=, and this "
                      "machine its peer=?",
