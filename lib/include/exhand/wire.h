@@ -34,7 +34,7 @@ extern "C" {
 #define EXH_WIRE_NEVER_MS 65535u  /* age: never, or so old */
 #define EXH_WIRE_FRAMES   11      /* of a trace in a packet, at most */
 #define EXH_WIRE_AHEAD    65536u  /* sequence numbers that may be skipped at once, and one */
-#define EXH_WIRE_QUIET_MS 500     /* nothing accepted for so long: open, where nobody says else */
+#define EXH_WIRE_QUIET_MS 500     /* a controller that accepts nothing for so long is open */
 
 /* What a packet is. Each type but TRACE has one length. */
 enum exh_wire_type {

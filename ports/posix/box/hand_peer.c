@@ -11,8 +11,9 @@
 #define HELLO_EVERY_S 0.5
 #define PARAM_EVERY_S 0.02
 #define TRACE_EVERY_S \
-    0.5             /* longer than the way there and back: an answer is of the newest request */
-#define HOLDS_S 1.0 /* planes wait so long for the answers to parameters */
+    0.5              /* longer than the way there and back: an answer is of the newest request */
+#define HOLDS_S  1.0 /* planes wait so long for the answers to parameters */
+#define QUIET_US 1000000 /* nothing heard for so long: any HELLO begins anew */
 
 double peer_gap_m(const struct exh_wire_plane *p, const int32_t tip_m_q30[3])
 {
@@ -202,8 +203,7 @@ void peer_frame(void *ctx, struct sim_link *link, double t_s)
     int n, there;
     if (p->cfg.again_s > 0 && t_s >= p->cfg.again_s && !p->born_again) { start_anew(p); }
     there = t_s >= p->cfg.from_s && t_s < p->cfg.until_s;
-    (void)exh_wire_poll(
-        &p->rx, (uint32_t)fmin(1e6 * (t_s - p->heard_s), 4e9), 1000u * EXH_WIRE_QUIET_MS);
+    (void)exh_wire_poll(&p->rx, (uint32_t)fmin(1e6 * (t_s - p->heard_s), 4e9), QUIET_US);
     p->heard_s = t_s;
     while ((n = sim_link_recv(&link->way[SIM_LINK_OUT], t_s, buf, sizeof buf)) > 0) {
         if (there) { take(p, buf, (size_t)n); }

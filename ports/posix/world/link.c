@@ -11,7 +11,8 @@
 #include <unistd.h>
 
 #define HELLO_EVERY_US 500000
-#define BURST          64 /* datagrams taken a frame, at most: a flood can't hold a frame up */
+#define QUIET_US       1000000 /* nothing heard for so long: any HELLO begins anew */
+#define BURST          64      /* datagrams taken a frame, at most: a flood can't hold a frame up */
 
 /* "[HOST:]PORT" apart; host is "" where there is none. */
 static int part(const char *text, char host[128], char port[16])
@@ -184,7 +185,7 @@ static void let_pass(struct link *l, int64_t now_us)
 {
     const int64_t us = now_us - l->heard_us;
     const uint32_t passed_us = us < 0 ? 0 : us < UINT32_MAX ? (uint32_t)us : UINT32_MAX;
-    (void)exh_wire_poll(&l->rx, passed_us, 1000u * EXH_WIRE_QUIET_MS);
+    (void)exh_wire_poll(&l->rx, passed_us, QUIET_US);
     l->heard_us = now_us;
 }
 
