@@ -12,7 +12,6 @@ Exit status: 0 all hold, 1 an attack succeeds or a row could not be judged. Stan
 
 import argparse
 import os
-import re
 import shutil
 import sys
 import tempfile
@@ -21,13 +20,12 @@ import time
 
 import files
 import link
+import planted
 import ports
 import rig
 
-# Till the peer is heard when the attack is over: `quiet`, or that and the peer's next HELLO.
-HEARD_S = {"stays": 0.5, "again": 1.0, "anew": 1.6}
-GAP_S = 0.5                # longest hole of a peer that is heard
-WAIT_S, ANEW_S = 1.4, 2.5  # what is looked at behind an attack
+GAP_S = {"stays": 0.5, "again": 1.0}  # how long the peer may not be heard behind an attack
+WAIT_S = 1.5                          # what is looked at behind it
 SUMS = {"late": ("duplicate", "reordered", "old", "stranger"), "bad": ("corrupt", "version",
         "unknown"), "accepted": ("accepted",), "set": ("set",), "refused": ("refused",)}
 
@@ -35,16 +33,19 @@ SUMS = {"late": ("duplicate", "reordered", "old", "stranger"), "bad": ("corrupt"
 class Report:
     """A line a row."""
 
-    def __init__(self):
-        self.failed, self.rows, self.lock = 0, 0, threading.Lock()
+    def __init__(self, quiet=False):
+        self.failed, self.rows, self.wrong, self.lock = 0, 0, [], threading.Lock()
+        self.quiet = quiet
 
     def row(self, name, what, tried, counted, wrong):
         with self.lock:
             self.rows += 1
             self.failed += bool(wrong)
-            print("%-6s %-14s %-46s tried %-6s counted: %-30s %s" % (
-                "FAILED" if wrong else "ok", name, what, tried, counted, "; ".join(wrong)),
-                flush=True)
+            self.wrong += wrong
+            if not self.quiet:
+                print("%-6s %-14s %-46s tried %-6s counted: %-30s %s" % (
+                    "FAILED" if wrong else "ok", name, what, tried, counted, "; ".join(wrong)),
+                    flush=True)
 
 
 def until(what, seconds, said):
@@ -64,63 +65,45 @@ def hole(ticks, first, last):
 def heard(ticks, span, must):
     """What is wrong with how the true peer was heard."""
     start, end, behind = span
-    settled = end + int(HEARD_S[must] * rig.RATE_HZ)
-    wrong, worst = [], hole(ticks, settled, behind)
-    if worst > GAP_S:
-        wrong.append("%.1f s behind the end the peer is not heard for %.1f s" % (HEARD_S[must],
-                     worst))
-    if must == "stays" and hole(ticks, start, end) > GAP_S:
-        wrong.append("the peer was not heard for %.1f s" % hole(ticks, start, end))
-    return wrong
+    holes = [("behind it", end, behind, GAP_S[must])]
+    holes += [("meanwhile", start, end, GAP_S["stays"])] if must == "stays" else []
+    return ["%s the peer was not heard for %.2f s" % (when, hole(ticks, first, last))
+            for when, first, last, most in holes if hole(ticks, first, last) > most]
 
 
-def counts(rows, span, text, keyed):
+def counts(rows, span, named):
     """{name: how many}: of the window by the log, or of the whole run by what the box said."""
     start, _, behind = span
-    many = {name: sum(int(float(rows[behind - 1][c])) - int(float(rows[start][c])) for c in of)
-            for name, of in SUMS.items()}
-    found = re.search(r"(\d+) packets of other senders", text)
-    many["others"] = int(found[1]) if found else 0
-    if keyed:
-        for n, name in re.findall(r"(\d+) (without a key|of another key|not proved|again|damaged)",
-                                  text):
-            many[name] = int(n)
-    return many
+    return {name: sum(int(float(rows[behind - 1][c])) - int(float(rows[start][c])) for c in of)
+            for name, of in SUMS.items()} | named
 
 
 def judge(report, box, table, done, world):
     """Each row of the table by the log of the box."""
-    rows, text, changes = box.rows(), box.text(), box.changes()
-    most = max(float(r["f_des_n"]) for r in rows)
+    rows, named, changes = box.rows(), box.named(), box.changes()
     for (name, what, _, want, must), (tried, start, end, last) in zip(table, done):
         behind = min(last, len(rows))
         span = (start, end, behind)
-        many = counts(rows, span, text, world.key)
-        force = rig.above(rows[start:behind])
-        wrong = [force] if force else []
+        many = counts(rows, span, named)
+        wrong = rig.above(rows[start:behind])
         wrong += [line for tick, line in changes if start <= tick <= behind]
         wrong += heard(world.heard, span, must)
         wrong += ["%s: %d of %d" % (c, many.get(c, 0), tried) for c, share in want.items()
                   if many.get(c, 0) < share * tried]
         if many["set"]:
             wrong.append("%d materials set" % many["set"])
+        if any(r["state"] in ("0", "5") for r in rows[start:behind]):
+            wrong.append("the box was off or in fault: not judged")
         report.row(name, what, tried, ", ".join("%s %d" % (c, many.get(c, 0)) for c in want), wrong)
-    wrong = [] if most > 0.8 * rig.PERSON_A * 3.339 else ["the finger felt nothing: not judged"]
-    report.row("ceiling", "no more than %g N, %g A" % (rig.PERSON_N, rig.PERSON_A), len(rows),
-               "at most %.3f N" % most, wrong + [w for w in [rig.above(rows)] if w])
+    report.row("ceiling", "no more than %g N, %g A" % tuple(rig.CEILING.values()), len(rows),
+               "at most %.3f N, %.3f A" % tuple(rig.most(rows, n) for n in rig.CEILING),
+               rig.above(rows) + rig.untried(rows))
 
 
-def on_link(report, options, folder, table, key=None, approaches=0):
+def on_link(report, options, folder, table, key=None, approaches=0, make=rig.linked):
     """One box, one world, and a table of attacks one after the other."""
     world = rig.World(key)
-    words = ([] if approaches else ["--scene", "bilateral"]) + ["--udp", world.at]
-    name = "approaches" if approaches else "keyed" if key else "open"
-    if key:
-        path = os.path.join(folder, "key")
-        with open(os.open(path, os.O_CREAT | os.O_WRONLY, 0o600), "w", encoding="ascii") as f:
-            f.write(key.hex() + "\n")
-        words += ["--key", path]
-    box = rig.Box(options.exhand, folder, name, words, approaches)
+    box = make(options, folder, world, approaches)
     aim, done = link.Aim(world, options.flood), []
     try:
         world.start()
@@ -135,14 +118,50 @@ def on_link(report, options, folder, table, key=None, approaches=0):
             start = world.tick
             tried = sum(row[2](aim) for _ in range(10 if options.long else 1))
             end = world.tick
-            time.sleep(ANEW_S if row[4] == "anew" else WAIT_S)
+            time.sleep(WAIT_S)
             done.append((tried, start, end, world.tick))
     finally:
         status = box.end()
         world.ended = True
-    if status not in ((0, 1) if approaches else (130,)):  # 1: an approach while nobody was heard
+    if status not in box.ends_with:
         raise RuntimeError("the box ended with %d: %s" % (status, box.text()))
     judge(report, box, table, done, world)
+
+
+PARTS = {
+    "link": lambda *of: on_link(*of, link.OPEN),
+    "key": lambda *of: on_link(*of, link.KEYED, os.urandom(16)),
+    "bilateral": lambda report, options, folder: on_link(
+        report, options, folder, link.APPROACHES, approaches=24 if options.long else 8),
+    "modbus": ports.attack, "files": files.attack, "listen": files.on_listen}
+
+
+def part(report, options, folder, name):
+    os.makedirs(folder, exist_ok=True)
+    try:
+        PARTS[name](report, options, folder)
+    except Exception as error:  # whatever it is, the row says so and fails
+        report.row(name, "could not be judged", 0, "", [repr(error)])
+
+
+def attack(options, folder):
+    report = Report()
+    at_once = [threading.Thread(target=part, args=(report, options, folder, name))
+               for name in options.only.split(",")]
+    for thread in at_once:
+        thread.start()
+    for thread in at_once:
+        thread.join()
+    print("attacks: %d rows, %d failed" % (report.rows, report.failed))
+    return 1 if report.failed else 0
+
+
+def plant(options, folder):
+    def parts(name, number):
+        report = Report(quiet=True)
+        part(report, options, os.path.join(folder, str(number)), name)
+        return report.wrong
+    return planted.run(parts)
 
 
 def main():
@@ -150,37 +169,17 @@ def main():
     parser.add_argument("exhand")
     parser.add_argument("--long", action="store_true", help="each attack ten times")
     parser.add_argument("--flood", type=int, default=100000, help="datagrams of a flood (100000)")
-    parser.add_argument("--only", default="link,key,bilateral,modbus,files,listen",
-                        help="some of these parts (link,key,bilateral,modbus,files,listen)")
+    parser.add_argument("--only", default=",".join(PARTS), help="some of the parts (%(default)s)")
+    parser.add_argument("--planted", action="store_true",
+                        help="each verdict must tell an error that is planted for it")
     parser.add_argument("--keep", help="leave logs in this folder")
     options = parser.parse_args()
-    folder, report = options.keep or tempfile.mkdtemp(prefix="exhand-attacks-"), Report()
-    os.makedirs(folder, exist_ok=True)
-    parts = {"link": lambda: on_link(report, options, folder, link.OPEN),
-             "key": lambda: on_link(report, options, folder, link.KEYED, os.urandom(16)),
-             "bilateral": lambda: on_link(report, options, folder, link.APPROACHES,
-                                          approaches=(24 if options.long else 8)),
-             "modbus": lambda: ports.attack(report, options, folder),
-             "files": lambda: files.attack(report, options, folder),
-             "listen": lambda: files.on_listen(report, options, folder)}
-
-    def part(name):
-        try:
-            parts[name]()
-        except Exception as error:  # whatever it is, the row says so and fails
-            report.row(name, "could not be judged", 0, "", [repr(error)])
-
+    folder = options.keep or tempfile.mkdtemp(prefix="exhand-attacks-")
     try:
-        at_once = [threading.Thread(target=part, args=(name,)) for name in options.only.split(",")]
-        for thread in at_once:
-            thread.start()
-        for thread in at_once:
-            thread.join()
+        return (plant if options.planted else attack)(options, folder)
     finally:
         if not options.keep:
             shutil.rmtree(folder, ignore_errors=True)
-    print("attacks: %d rows, %d failed" % (report.rows, report.failed))
-    return 1 if report.failed else 0
 
 
 if __name__ == "__main__":

@@ -143,25 +143,25 @@ def flood_as_peer(aim):
 
 
 # name, what it does, by what, what is counted: column -> least share of what was tried; what the
-# true peer is: it "stays" heard, or is heard "again" within a second of the end, or "anew". Where
-# an attack goes by the peer's address with the numbers that come next, a link without a key
-# believes it (docs/WIRE.md, "Whom to answer"): the peer's next HELLO behind `quiet` is heard.
+# true peer is: it "stays" heard, or is heard "again" within a second of the end. Where an attack goes
+# by the peer's address with the numbers that come next, a link without a key believes it
+# (docs/WIRE.md, "Whom to answer"): the peer's next HELLO behind `quiet` is heard.
 OPEN = (
     ("param-port", "PARAM mat_k 1e6, mat_f_max 100, another port", param_other_port,
-     {"others": 0.9}, "stays"),
-    ("param-session", "the same, of the true session", param_of_session, {"others": 0.9}, "stays"),
+     {"packets of other senders": 0.9}, "stays"),
+    ("param-session", "the same, of the true session", param_of_session, {"packets of other senders": 0.9}, "stays"),
     ("replay", "the session's own packets once more", replay_session, {"late": 0.9}, "stays"),
     ("replay-earlier", "packets of the session before", replay_earlier, {"late": 0.9}, "stays"),
     ("reordered", "skipped numbers, more than 64 back", reordered, {"late": 0.9}, "stays"),
     ("hello-storm", "HELLO of fresh sessions, by the peer's address", hello_storm,
      {"late": 0.9}, "stays"),
     ("misshapen", "cut off and too long", misshapen,
-     {"bad": 0.7}, "stays"),  # what is longer than any packet is dropped, and not counted
+     {"bad": 0.7, "of the world's too long": 0.2}, "stays"),
     ("flood-peer", "random bytes, the peer's address", flood_as_peer, {"bad": 0.0}, "again"),
-    ("planes-far", "planes 1.9 m off, next numbers", planes_far, {"accepted": 0.9}, "anew"),
-    ("planes-long", "normals of length 2, next numbers", planes_long, {"refused": 0.9}, "anew"),
+    ("planes-far", "planes 1.9 m off, next numbers", planes_far, {"accepted": 0.9}, "again"),
+    ("planes-long", "normals of length 2, next numbers", planes_long, {"refused": 0.9}, "again"),
     ("param-peer", "PARAM, the peer's address, next numbers", param_as_peer,
-     {"accepted": 0.9, "set": 0.0}, "anew"),
+     {"accepted": 0.9, "set": 0.0}, "again"),
 )
 KEYED = (
     ("key-none", "PARAM without a tag", param_as_peer, {"without a key": 0.9}, "stays"),
@@ -170,12 +170,12 @@ KEYED = (
     ("key-replay", "the session's own packets once more", replay_session, {"again": 0.9}, "stays"),
     ("key-earlier", "packets of the run before", replay_earlier, {"not proved": 0.9}, "stays"),
     ("key-misshapen", "cut off and too long", misshapen, {"damaged": 0.3}, "stays"),
-    ("flood-port", "random bytes, another port", flood_other_port, {"others": 0.0}, "again"),
+    ("flood-port", "random bytes, another port", flood_other_port, {"packets of other senders": 0.0}, "again"),
 )
 # Of `exhand bilateral`, which tells no senders.
 APPROACHES = (
     ("bil-session", "PARAM of the true session, another port", param_of_session, {}, "stays"),
     ("bil-storm", "HELLO of fresh sessions", hello_storm, {"late": 0.9}, "stays"),
     ("bil-param", "PARAM, the peer's address, next numbers", param_as_peer,
-     {"accepted": 0.9, "set": 0.0}, "anew"),
+     {"accepted": 0.9, "set": 0.0}, "again"),
 )

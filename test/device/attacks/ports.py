@@ -16,6 +16,8 @@ TEST_INT = 0x0004
 APPLY, SAVE, RUN, CLEAR = 0, 2, 4, 5
 HARDER = (("f_max", 40.0), ("k", 20000.0), ("q_lim", -0.5))
 IDLE = 50
+PAUSE_S = 0.4  # of a monitor between two reads
+READING = []   # how a box is told that nobody may write
 
 
 class Client:
@@ -67,7 +69,7 @@ def addresses(exhand):
 
 
 class Monitor(threading.Thread):
-    """Reads every 0.4 s, over one connection for as long as it has it."""
+    """Reads now and then, over one connection for as long as it has it."""
 
     def __init__(self, port):
         super().__init__(daemon=True)
@@ -85,7 +87,7 @@ class Monitor(threading.Thread):
                 self.lost = "after %d reads: %s" % (self.reads, error)
                 return
             self.longest_s = max(self.longest_s, time.monotonic() - begun)
-            time.sleep(0.4)
+            time.sleep(PAUSE_S)
 
 
 def watched(report, name, what, port, attack, seconds):
@@ -153,8 +155,7 @@ def finish(report, box, rows, allowed):
     if status != 130:
         rows[-1][4].append("the box ended with %d: %s" % (status, text))
     wrong = [line for line in changes if allowed not in line or allowed == ""]
-    force = rig.above(table)
-    wrong += [force] if force else []
+    wrong += rig.above(table)
     if max(float(r["f_des_n"]) for r in table) < 0.5:
         wrong.append("the mass was never held: not judged")
     if allowed and not any(allowed in line for line in changes):
@@ -169,7 +170,7 @@ def refusals(tried, refused):
 
 def reading(report, options, folder, at):
     """A box whose clients only read, a monitor beside."""
-    box, port = box_of(options, folder, "reading", [])
+    box, port = box_of(options, folder, "reading", READING)
     rows = []
     try:
         client = Client(port)

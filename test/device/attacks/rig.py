@@ -16,11 +16,19 @@ import wire
 NORMAL = (-0.3382, 0.0345, 0.94044)  # of a wall across the index finger's way
 DISTANCE_M = 0.1253                  # of it from the palm: met at some 25 mm of string
 RATE_HZ = 500
-PERSON_N, PERSON_A = 2.0, 0.5
+CEILING = {"person_f": 2.0, "person_i": 0.5}  # N, A
+COLUMN = {"person_f": "f_des_n", "person_i": "i_des_a"}
+TOLD = {}  # what boxes are told other than that: planted.py
+
+
+def ceiling():
+    """Words that tell a box the person's ceiling."""
+    return [word for name, value in {**CEILING, **TOLD}.items()
+            for word in ("--set", "%s=%g" % (name, value))]
 
 
 class World(threading.Thread):
-    """The true peer: answers each STATE, says HELLO twice a second, and notes what it sent.
+    """The true peer: answers STATE and HELLO, says HELLO twice a second, notes what it sent.
 
     Ten times a second it asks for no trace. The answer names the question by its number, so that
     nothing that others send can pass for the peer that is heard.
@@ -90,6 +98,7 @@ class World(threading.Thread):
                 continue
             if got and got[0] == wire.HELLO:
                 self.version = int.from_bytes(got[4][1:5], "little")
+                due = 0.0
             if self.version and time.monotonic() >= due:
                 due = time.monotonic() + 0.5
                 self.say(wire.HELLO, wire.hello(self.version))
@@ -116,16 +125,23 @@ class Box:
             self.log = os.path.join(folder, name, "bilateral_natural.exh")
             command = ["bilateral", "--speed", "natural", "--approaches", str(approaches), "--out",
                        os.path.join(folder, name)]
+        self.ends_with = (0, 1) if self.ends else (130,)  # 1: an approach while nobody was heard
         self.said = os.path.join(folder, name + ".said")
         with open(self.said, "wb") as said:
             self.process = subprocess.Popen(
-                [exhand] + command + ["--rate", str(RATE_HZ), "--set", "person_f=%g" % PERSON_N,
-                                      "--set", "person_i=%g" % PERSON_A] + words,
+                [exhand] + command + ["--rate", str(RATE_HZ)] + ceiling() + words,
                 stdout=said, stderr=said)
 
     def text(self):
         with open(self.said, encoding="utf-8", errors="replace") as said:
             return said.read()
+
+    def named(self):
+        """{name: how many} of what the run said at its end."""
+        kinds = ("packets of other senders", "of the world's too long", "without a key",
+                 "of another key", "not proved", "again", "damaged")
+        return {kind: int(n) for n, kind in re.findall(r"(\d+) (%s)" % "|".join(kinds),
+                                                       self.text())}
 
     def port(self):
         for _ in range(600):
@@ -160,13 +176,37 @@ class Box:
         text = done.stdout.decode(errors="replace")
         if done.returncode != 0:
             raise RuntimeError("the log does not replay: " + text[-300:])
-        return [(int(line.split()[0]), line.split(None, 2)[2]) for line in text.splitlines()
-                if re.match(r"\s*\d+\s+[\d.]+\s+parameter ", line)]
+        to_fault = r"(?:[-+][\d.]+ +)?"
+        return [(int(tick), line) for tick, line in re.findall(
+            r"^ *(\d+) +[\d.]+ +%s(parameter .*)" % to_fault, text, re.MULTILINE)]
+
+
+def key_file(folder, key, name="link"):
+    path = os.path.join(folder, name + ".key")
+    with open(os.open(path, os.O_CREAT | os.O_WRONLY, 0o600), "w", encoding="ascii") as f:
+        f.write(key.hex() + "\n")
+    return path
+
+
+def linked(options, folder, world, approaches):
+    """A box that this world is the peer of."""
+    name = "approaches" if approaches else "keyed" if world.key else "open"
+    words = ([] if approaches else ["--scene", "bilateral"]) + ["--udp", world.at]
+    words += ["--key", key_file(folder, world.key)] if world.key else []
+    return Box(options.exhand, folder, name, words, approaches)
+
+
+def most(rows, name):
+    return max(float(row[COLUMN[name]]) for row in rows)
 
 
 def above(rows):
-    """The first row above the person's ceiling, in words; else None."""
-    for row in rows:
-        if float(row["f_des_n"]) > PERSON_N + 2e-6 or float(row["i_des_a"]) > PERSON_A + 2e-6:
-            return "%s N and %s A at %s s" % (row["f_des_n"], row["i_des_a"], row["t_s"])
-    return None
+    """Which of the person's ceilings was passed, in words."""
+    return ["%s is %g" % (COLUMN[name], most(rows, name)) for name, ceiling in CEILING.items()
+            if most(rows, name) > ceiling + 2e-6]
+
+
+def untried(rows, names=tuple(CEILING)):
+    """Which of them was never met, so that nothing was judged."""
+    return ["%s is %g at most: not judged" % (COLUMN[name], most(rows, name)) for name in names
+            if most(rows, name) < 0.99 * CEILING[name]]
