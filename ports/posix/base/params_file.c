@@ -117,6 +117,34 @@ int params_take(const char *name, struct exh_params *p, const void *image, size_
     return err;
 }
 
+/* 1: value i is the person's, and the image has another one. */
+static int is_left(const struct exh_params *p, const void *image, size_t len_B, uint32_t i)
+{
+    const struct exh_signal *row = exh_signal_at(p->table, i, NULL);
+    return row->when == EXH_WHEN_PERSON && value_of(image, len_B, i) != p->staged[i];
+}
+
+void params_tell_left(const char *name, const struct exh_params *p, const void *image, size_t len_B)
+{
+    static int told;
+    char line[1024];
+    int at = 0;
+    for (uint32_t i = 0; i < p->count && !told; i++) {
+        uint16_t instance = 0;
+        const struct exh_signal *r = exh_signal_at(p->table, i, &instance);
+        int again = !is_left(p, image, len_B, i);
+        for (uint16_t k = 0; k < instance && !again; k++) {
+            again = is_left(p, image, len_B, (uint32_t)exh_signal_find(p->table, r->id, k));
+        }
+        if (again || at >= (int)sizeof line - 100) { continue; }
+        at += snprintf(line + at, sizeof line - (size_t)at, "%s%s %.8g (stays %.8g%s%s)",
+            at ? ", " : "", r->name, cli_signal_value(r, value_of(image, len_B, i)),
+            cli_signal_value(r, p->staged[i]), r->unit[0] ? " " : "", names_unit(r->unit));
+    }
+    if (at) { cli_complain("%s: left alone, since only --set sets them: %s", name, line); }
+    told = 1;
+}
+
 int params_file_read(struct params_file *f)
 {
     long len;

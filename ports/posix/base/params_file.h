@@ -34,6 +34,11 @@ int params_save_file(const char *path, const struct exh_params *p);
  * damaged. */
 int params_take(const char *name, struct exh_params *p, const void *image, size_t len_B);
 
+/* Says in one line on stderr, once a process, which values of the person's (EXH_WHEN_PERSON) an
+ * image has that was taken without them: those that are others in *p, once all is staged. */
+void params_tell_left(
+    const char *name, const struct exh_params *p, const void *image, size_t len_B);
+
 /* A file's bytes to f->image, if one is to be loaded; the same and params_take(). 0, or the status
  * to end with, after a line on stderr. */
 int params_file_read(struct params_file *f);

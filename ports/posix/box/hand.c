@@ -244,6 +244,7 @@ int bilateral_stage(const struct bilateral_run_cfg *c)
     for (int i = 0; err == 0 && i < c->settings; i++) {
         err = cli_param_set_by(p, "--set: ", c->setting[i].name, c->setting[i].value);
     }
+    if (err == 0) { run_image_left(&c->live, p); }
     return err ? err : refuse_scale(c);
 }
 

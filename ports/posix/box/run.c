@@ -155,6 +155,11 @@ int run_image(const struct run_live *l, struct exh_params *p)
     return l->image ? params_take(l->name, p, l->image, l->image_B) : 0;
 }
 
+void run_image_left(const struct run_live *l, const struct exh_params *p)
+{
+    if (l->image) { params_tell_left(l->name, p, l->image, l->image_B); }
+}
+
 /* 1: the rate is not the controller's own, and that was told. */
 static int other_rate(const struct run_cfg *c, const struct exh_scene *sc)
 {
@@ -245,6 +250,7 @@ static int set_parameters(const struct run_cfg *c)
     for (int i = 0; err == 0 && i < c->settings; i++) {
         err = cli_param_set_by(p, "--set: ", c->setting[i].name, c->setting[i].value);
     }
+    if (err == 0) { run_image_left(&c->live, p); }
     return err;
 }
 

@@ -208,5 +208,43 @@ TEST(experiments_take_and_leave_them)
     remove_dir();
 }
 
+/* What only the person sets is no image's: one line says what it has of that, and what stays. */
+static void check_left(const char *want, const struct said *s)
+{
+    CHECK(s->status == 0 || s->status == 1, "%d: %s", s->status, s->err);
+    CHECK(want ? strstr(s->err, file) && strstr(s->err, want) &&
+                     strchr(s->err, '\n') == strrchr(s->err, '\n')
+               : s->err[0] == '\0',
+        "%s", s->err);
+}
+
+#define DROP      "drop", "--rate", "500", "--falls", "1"
+#define BILATERAL "bilateral", "--rate", "2000", "--speed", "fast", "--approaches", "1"
+#define RUN       "run", "--rate", "500", "--seconds", "0.1"
+
+TEST(what_is_left_alone_is_said)
+{
+    static const char one[] =
+        ": left alone, since only --set sets them: person_f 30 (stays 40 N)\n";
+    static const char two[] =
+        ": left alone, since only --set sets them: person_i 5 (stays 6.6 A), day 7 (stays 0)\n";
+    static struct said s;
+    make_dir();
+    said(&s, dir, cli_drop, WORDS(DROP, "--set", "person_f=30", "--save-params", file));
+    check_left(NULL, &s);
+    said(&s, dir, cli_drop, WORDS(DROP, "--runs", "3", "--load-params", file));
+    check_left(one, &s);
+    said(&s, dir, cli_drop, WORDS(DROP, "--load-params", file, "--set", "person_f=30"));
+    check_left(NULL, &s);
+    said(&s, dir, cli_run, WORDS(RUN, "--load-params", file));
+    check_left(one, &s);
+    said(&s, dir, cli_bilateral,
+        WORDS(BILATERAL, "--set", "person_i=5", "--set", "day=7", "--save-params", file));
+    check_left(NULL, &s);
+    said(&s, dir, cli_bilateral, WORDS(BILATERAL, "--load-params", file));
+    check_left(two, &s);
+    remove_dir();
+}
+
 TEST_MAIN("sim/params_file", there_and_back, what_cannot_be_written, what_is_said_of_bad_ones,
-    experiments_take_and_leave_them);
+    experiments_take_and_leave_them, what_is_left_alone_is_said);
