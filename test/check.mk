@@ -46,6 +46,8 @@ check:
 	@$(timed) size
 	@$(timed) fmt-check
 	@$(timed) doc doc-names
+	@$(timed) sbom > $(B)/exhand.spdx
+	@$(timed) same
 	@$(timed) structure
 	@$(timed) bench
 	@$(timed) report-test
