@@ -82,6 +82,8 @@ MUTANTS = (
     ("supply", "return s->off_ticks >= cfg->ticks;", "return 0;", TABLE,
      "a supply outside its limits is told"),
     ("supply", "raw <= cfg->max_raw", "1", TABLE, "above them, too"),
+    ("chatter", "s->net_Acnt_q20 >= cfg->energy_Acnt_q20", "0", TABLE,
+     "a contact that buzzes is told"),
     ("tracking", "return s->off_ticks >= cfg->ticks;", "return s->off_ticks >= 40 * cfg->ticks;",
      TABLE, "a monitor that does not follow is told in time"),
 )

@@ -14,7 +14,7 @@ TEST(the_documented_table_is_the_one_made_now)
     char *dir = said_dir();
     said(&s, dir, cli_faults, WORDS("faults", "--jobs", "2"));
     CHECK(s.status == 0 && s.err[0] == '\0', "status %d: %s%s", s.status, s.err, s.out);
-    CHECK(strstr(s.out, "\n168 cells, each at 3 rates: 0 wrong.\n") != NULL, "%s", s.out);
+    CHECK(strstr(s.out, "\n176 cells, each at 3 rates: 0 wrong.\n") != NULL, "%s", s.out);
     CHECK(strstr(s.out, "\n8 refusals, each at 3 rates: 0 wrong.\n") != NULL, "%s", s.out);
     said_as_document(&s, "docs/FAULTS.md", "exhand faults");
     said_clean(dir);
@@ -57,12 +57,14 @@ struct zero {
     int tried;
 };
 
-/* The bit of dac_zero that is worth 4.4 A. */
-static uint32_t bit_of_zero(uint8_t scene)
+/* The bit of a finger's dac_zero that is worth 4.4 A. */
+static uint32_t bit_of_zero(uint8_t scene, uint16_t finger)
 {
     const struct faults_memory m = faults_memory(scene);
     for (uint32_t i = 0; i < m.pars; i++) {
-        if (strcmp(exh_signal_at(m.table, i, NULL)->name, "dac_zero") == 0) {
+        uint16_t instance = 0;
+        if (strcmp(exh_signal_at(m.table, i, &instance)->name, "dac_zero") == 0 &&
+            instance == finger) {
             return (i * 4 + 1) * 8 + 5;
         }
     }
@@ -77,7 +79,7 @@ static void damage_it(void *ctx, uint32_t tick, const struct faults_view *v)
     if (z->free_for != 5 || z->tried) { return; }
     memset(&c, 0, sizeof c);
     c.what[0].source = FAULTS_PAR;
-    c.what[0].how = bit_of_zero(z->base.scene);
+    c.what[0].how = bit_of_zero(z->base.scene, 0);
     c.what[0].place = FAULTS_PASSED;
     c.what[1].source = FAULTS_JUMP;
     c.what[1].after_ticks = 7;
@@ -112,6 +114,48 @@ TEST(a_damaged_zero_of_the_da_pulls_until_it_is_told)
     judge_zero(1000, EXH_FAULT_CONFIG);
 }
 
+/* The thumb is not in use, and the index presses. */
+static void damage_idle(void *ctx, uint32_t tick, const struct faults_view *v)
+{
+    struct zero *z = ctx;
+    struct faults_case c;
+    z->free_for += v->force_N_q20[FAULTS_FINGER] > EXH_Q(1, 1, EXH_Q_FORCE);
+    if (z->free_for != 20 || z->tried) { return; }
+    memset(&c, 0, sizeof c);
+    c.what[0].source = FAULTS_PAR;
+    c.what[0].how = bit_of_zero(z->base.scene, EXH_THUMB);
+    c.what[0].place = FAULTS_PASSED;
+    c.follow_ticks = 1000;
+    if (faults_branch(&z->base, &c, tick, v, &z->seen)) { return; }
+    z->tried = 1;
+    posix_stop();
+}
+
+/* Its code is no zero, its drive stays disabled: no motor but the index's has a current. The guard
+ * tells it; on cards the driver does, at once, and the run has ended safe. */
+TEST(a_damaged_zero_of_an_idle_finger_pulls_nothing)
+{
+    for (int cards = 0; cards < 2; cards++) {
+        static struct zero z;
+        int err;
+        memset(&z, 0, sizeof z);
+        z.base = (struct faults_base){.scene = FAULTS_BILATERAL, .gentle = 1, .seed = 3};
+        z.base.rate_Hz = 1000;
+        z.base.cards = (uint8_t)cards;
+        err = faults_run(&z.base, damage_idle, &z);
+        CHECK(err == 0 && z.tried && z.seen.bad == 0, "%d, %d, %#x", err, z.tried,
+            (unsigned)z.seen.bad);
+        CHECK_EQ_I64(z.seen.ended, cards);
+        if (cards) { continue; }
+        CHECK_EQ_I64(z.seen.end.faults, EXH_FAULT_CONFIG);
+        CHECK(z.seen.seen_ticks[0] > 20 &&
+                  z.seen.seen_ticks[0] <=
+                      (int32_t)faults_seen_within(FAULTS_BILATERAL, FAULTS_PAR, 1000),
+            "seen after %d", (int)z.seen.seen_ticks[0]);
+    }
+}
+
 TEST_MAIN("sim/faults", the_documented_table_is_the_one_made_now,
     the_documented_states_are_the_librarys, nothing_is_wrong_at_random_times,
-    a_damaged_zero_of_the_da_pulls_until_it_is_told);
+    a_damaged_zero_of_the_da_pulls_until_it_is_told,
+    a_damaged_zero_of_an_idle_finger_pulls_nothing);

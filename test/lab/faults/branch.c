@@ -246,6 +246,9 @@ int faults_after(uint32_t tick, const struct faults_view *v, const struct exh_dr
     in.seen->opened |= v->open != 0;
     in.seen->released |= v->state == EXH_STATE_RELEASE;
     check_codes(v, out);
+    if (out->enable & ~(1u << faults_finger(in.base->scene))) { /* of a finger not in use */
+        in.seen->bad |= FAULTS_BAD_ENABLE;
+    }
     in.seen->digest = exh_crc32(in.seen->digest, out->dac_raw, sizeof out->dac_raw);
     in.seen->digest = exh_crc32(in.seen->digest, &out->enable, 1);
     watch_current();

@@ -42,7 +42,8 @@ enum faults_source {
     FAULTS_PAR,       /* a bit of a parameter in memory turns over */
     FAULTS_CAL,       /* a bit of a calibration in memory turns over */
     FAULTS_STATE,     /* the state in memory becomes one that is none */
-    FAULTS_OFF,       /* no fault: OFF is commanded */
+    FAULTS_OFF,       /* no fault: OFF is commanded; the last that random times draw */
+    FAULTS_CHATTER,   /* the string swings to and fro, fast */
     FAULTS_SOURCES
 };
 
@@ -117,6 +118,7 @@ struct faults_base {
     uint32_t seed;
     uint32_t stuck_ms;  /* 0: the scene's own */
     uint32_t wait_ms;   /* so much longer before the finger moves */
+    uint8_t chatter;    /* 1: a contact that buzzes is a fault, as it is outside experiments */
     uint8_t not_run;    /* 1: nobody commands RUN */
     uint8_t not_waived; /* 1: nor a calibration, of which there is none */
 };

@@ -12,7 +12,7 @@
 #define RATES_MAX 3
 static uint32_t rate_Hz[RATES_MAX] = {90, 1000, 2000};
 static size_t rates = RATES_MAX;
-#define SOURCES   (FAULTS_OFF - 1) /* from FAULTS_ESTOP on */
+#define SOURCES   (FAULTS_SOURCES - 2) /* without FAULTS_NOTHING and FAULTS_OFF */
 #define PASSES    4
 #define GIVE_UP_S 8u /* it never presses */
 #define WELL_S    0.25
@@ -42,6 +42,8 @@ struct plan {
     uint32_t press_at[2];        /* likewise: a limit holds, none does */
     struct row *row;
 };
+
+static unsigned source_of(unsigned row) { return row + 1 < FAULTS_OFF ? row + 1 : row + 2; }
 
 /* --- when --- */
 
@@ -230,8 +232,10 @@ static void work(const void *ctx, int i, void *result)
     memset(&p, 0, sizeof p);
     memset(result, 0, sizeof *p.row);
     p.row = result;
-    p.base = (struct faults_base){FAULTS_BILATERAL, 1, 1, rate_Hz[i % (int)rates], 7, 0, 0, 0, 0};
-    p.source = (uint8_t)(1 + i / (int)rates);
+    p.base = (struct faults_base){.scene = FAULTS_BILATERAL, .cards = 1, .gentle = 1, .seed = 7};
+    p.base.rate_Hz = rate_Hz[i % (int)rates];
+    p.source = (uint8_t)source_of((unsigned)i / (unsigned)rates);
+    p.base.chatter = p.source == FAULTS_CHATTER;
     if (p.source == FAULTS_STILL) {
         p.base.stuck_ms = 100;
     } /* its own hand is too still for that */
@@ -374,11 +378,11 @@ int faults_matrix(FILE *f, uint32_t at_Hz, int parallel)
     if (err) { return err; }
     print_head(f);
     for (unsigned s = 0; s < SOURCES; s++) {
-        const struct faults_spec *spec = faults_spec_of(s + 1);
+        const struct faults_spec *spec = faults_spec_of(source_of(s));
         fprintf(f, "| %s | %s |", spec->name, spec->what);
-        print_seen(f, &row[s * rates], s + 1);
+        print_seen(f, &row[s * rates], source_of(s));
         for (unsigned in = 0; in < FAULTS_INS; in++) {
-            wrong += print_cell(f, &row[s * rates], s + 1, in);
+            wrong += print_cell(f, &row[s * rates], source_of(s), in);
         }
         fprintf(f, "\n");
     }

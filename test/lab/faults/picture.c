@@ -78,7 +78,8 @@ int faults_pictures(const char *dir)
 {
     int err = outfile_dir(dir, "faults_2000Hz_release.csv");
     for (size_t r = 0; r < RATES && err == 0; r++) {
-        struct take t = {{FAULTS_BILATERAL, 0, 1, rate_Hz[r], 7, 0, 0, 0, 0}, dir, 0, 0};
+        struct take t = {.base = {.scene = FAULTS_BILATERAL, .gentle = 1, .seed = 7}, .dir = dir};
+        t.base.rate_Hz = rate_Hz[r];
         err = faults_run(&t.base, at, &t) < 0 || t.err;
     }
     return err ? err : outfile_write(dir, "faults.gp", script, NULL);

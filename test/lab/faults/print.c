@@ -45,7 +45,7 @@ static void print_kinds(FILE *f, const struct faults_random *r, int n)
 {
     fprintf(f, "\n| fault that came first | what happens | times | seen | wrong "
                "|\n|---|---|---|---|---|\n");
-    for (unsigned s = 1; s < FAULTS_SOURCES; s++) {
+    for (unsigned s = 1; s <= FAULTS_OFF; s++) {
         struct faults_count c = {0, 0, 0, 0};
         for (int i = 0; i < n; i++) {
             c.n += r[i].by[s].n;

@@ -44,7 +44,7 @@ static uint8_t some_source(struct sim_random *r, uint8_t scene)
 {
     uint8_t source;
     do {
-        source = (uint8_t)(1 + sim_random_u64(r) % (FAULTS_SOURCES - 1));
+        source = (uint8_t)(1 + sim_random_u64(r) % FAULTS_OFF);
     } while (!faults_has(scene, source));
     return source;
 }

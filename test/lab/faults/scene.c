@@ -188,6 +188,7 @@ static int run_finger(const struct faults_base *b)
     const struct run_setting set[] = {{"mat_f_max", b->gentle ? 40 : 3},
         {"stuck_time", b->stuck_ms ? b->stuck_ms : 2000}, {"glove_time", 150}, {"link_time", 200},
         {"supply_min", 18}, {"uncalibrated", !b->not_waived},
+        {"chatter_energy", b->chatter ? 0.03 : 0},
         {"glove_fc", b->rate_Hz < 500 ? 0.2 * b->rate_Hz : 200}};
     struct bilateral_run_cfg c;
     struct bilateral_run r;

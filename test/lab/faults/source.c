@@ -62,6 +62,15 @@ static double counts(double mps)
     return mps * period_s() / (src.device.step_m / src.device.decode);
 }
 
+/* Two ticks out, two in, at 1 m/s, and as far as moves a current: the spring is a tick late, and so
+ * drives it. */
+static int64_t swing(const struct on *o)
+{
+    const double by_speed = counts(0.5), least = counts(0.1e-3 / period_s());
+    const double far = by_speed > least ? by_speed : least;
+    return (int64_t)((src.tick - o->from_tick) / 2 % 2 ? -far : far);
+}
+
 static void encoder(struct on *o, uint32_t *enc_raw)
 {
     if (!o->begun) { o->enc_raw = src.in.enc_raw[faults_finger(src.base->scene)]; }
@@ -72,6 +81,7 @@ static void encoder(struct on *o, uint32_t *enc_raw)
     if (o->what.source == FAULTS_SPEED) {
         o->moved_cnt += (int64_t)(way(o) * counts(4 + 4 * chance(o, 0)));
     }
+    if (o->what.source == FAULTS_CHATTER) { o->moved_cnt = swing(o); }
     *enc_raw = (uint32_t)((int64_t)*enc_raw + o->moved_cnt) & 0xFFFFFF;
 }
 
