@@ -24,6 +24,7 @@ check:
 	@$(timed) golden-traces
 	@$(timed) gate
 	@$(timed) mutants ARGS="--some 4"
+	@$(timed) planted
 	@$(timed) mcdc
 	@$(timed) proof-ci
 	@$(timed) fuzz

@@ -92,3 +92,12 @@ mutation:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) mutation-built
 	@CC="$(CC)" test/strength/mutation/mutation.py --build $(B)/mutation --jobs $(jobs) $(ARGS)
 mutation-built: $(mutation_bin)
+
+planted_bin := $(foreach t,prop/drive prop/safety $(addprefix unit/,authority calib_set calibrate \
+               drive gate params polarity rows safety),$(B)/mutation/$(t)_test)
+
+## Plant errors in ceiling, authority, calibration checks and ramp; the test named for each must
+## tell it.
+.PHONY: planted
+planted: $(planted_bin)
+	@CC="$(CC)" test/strength/mutation/planted.py --build $(B)/mutation --jobs $(jobs) $(ARGS)

@@ -157,7 +157,7 @@ TEST(every_way_asks_the_table)
 
 /* The row of an output makes an image of this table one that may never be loaded: it is left out
  * here by being none. */
-TEST(an_image_comes_before_the_loop_and_leaves_the_persons_values)
+TEST(an_image_leaves_the_persons_values)
 {
     for (unsigned k = 0; k < 2 * 3 * (VALUES - 1); k++) {
         const unsigned i = 1 + k / 6, phase = k & 1 ? OPEN : BEFORE;
@@ -217,5 +217,5 @@ TEST(who_staged_is_kept_until_it_is_applied)
 }
 
 TEST_MAIN("authority", the_table, every_way_asks_the_table,
-    an_image_comes_before_the_loop_and_leaves_the_persons_values, what_was_staged_is_judged_again,
+    an_image_leaves_the_persons_values, what_was_staged_is_judged_again,
     without_apply_nothing_is_written, who_staged_is_kept_until_it_is_applied);

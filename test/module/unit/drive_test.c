@@ -64,6 +64,10 @@ TEST(setup_rejections)
         {5, 0, "no peak time"},
         {5, 2701, "a peak longer than the drive's"},
         {9, 32768, "a monitor zero beyond 16 bits"},
+        {11, (1 << 17) - 1, "no ceiling of force"},
+        {11, EXH_Q(101, 1, EXH_Q_FORCE), "a ceiling of force beyond its range"},
+        {12, -1, "a negative ceiling of current"},
+        {12, EXH_Q(67, 10, EXH_Q_CUR), "a ceiling of current beyond the drive's"},
     };
     /* None, one whose newtons a tick have no room, one in which 2.7 s are more heat than there is
      * room for. */
@@ -322,6 +326,22 @@ TEST(ramp_limits_the_force)
         struct exh_force_ledger f = {row[i].asked_N * NEWTON, 0, 0, 0, 0, 0, 0, 0};
         CHECK_EQ_I64(exh_drive_force_step(&a.s, &a.cfg, &half, &f), row[i].limits);
         CHECK_EQ_I64(f.force_N_q20, row[i].want_N * NEWTON);
+    }
+}
+
+/* At every share the same share of the limit: no jump to the whole on the way, and no stand. */
+TEST(ramp_is_a_share_all_the_way)
+{
+    struct axis a;
+    axis_par(&a.par);
+    CHECK_EQ_I64(axis_setup(&a, (struct exh_period){1, 2000}), 0);
+    for (int32_t k = 0; k <= 1024; k++) {
+        const struct exh_permit p = {EXH_PERMIT_OPEN, k << 20, 0, 1, {0, 1}};
+        struct exh_force_ledger f = {50 * (int64_t)NEWTON, 0, 0, 0, 0, 0, 0, 0};
+        const uint32_t ramp = k < 1024 ? EXH_LIMIT_RAMP : 0;
+        CHECK_EQ_I64(exh_drive_force_step(&a.s, &a.cfg, &p, &f), ramp | EXH_LIMIT_FORCE);
+        CHECK(f.force_N_q20 == 40 * k * (NEWTON / 1024), "share %" PRId32 ": %" PRId32, k,
+            f.force_N_q20);
     }
 }
 
@@ -660,8 +680,8 @@ TEST_MAIN("unit/drive", setup_rejections, setup_refuses_tables_that_pull_at_no_f
     no_force_or_current_beyond_the_persons_ceiling, no_force_beyond_the_table,
     setup_refuses_a_table_that_was_not_set, not_running_is_no_force,
     setup_takes_every_documented_period, force_limit_and_pull_only, release_is_bounded_and_ends,
-    release_begins_anew, ramp_limits_the_force, small_force_is_told, slew_both_ways,
-    hostile_bytes_come_into_range, slowest_slew_still_moves, peak_limit,
+    release_begins_anew, ramp_limits_the_force, ramp_is_a_share_all_the_way, small_force_is_told,
+    slew_both_ways, hostile_bytes_come_into_range, slowest_slew_still_moves, peak_limit,
     i2t_holds_folds_back_and_recovers, continuous_current_is_for_ever,
     coarse_codes_stay_within_the_limits, bursts_add_up, peak_equal_to_continuous, monitor_by_hand,
     frames_round_trip, state_round_trip, no_peak_no_budget, the_greatest_budget);
