@@ -48,7 +48,7 @@ jobs       = $(or $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),1)
 
 # Of several goals one runs at a time, because two sub-makes would write the same files. Files and
 # these may run together.
-together := $(B)/% variant-% golden-% undef% %-run hil-short picture
+together := $(B)/% variant-% golden-% undef% %-run %-short picture doc doc-names fmt-check same
 ifneq ($(and $(filter-out $(together),$(MAKECMDGOALS)),$(word 2,$(MAKECMDGOALS))),)
 .NOTPARALLEL:
 endif

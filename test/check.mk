@@ -41,14 +41,9 @@ check:
 	@$(timed) fmu $(B)/fmi/native
 	@$(timed) world boot-built contract-built nic-built hil-built
 	@$(timed) $(check_runs)
-	@$(timed) kill-short
-	@$(timed) attacks-short
-	@$(timed) stress-short
+	@$(timed) $(check_waits)
 	@$(timed) size
-	@$(timed) fmt-check
-	@$(timed) doc doc-names
 	@$(timed) sbom > $(B)/exhand.spdx
-	@$(timed) same
 	@$(timed) structure
 	@$(timed) bench
 	@$(timed) report-test
@@ -56,6 +51,8 @@ check:
 
 # These run built images and programs, one core each, as many at a time as there are cores.
 check_runs := boot-run hil-short nic-run contract-run two-run fmi-run picture
+# Of these a core is mostly one's, or waits.
+check_waits := doc-names kill-short doc attacks-short stress-short same fmt-check
 .PHONY: hil-short picture bits
 hil-short:
 	@$(MAKE) --no-print-directory hil-run HIL_TICKS=2000 HIL_FEW=500 HIL_QEMU=2000 > $(B)/hil.txt || \

@@ -151,15 +151,13 @@ static void wait_for_peer(void)
 /* A field of the machine's clock, two decimal digits. */
 static unsigned clock_field(uint8_t at)
 {
-    uint8_t v;
     pc104_out8(CLOCK_AT, at);
-    v = pc104_in8(CLOCK_AT + 1);
-    return 10u * (v >> 4) + (v & 15u);
+    at = pc104_in8(CLOCK_AT + 1);
+    return 10u * (at >> 4) + (at & 15u);
 }
 
-/* The machine's clock, in seconds as a year of 13 months of 32 days counts them: it goes on while
- * the power is off. A second is 2^26 numbers, more than a run sends: no start takes a number of
- * another. */
+/* Seconds of the machine's clock, months of 32 days: it goes on while the power is off. Each is 2^26
+ * numbers, more than a run sends: no start takes a number of another. */
 static void open_key(void)
 {
     static const struct {
