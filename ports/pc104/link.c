@@ -8,7 +8,6 @@
 #include "net.h"
 #include "nic.h"
 #include "exhand/run/stream.h"
-
 #include "exhand/keyed.h"
 
 #include "cards/io.h"
@@ -156,8 +155,8 @@ static unsigned clock_field(uint8_t at)
     return 10u * (at >> 4) + (at & 15u);
 }
 
-/* Seconds of the machine's clock, months of 32 days: it goes on while the power is off. Each is 2^26
- * numbers, more than a run sends: no start takes a number of another. */
+/* Seconds of the machine's clock, with months of 32 days: it goes on while the power is off. Each
+ * is 2^26 numbers, more than a run sends: no start takes a number of another. */
 static void open_key(void)
 {
     static const struct {
