@@ -48,7 +48,7 @@ PLANTED = (
     ("link", "a silence of 1.5 s", rig, {"TOLD": {"quiet": 1500}, "OPEN": of(OPEN, "planes-far")},
      "behind it the peer was not heard for 1."),
     ("link", "the peer is not heard meanwhile", link,
-     {"OPEN": of(OPEN, "planes-far", must="stays")}, "meanwhile the peer was not heard for "),
+     {"OPEN": of(OPEN, "planes-far", must="stays")}, " the peer was not heard for "),
     ("link", "a value that may be set", link,
      {"HARDER": (SOFTER, SOFTER), "OPEN": of(OPEN, "param-peer")}, "materials set"),
     ("link", "the peer's own port", link,

@@ -40,7 +40,7 @@ fast="supply=0 ad_settle=0"
 # The glove's scan runs while the tick before computes.
 box="--loop --glove-age 1"
 # The most a class of ticks may vary in the scene's instructions, ppm of its dearest tick.
-even="--spread 52000"
+even="--spread 60000"
 # The most instructions that a tick of the full box may take, the image's part and the scene's: with
 # a glove frame in every tick, and with one in every twentieth, computed and taken in parts.
 dear="--most 24500"
