@@ -78,7 +78,7 @@ static int32_t zero_of(unsigned f)
 static void check_refused(int got, int want, unsigned image, const char *what)
 {
     CHECK(got == want && g.k.refused == want && g.k.image_at == image && g.k.what &&
-              strcmp(g.k.what, what) == 0,
+              check_same_text(g.k.what, what),
         "%d, image %u: %s; want %s", got, g.k.image_at, g.k.what ? g.k.what : "", what);
 }
 
