@@ -184,7 +184,7 @@ MUTANTS = (
     ("chatter", CHATTER, "s->net_Acnt_q20 >= cfg->energy_Acnt_q20", "s->net_Acnt_q20 > 0"),
     ("chatter", CHATTER, "back > SWING_A_Q26", "back > SWING_A_Q26 / 2"),
     ("chatter", CHATTER, "return turns && s->rises;", "return turns;"),
-    ("chatter", CHATTER, "was < -leak ? was + leak : 0", "was < -leak ? was + leak : was"),
+    ("chatter", CHATTER, "left & ~(left >> 63)", "left"),
     ("chatter", CHATTER, "s->ticks < cfg->ticks", "s->ticks <= cfg->ticks"),
     ("chatter", CHATTER, "turns || back < 0", "turns"),
     ("guard", L + "safe/integrity.c", "if (g->crc != g->want) {", "if (g->crc > g->want) {"),

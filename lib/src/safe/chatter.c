@@ -71,8 +71,9 @@ uint32_t exh_chatter_step(const struct exh_chatter *s, const struct exh_chatter_
 /* 1 at a valley: a current that fell and has risen by a swing. */
 static int valley(struct exh_chatter *s, int32_t now_A_q26)
 {
-    const int32_t up = exh_wrap_diff(now_A_q26, s->end_A_q26); /* both within 2^30 */
-    const int32_t back = s->rises ? -up : up;
+    const int32_t end_A_q26 = s->end_A_q26; /* as the other, within 2^30, or damaged */
+    const int32_t back =
+        s->rises ? exh_wrap_diff(end_A_q26, now_A_q26) : exh_wrap_diff(now_A_q26, end_A_q26);
     const int turns = back > SWING_A_Q26;
     if (turns || back < 0) { s->end_A_q26 = now_A_q26; }
     s->rises = (uint8_t)(s->rises ^ turns);

@@ -5,7 +5,7 @@
  *
  * EVA: -eva-slevel-function exh_chatter_setup:60
  * PLANT: lib/src/safe/chatter.c: s->net_Acnt_q20 = exh_clamp64(s->net_Acnt_q20, SUM_MAX_ACNT); -> (void)0;
- * PLANT: lib/src/safe/chatter.c: const int64_t up = (int64_t)now_A_q26 - s->end_A_q26; -> const int64_t up = now_A_q26 - s->end_A_q26;
+ * PLANT: lib/src/safe/chatter.c: exh_clamp32(exh_wrap_diff(cnt, s->cnt), -WAY_MAX_CNT, WAY_MAX_CNT); -> cnt - s->cnt;
  * PLANT: lib/src/safe/chatter.c: t.knot[t.n - 1].x <= 0 || -> 0 ||
  */
 #include "num/bytes.c"
