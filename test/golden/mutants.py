@@ -445,7 +445,9 @@ THIN = {
     "coded(cfg, now) >>": 0.80,                        # unit/drive
     # a person's ceiling that is drawn is seldom below i_peak
     "top = person ? cfg->i_top_A_q26 : drive;": 0.10,  # unit/drive, proof
-    "s->ticks < cfg->ticks": 0.37,                     # unit/chatter
+    "cfg->f_top_N_q20 = cut ?": 0.20,
+    "s->ticks < cfg->ticks": 0.37,                     # unit/chatter, as of the next
+    "left & ~(left >> 63)": 0.55,
     "to->a >= from->a": 0.28,                          # unit/filter; two high kinds are rare
     # Of 768 requests, 256 on the line, few come there; unit/modbus, unit/trace and unit/modbus_rtu
     # tell them.
