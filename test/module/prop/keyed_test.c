@@ -29,11 +29,11 @@ static void start(struct exh_keyed *s, enum exh_wire_role role, uint32_t *runs)
 
 static struct kept *any(void) { return &kept[check_u64() % KEPT]; }
 
-static struct kept *say(struct exh_keyed *s, const struct exh_mac_key *by, uint64_t number)
+static struct kept *put(
+    struct kept *k, struct exh_keyed *s, const struct exh_mac_key *by, uint64_t number)
 {
     struct exh_wire_tx tx = {5, (uint32_t)check_u64()};
     struct exh_wire_packet p = {.type = EXH_WIRE_PARAM};
-    struct kept *k = any();
     const struct exh_mac_key was = s->key;
     k->len_B = (size_t)exh_wire_encode(&tx, &p, 0, k->byte, sizeof k->byte);
     s->key = *by;
@@ -44,6 +44,11 @@ static struct kept *say(struct exh_keyed *s, const struct exh_mac_key *by, uint6
     k->number = number;
     k->touched = by != &key;
     return k;
+}
+
+static struct kept *say(struct exh_keyed *s, const struct exh_mac_key *by, uint64_t number)
+{
+    return put(any(), s, by, number);
 }
 
 /* One change of any kind. */
@@ -111,6 +116,45 @@ TEST(nothing_recorded_acts)
     CHECK(tried == 0 || acted > tried / 1000, "nothing was said: %d of %d", (int)acted, (int)tried);
 }
 
+static int32_t hear(const struct kept *k) { return exh_keyed_decode(&box, k->byte, k->len_B); }
+
+/* A run of both that is over, one of the world, and this one: all of it came, none is held back.
+ * Some have another key. */
+static void record(void)
+{
+    const struct exh_mac_key *const by[] = {&key, &key, &other};
+    for (unsigned k = 0; k < KEPT; k++) {
+        if (k == 0 || k == KEPT / 4) { start(&box, EXH_WIRE_CONTROLLER, &boxes); }
+        if (k == 0 || k == KEPT / 4 || k == KEPT / 2) { start(&world, EXH_WIRE_WORLD, &worlds); }
+        listen(put(&kept[k], &box, &key, 0));
+        if (k % 4 == 0) { continue; }
+        (void)hear(put(&kept[k], &world, by[k % 4 - 1], k));
+    }
+}
+
+/* Whoever has all that was said, in any order, whole, spoilt, joined anew or without its tail, of
+ * runs that are over and of this one: no packet of his acts. Now and then the world says one. */
+TEST(a_million_packets_act_never)
+{
+    const uint8_t a[EXH_MAC_KEY_B] = {1}, b[EXH_MAC_KEY_B] = {2};
+    uint64_t tried = 0;
+    key = exh_mac_key(a);
+    other = exh_mac_key(b);
+    record();
+    while (check_case(1)) {
+        struct kept k = *any();
+        const uint32_t taken = box.taken;
+        const uint64_t newest = box.newest, seen = box.seen;
+        if (k.len_B > EXH_KEYED_B && check_u64() % 2) { spoil(&k); }
+        CHECK(hear(&k) <= 0 && box.taken == taken, "it acts");
+        CHECK(box.newest == newest && box.seen == seen, "the window is another");
+        if (++tried % 4096 != 1) { continue; }
+        listen(say(&box, &key, 0)); /* who is there is proved anew by it */
+        CHECK(hear(say(&world, &key, 1)) > 0, "the world is not heard");
+    }
+    check_note("keyed: %" PRIu64 " packets without the key or not of now, 0 act", tried);
+}
+
 /* Whatever was thrown at both, two that are there find each other in three packets. */
 TEST(those_that_are_there_are_heard)
 {
@@ -144,4 +188,5 @@ TEST(those_that_are_there_are_heard)
     }
 }
 
-TEST_MAIN("prop/keyed", nothing_recorded_acts, those_that_are_there_are_heard);
+TEST_MAIN("prop/keyed", nothing_recorded_acts, a_million_packets_act_never,
+    those_that_are_there_are_heard);
