@@ -6,10 +6,16 @@ FUZZ_SEED    ?= 1
 FUZZER       ?= plain
 fuzz_src     := test/fuzz/wire_fuzz.c test/fuzz/driver.c
 
-$(B)/fuzz/plain: $(fuzz_src:%.c=$(B)/test/san/%.o) $(lib_src:%.c=$(B)/test/san/%.o)
+# Packets, without a key and with one: the same corpus.
+$(B)/fuzz/plain: $(B)/test/san/test/fuzz/wire_fuzz.o
+$(B)/fuzz/keyed: $(B)/test/san/test/fuzz/keyed_fuzz.o
+$(B)/fuzz/plain $(B)/fuzz/keyed: $(B)/test/san/test/fuzz/driver.o $(lib_src:%.c=$(B)/test/san/%.o)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(san) -o $@ $^
-$(B)/fuzz/libfuzzer: test/fuzz/wire_fuzz.c $(lib_src) $(wildcard lib/include/exhand/*.h) $(stamp)
+$(B)/fuzz/libfuzzer: test/fuzz/wire_fuzz.c
+$(B)/fuzz/keyed-libfuzzer: test/fuzz/keyed_fuzz.c
+$(B)/fuzz/libfuzzer $(B)/fuzz/keyed-libfuzzer: $(lib_src) $(wildcard lib/include/exhand/*.h) \
+    $(stamp)
 	@mkdir -p $(@D)
 	$(Q)clang $(filter-out -MMD -MP,$(base)) -D_POSIX_C_SOURCE=200809L $(san) -fsanitize=fuzzer \
 	    -o $@ $(filter %.c,$^)
@@ -48,28 +54,34 @@ files_vars_libfuzzer := B=$(B)/fuzz/clang CC=clang FUZZ_NO_MAIN=1 \
 files_plain          := $(B)/san/fuzz/files
 files_libfuzzer      := $(B)/fuzz/clang/fuzz/files
 
+fuzz_more            := net modbus keyed
+
 ##@ Fuzzing
 ## Feed hostile packets, frames, requests and files to every parser (FUZZ_SECONDS=30 FUZZ_SEED=1
 ## FUZZER=plain or libfuzzer).
 .PHONY: fuzz
 fuzz:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/fuzz/plain $(B)/fuzz/$(FUZZER) \
-	    $(addsuffix $(if $(filter libfuzzer,$(FUZZER)),-libfuzzer),$(B)/fuzz/net $(B)/fuzz/modbus)
+	    $(addsuffix $(if $(filter libfuzzer,$(FUZZER)),-libfuzzer),$(fuzz_more:%=$(B)/fuzz/%))
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(files_vars_$(FUZZER)) $(files_$(FUZZER))
 	@$(B)/fuzz/plain --check test/fuzz/corpus
 ifeq ($(FUZZER),plain)
 	@cd $(B)/fuzz && { ./net $(FUZZ_SECONDS) $(FUZZ_SEED) & net=$$!; \
 	    ./modbus $(FUZZ_SECONDS) $(FUZZ_SEED) & modbus=$$!; \
+	    ./keyed $(FUZZ_SECONDS) $(FUZZ_SEED) $(CURDIR)/test/fuzz/corpus & keyed=$$!; \
 	    $(abspath $(files_plain)) $(FUZZ_SECONDS) $(FUZZ_SEED) $(CURDIR)/test/fuzz/files \
 	        > files.out 2> files.txt & files=$$!; } && \
 	    ./plain $(FUZZ_SECONDS) $(FUZZ_SEED) $(CURDIR)/test/fuzz/corpus; packets=$$?; \
 	    wait $$files || { grep -v '^exhand: ' files.txt | tail -n 30; exit 1; }; \
 	    tail -n 1 files.out; \
-	    wait $$net && wait $$modbus && exit $$packets
+	    wait $$net && wait $$modbus && wait $$keyed && exit $$packets
 else
 	@mkdir -p $(B)/fuzz/found && cd $(B)/fuzz && \
 	    ./libfuzzer -max_total_time=$(FUZZ_SECONDS) -max_len=1024 \
 	    -print_final_stats=1 found $(CURDIR)/test/fuzz/corpus
+	@mkdir -p $(B)/fuzz/keyed-found && cd $(B)/fuzz && \
+	    ./keyed-libfuzzer -max_total_time=$(FUZZ_SECONDS) -max_len=1024 \
+	    -print_final_stats=1 keyed-found $(CURDIR)/test/fuzz/corpus
 	@mkdir -p $(B)/fuzz/net-found && cd $(B)/fuzz && \
 	    ./net-libfuzzer -max_total_time=$(FUZZ_SECONDS) -max_len=6000 \
 	    -print_final_stats=1 net-found
