@@ -220,6 +220,12 @@ TEST(room)
     const uint64_t next = box.next;
     CHECK_EQ_I64(exh_keyed_encode(&box, d.byte, d.len_B, d.len_B + EXH_KEYED_B - 1), -EXH_E_SHORT);
     CHECK_EQ_I64(exh_keyed_encode(&box, d.byte, d.len_B, 3), -EXH_E_SHORT);
+    {
+        struct exh_keyed fits = box;
+        struct datagram whole = d;
+        const uint32_t all_B = (uint32_t)d.len_B + EXH_KEYED_B;
+        CHECK(exh_keyed_encode(&fits, whole.byte, d.len_B, all_B) == (int32_t)all_B, "just room");
+    }
     CHECK(box.next == next, "nothing is used up");
 }
 

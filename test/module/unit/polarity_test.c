@@ -35,6 +35,23 @@ TEST(set_up)
     for (size_t i = 0; i < LEN(bad); i++) {
         CHECK(exh_polarity_setup(&cfg, &bad[i], STEP, kHz) == -EXH_E_RANGE, "row %zu", i);
     }
+    for (size_t r = 0; r < EXH_POLARITY_ROWS; r++) {
+        const int32_t end[] = {exh_polarity_rows[r].min, exh_polarity_rows[r].max};
+        for (size_t k = 0; k < LEN(end); k++) {
+            struct exh_polarity_par p = par;
+            ((int32_t *)&p)[r] = end[k];
+            CHECK(exh_polarity_setup(&cfg, &p, STEP, kHz) == 0, "row %zu: %d", r, (int)end[k]);
+        }
+    }
+    for (int32_t pull = 999; pull <= 1001;
+         pull++) { /* rounded up: there in a quarter of the time */
+        struct exh_polarity_par p = par;
+        p.pull_N_q20 = pull;
+        CHECK_EQ_I64(exh_polarity_setup(&cfg, &p, STEP / 10, kHz), 0);
+        CHECK(cfg.rise_N_q20 == (pull > 1000 ? 11 : 10), "%d", (int)cfg.rise_N_q20);
+        CHECK(cfg.move_cnt == 29 || cfg.move_cnt == 30, "%d", (int)cfg.move_cnt);
+    }
+    CHECK_EQ_I64(exh_polarity_setup(&cfg, &par, 1, kHz), 0);
     CHECK_EQ_I64(exh_polarity_setup(&cfg, &par, 0, kHz), -EXH_E_RANGE);
     CHECK_EQ_I64(exh_polarity_setup(&cfg, &par, STEP, none), -EXH_E_RATE);
     CHECK_EQ_I64(exh_polarity_setup(&cfg, &par, STEP, (struct exh_period){1, 1}), 0);
@@ -73,6 +90,52 @@ TEST(what_moves_is_what_is_told)
         CHECK_EQ_I64(exh_polarity_step(&s, &cfg, 1, exh_wrap_add(cnt, 1000)), row[i].result);
         CHECK_EQ_I64(exh_polarity_step(&s, &cfg, 0, cnt), EXH_POLARITY_BUSY); /* anew */
         CHECK(s.tick == 0 && s.rest == 0 && s.pulled == 0, "not anew");
+    }
+}
+
+/* Pulls this count for n ticks; BUSY in each but the last. */
+static uint8_t pulls(struct exh_polarity *s, const struct exh_polarity_cfg *cfg, int32_t cnt, int n)
+{
+    uint8_t r = EXH_POLARITY_BUSY;
+    for (int k = 0; k < n; k++) {
+        CHECK(r == EXH_POLARITY_BUSY, "%u after %d of %d ticks", r, k, n);
+        r = exh_polarity_step(s, cfg, 1, cnt);
+    }
+    return r;
+}
+
+/* A hundred ticks at rest to the tick, anew behind each movement; then a step of force each, and a
+ * movement as far as asked, to the count, from where the rest ended. */
+TEST(edges_of_rest_and_movement)
+{
+    const struct exh_polarity_cfg cfg = config();
+    const int32_t move = cfg.move_cnt, rise = cfg.rise_N_q20;
+    for (int way = -1; way <= 1; way += 2) {
+        struct exh_polarity s = {0, 0, 0, 0, 0};
+        (void)exh_polarity_step(&s, &cfg, 0, 0);
+        (void)pulls(&s, &cfg, 0, 49);
+        (void)pulls(&s, &cfg, way * move, 1);
+        (void)pulls(&s, &cfg, way * move, 99);
+        (void)pulls(&s, &cfg, way * (2 * move - 1), 1); /* no movement, and at rest */
+        CHECK_EQ_I64(exh_polarity_force_N_q20(&s, &cfg), 0);
+        for (int k = 1; k <= 3; k++) {
+            (void)pulls(&s, &cfg, way * (3 * move - 2), 1);
+            CHECK_EQ_I64(exh_polarity_force_N_q20(&s, &cfg), k * rise);
+        }
+        CHECK_EQ_I64(pulls(&s, &cfg, way * (3 * move - 1), 1),
+            way < 0 ? EXH_POLARITY_SEEN : EXH_POLARITY_WRONG);
+        CHECK_EQ_I64(s.tick, 154);
+    }
+}
+
+/* Slowly, too: a count a tick is no rest. */
+TEST(a_hand_that_drifts_is_not_pulled)
+{
+    const struct exh_polarity_cfg cfg = config();
+    struct exh_polarity s = {0, 0, 0, 0, 0};
+    for (int32_t k = 0; k < 398; k++) {
+        (void)pulls(&s, &cfg, k, 1);
+        CHECK(exh_polarity_force_N_q20(&s, &cfg) == 0, "tick %d", (int)k);
     }
 }
 
@@ -158,5 +221,6 @@ TEST(serialised_it_goes_on)
         "not as it was");
 }
 
-TEST_MAIN("unit/polarity", set_up, what_moves_is_what_is_told, no_pull_before_it_was_at_rest,
+TEST_MAIN("unit/polarity", set_up, what_moves_is_what_is_told, edges_of_rest_and_movement,
+    a_hand_that_drifts_is_not_pulled, no_pull_before_it_was_at_rest,
     the_ramp_waits_and_a_failed_pull_is_named, serialised_it_goes_on);

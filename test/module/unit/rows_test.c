@@ -11,6 +11,7 @@
 #include "exhand/hand.h"
 #include "exhand/params.h"
 #include "exhand/passivity.h"
+#include "exhand/polarity.h"
 #include "exhand/precontact.h"
 #include "exhand/quad.h"
 #include "exhand/quantizer.h"
@@ -43,6 +44,7 @@ static const struct exh_signal_group groups[] = {
     {exh_gains_rows, EXH_GAINS_ROWS, 1},
     {exh_tune_rows, EXH_TUNE_ROWS, 1},
     {exh_chatter_rows, EXH_CHATTER_ROWS, 1},
+    {exh_polarity_rows, EXH_POLARITY_ROWS, 1},
 };
 static const struct exh_signal_table table = {groups, sizeof groups / sizeof groups[0]};
 
@@ -136,6 +138,9 @@ static const struct exh_signal want[] = {
     {0x1301, 0, EXH_WHEN_SETUP, 0, 1000, 20, "tune_time", "ms", ""},
     {0x1401, 20, EXH_WHEN_SETUP, 10485, 10485760, 157286, "chatter_power", "w", ""},
     {0x1402, 24, EXH_WHEN_SETUP, 0, 16777216, 0, "chatter_energy", "j", ""},
+    {0x0606, 20, EXH_WHEN_SETUP, 0, 1048576, 0, "arm_pull", "n", ""},
+    {0x0607, 0, EXH_WHEN_SETUP, 50, 5000, 400, "arm_pull_time", "ms", ""},
+    {0x0608, 30, EXH_WHEN_SETUP, 53687, 21474836, 322122, "arm_pull_move", "m", ""},
 };
 
 TEST(rows_are_what_others_know)
