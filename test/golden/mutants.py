@@ -78,7 +78,6 @@ MUTANTS = (
     ("slots", L + "talk/slots.c", "len_B > slot_B - EXH_SLOT_B(0)",
      "len_B >= slot_B - EXH_SLOT_B(0)"),
     ("signal", L + "num/signal.c", "exh_bytes_u8(&c, &row.when);", ""),
-    ("signal", L + "num/params.c", "raw != p->staged[i]", "raw != p->active[i]"),
     ("signal", L + "num/params.c", "raw < row->min ||", "raw <= row->min ||"),
     ("signal", L + "num/params.c", "(left >> shift) + ((", "(left >> shift) + (0 * ("),
     # taken <= time: the two are the same at few rates; unit/params tells it.
@@ -160,7 +159,7 @@ MUTANTS = (
     ("gains", GAINS, "area(at.k, k0, b1, b0) <=", "area(at.k, k0, b1, b0) <"),
     ("gains", GAINS, "return under && at.k >= rule", "return under && at.k > rule"),
     ("gains", GAINS, "(off < 0 ? -off : off) * 100", "off * 100"),
-    ("gains", GAINS, "    (void)exh_params_stage(p, id, instance, was);", ""),
+    ("gains", GAINS, "    (void)exh_params_stage_at(p, i, was);", ""),
     ("gains", GAINS, "    p->pending = pending;", ""),
     ("gains", GAINS, "straight &= at.b < goal.b ? line <= knot : line >= knot",
      "straight &= at.b < goal.b ? line < knot : line > knot"),
@@ -432,12 +431,12 @@ THIN = {
     "s->phase == EXH_PRECONTACT_IDLE && s->met": 0.80,
     "s->near ? 0 : (int64_t)": 0.09,
     "s->present == EXH_FAULT_DEADMAN && !": 0.93,      # unit/safety
-    # a set-up value that is staged when it is locked
-    "raw != p->staged[i]": 0.15,
     "!p->pending && !p->moving;": 0.50,                # unit/params
     "late > UINT32_C(0x80000000)": 0.93,               # unit/wire
-    "if (t->result < 0 || !same(": 0.80,               # sim/bilateral_tick, as of all below
-    "if (err < 0) { bilateral_trace_stop(t); }": 0.50,
+    "if (t->result < 0 || !same(": 0.72,               # sim/bilateral_tick, as of all below
+    "if (err < 0) { bilateral_trace_stop(t); }": 0.40,
+    "t->left = t->what.every - 1;": 0.86,
+    "out->dac_raw[f] = placed->dac_raw[k];": 0.93,
     "!t->answer && n < EXH_WIRE_FRAMES": 0.50,
     "falls ? s->off_raw[k] : UINT16_MAX": 0.80,        # unit/gate, proof
     # codes are few to an ampere: only then a limit is another
@@ -446,6 +445,7 @@ THIN = {
     # a person's ceiling that is drawn is seldom below i_peak
     "top = person ? cfg->i_top_A_q26 : drive;": 0.10,  # unit/drive, proof
     "cfg->f_top_N_q20 = cut ?": 0.20,
+    "par->person_A_q26 < par->i_peak_A_q26 ?": 0.05,    # unit/gate, proof
     "s->ticks < cfg->ticks": 0.37,                     # unit/chatter, as of the next
     "left & ~(left >> 63)": 0.55,
     "to->a >= from->a": 0.28,                          # unit/filter; two high kinds are rare
@@ -453,12 +453,15 @@ THIN = {
     # tell them.
     "q->len_B != 10u + q->p[9]": 0.88,
     "? r->active[i]": 0.50,
-    "r->touched[i >> 5] &= ~bit;": 0.78,
-    "} else if (bits == exh_float_from_raw(row->min, row->frac)) {": 0.68,
-    "} else if (bits == exh_float_from_raw(row->max, row->frac)) {": 0.90,
+    "r->touched[i >> 5] &= ~bit;": 0.65,
+    "} else if (bits == exh_float_from_raw(row->min, row->frac)) {": 0.53,
+    "} else if (bits == exh_float_from_raw(row->max, row->frac)) {": 0.84,
     "raw < row->min || raw > row->max": 0.85,
+    "s->end <= 2 * values ?": 0.94,
+    "r->refused += err == EXH_MODBUS_VALUE;": 0.04,
     "cell == RISE && raw > was": 0.48,                 # unit/authority, as of the next
     "cell >= REST && !who.open": 0.19,
+    "[EXH_FROM_WORLD] = {[EXH_WHEN_MATERIAL] = FALL}": 0.11,
     "if ((on & discard) && (r->asked & apply)) { return EXH_MODBUS_BUSY; }": 0.68,
     "if (asked >> EXH_COIL_CLEAR & 1u) { return EXH_CMD_CLEAR; }": 0.82,
     "what->index[i] >= r->trace->signals": 0.72,
