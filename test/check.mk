@@ -17,7 +17,7 @@ check_pkgs  := clang $(pc104_pkgs) gcc-arm-none-eabi libnewlib-arm-none-eabi qem
 check: export WERROR = 1
 check:
 	@for t in $(check_tools); do .ci/deps "the checks" $$t $(check_pkgs) || exit 3; done
-	@$(timed) all
+	@$(timed) all lab
 	@$(timed) matrix ARGS=--ci
 	@$(timed) golden ARGS="--check --every 40"
 	@$(timed) golden-beyond

@@ -187,7 +187,7 @@ static void datagrams(const struct bytes *b)
         }
         at += 2 + n;
     }
-    pieces_complain(&p);
+    pieces_complain(&p, 0);
 }
 
 static void glove_line(const struct bytes *b)
