@@ -216,6 +216,6 @@ TEST(who_staged_is_kept_until_it_is_applied)
     CHECK_EQ_I64(g.p.by, 1u << EXH_FROM_PERSON);
 }
 
-TEST_MAIN("authority", the_table, every_way_asks_the_table,
-    an_image_leaves_the_persons_values, what_was_staged_is_judged_again,
-    without_apply_nothing_is_written, who_staged_is_kept_until_it_is_applied);
+TEST_MAIN("authority", the_table, every_way_asks_the_table, an_image_leaves_the_persons_values,
+    what_was_staged_is_judged_again, without_apply_nothing_is_written,
+    who_staged_is_kept_until_it_is_applied);

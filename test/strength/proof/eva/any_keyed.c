@@ -42,7 +42,8 @@ int main(void)
         n = exh_keyed_decode(&s, buf + BUF_B - len_B, len_B);
         /*@ assert within: n <= 0 || n <= len_B - 24; */
         ANY(s);
-        (void)exh_keyed_encode(&s, buf + BUF_B - len_B, Frama_C_unsigned_int_interval(0, UINT32_MAX), len_B);
+        (void)exh_keyed_encode(
+            &s, buf + BUF_B - len_B, Frama_C_unsigned_int_interval(0, UINT32_MAX), len_B);
     }
     END();
     return 0;

@@ -65,7 +65,9 @@ int main(void)
     any_rule();
     any_params();
     (void)exh_gains_stage(&p, &rule, (uint16_t)any_u32(), (uint16_t)any_u32(), any32());
-    for (uint32_t i = 0; i <= TABLE_VALUES; i++) { (void)exh_gains_stage_by(&p, &rule, who, i, any32()); }
+    for (uint32_t i = 0; i <= TABLE_VALUES; i++) {
+        (void)exh_gains_stage_by(&p, &rule, who, i, any32());
+    }
     (void)exh_gains_validate(&p, &rule, &instance);
     (void)exh_gains_validate(&p, &rule, NULL);
     exh_gains_enable(&p, any32());
