@@ -40,14 +40,17 @@ static int open_port(void)
     return fd;
 }
 
-static pid_t start_world(void)
+/* key: its file, or NULL; err: where it complains, or NULL. */
+static pid_t start_world(const char *key, const char *err)
 {
+    const char *const with = key ? "--key" : NULL;
     const pid_t pid = fork();
     CHECK(pid >= 0, "no process");
     if (pid) { return pid; }
     alarm(600);
-    if (!freopen("/dev/null", "w", stdout)) { _exit(99); }
-    execl(WORLD_PROGRAM, "world", "--headless", "--scene", SCENE, "--listen", at, (char *)NULL);
+    if (!freopen("/dev/null", "w", stdout) || (err && !freopen(err, "w", stderr))) { _exit(99); }
+    execl(WORLD_PROGRAM, "world", "--headless", "--scene", SCENE, "--listen", at, with, key,
+        (char *)NULL);
     _exit(98);
 }
 
@@ -127,7 +130,7 @@ TEST(world_modbus_log_and_black_box_together)
     long felt;
     strcpy(dir, said_dir());
     (void)close(open_port());
-    world = start_world();
+    world = start_world(NULL, NULL);
     rig_start(
         &r, WORDS("run", "--scene", "bilateral", "--udp", at, "--fingers", "index,middle", "--rate",
                 "500", "--modbus", "tcp:127.0.0.1:0", "--log", said_path(dir, "a.exh"),
@@ -135,7 +138,7 @@ TEST(world_modbus_log_and_black_box_together)
     wait_for_contact(&r);
     end_world(world);
     wait_for(r.dir, "the world has been silent for");
-    world = start_world();
+    world = start_world(NULL, NULL);
     wait_for(r.dir, "the world answers again");
     wait_for(r.dir, "the world began anew: its session 2");
     while (said_size(said_path(dir, "b.exh")) < 0) { nap(); }
@@ -259,6 +262,47 @@ TEST(a_world_that_is_not_there_is_said_and_fails)
     said_clean(dir);
 }
 
+static const char *key_in(char path[512], const char *dir, const char *name, const char *digits)
+{
+    FILE *f;
+    (void)snprintf(path, 512, "%s/%s", dir, name);
+    f = fopen(path, "w");
+    CHECK(f && fputs(digits, f) >= 0 && fclose(f) == 0 && chmod(path, 0600) == 0, "%s", path);
+    return path;
+}
+
+/* Both with the key, one of them with another or with none: who lacks it is not answered. */
+TEST(only_who_has_the_key_is_answered)
+{
+    static char text[SAID_B];
+    char *dir = said_dir(), path[2][512];
+    const char *const a = key_in(path[0], dir, "a", "000102030405060708090a0b0c0d0e0f"),
+                      *const b = key_in(path[1], dir, "b", "100102030405060708090a0b0c0d0e0f");
+    const struct {
+        const char *box, *world, *says; /* the world, of the box */
+    } way[] = {{a, a, NULL}, {a, b, "packets come with another key"},
+        {a, NULL, "of another version, or with a key"}, {NULL, a, "packets come without a key"}};
+    (void)close(open_port());
+    for (size_t i = 0; i < sizeof way / sizeof way[0]; i++) {
+        const char *const err = said_path(dir, "world.err");
+        const pid_t world = start_world(way[i].world, err);
+        const char *const with = way[i].box ? "--key" : NULL;
+        said(&s, dir, cli_run,
+            WORDS("run", "--scene", "bilateral", "--udp", at, "--rate", "500", "--seconds",
+                way[i].says ? "3" : "4", with, way[i].box));
+        end_world(world);
+        said_read(text, err);
+        if (way[i].says == NULL) {
+            CHECK(s.status == 0 && contacts(s.out, "  index ") > 0, "%s %s", s.out, s.err);
+            CHECK(strstr(s.out, "taken; 0 without a key, 0 of another key"), "%s", s.out);
+        } else {
+            CHECK(s.status == 1 && strstr(s.out, ": 0 packets came"), "%zu: %s", i, s.out);
+            CHECK(strstr(text, way[i].says), "%zu: %s", i, text);
+        }
+    }
+    said_clean(dir);
+}
+
 /* Of the box that sent to this socket: where it is. */
 static struct sockaddr_in heard(int fd)
 {
@@ -370,7 +414,7 @@ TEST(a_recording_is_played_again_and_again)
     said_clean(dir);
 }
 
-TEST_MAIN("live_world", world_modbus_log_and_black_box_together,
+TEST_MAIN("live_world", world_modbus_log_and_black_box_together, only_who_has_the_key_is_answered,
     a_world_that_is_not_there_is_said_and_fails, packets_that_are_no_worlds_are_said_and_counted,
     bad_addresses_and_other_scenes_are_refused, make_live_ends_all_three,
     a_recording_is_played_again_and_again);
