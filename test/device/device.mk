@@ -51,6 +51,19 @@ attacks-short:
 	@for a in "" --planted; do $(call attacks_run,$$a) > $(B)/attacks.txt || \
 	    { cat $(B)/attacks.txt; exit 1; }; tail -n 1 $(B)/attacks.txt; done
 
+## Attack the pc104 image under QEMU, over its network and its COM2 (half a minute; ARGS=--planted).
+.PHONY: attacks-image attacks-image-short
+attacks-image: all
+	@for t in i686-linux-gnu-gcc qemu-system-i386 python3; do .ci/deps "attacks on the image" $$t \
+	    $(pc104_pkgs) python3 || exit 3; done
+	@$(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=drop CARDS=none all
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(nic_tape) all
+	@$(attacks_image) $(ARGS)
+attacks_image = $(call attacks_run,--only image$(comma)image-key$(comma)image-com2)
+attacks-image-short:
+	@$(attacks_image) > $(B)/attacks.txt || { cat $(B)/attacks.txt; exit 1; }
+	@tail -n 1 $(B)/attacks.txt
+
 # The host program for an emulated Linux, with either libgpiod in it.
 gpio_src := $(sort $(filter-out $(by_modbus),$(cli_src)) ports/posix/slave/none.c \
             ports/posix/exhand/live/watch_none.c)

@@ -19,6 +19,7 @@ import threading
 import time
 
 import files
+import image
 import link
 import planted
 import ports
@@ -46,14 +47,6 @@ class Report:
                 print("%-6s %-14s %-46s tried %-6s counted: %-30s %s" % (
                     "FAILED" if wrong else "ok", name, what, tried, counted, "; ".join(wrong)),
                     flush=True)
-
-
-def until(what, seconds, said):
-    end = time.monotonic() + seconds
-    while not what():
-        if time.monotonic() > end:
-            raise RuntimeError(said)
-        time.sleep(0.02)
 
 
 def hole(ticks, first, last):
@@ -104,21 +97,21 @@ def on_link(report, options, folder, table, key=None, approaches=0, make=rig.lin
     """One box, one world, and a table of attacks one after the other."""
     world = rig.World(key)
     box = make(options, folder, world, approaches)
-    aim, done = link.Aim(world, options.flood), []
+    aim, done = link.Aim(world, min(options.flood, box.flood)), []
     try:
         world.start()
-        until(lambda: world.state == 2, 30, "the box does not run: " + box.text())
-        time.sleep(0.5)
+        rig.until(lambda: world.state in (2, 3), 30, "the box does not run: " + box.text())
+        world.wait(0.5)
         world.mute = True  # a session, its end, another: what is recorded of the first is old
-        time.sleep(1.3)
+        world.wait(0.8)
         world.anew()
         world.mute = False
-        time.sleep(WAIT_S)
+        world.wait(1.0)
         for row in table:
             start = world.tick
             tried = sum(row[2](aim) for _ in range(10 if options.long else 1))
             end = world.tick
-            time.sleep(WAIT_S)
+            world.wait(WAIT_S)
             done.append((tried, start, end, world.tick))
     finally:
         status = box.end()
@@ -133,6 +126,9 @@ PARTS = {
     "key": lambda *of: on_link(*of, link.KEYED, os.urandom(16)),
     "bilateral": lambda report, options, folder: on_link(
         report, options, folder, link.APPROACHES, approaches=24 if options.long else 8),
+    "image": lambda *of: on_link(*of, image.OPEN, make=image.Linked),
+    "image-key": lambda *of: on_link(*of, image.KEYED, os.urandom(16), make=image.Linked),
+    "image-com2": image.on_com2,
     "modbus": ports.attack, "files": files.attack, "listen": files.on_listen}
 
 
@@ -161,7 +157,7 @@ def plant(options, folder):
         report = Report(quiet=True)
         part(report, options, os.path.join(folder, str(number)), name)
         return report.wrong
-    return planted.run(parts)
+    return planted.run(parts, options.only.split(","))
 
 
 def main():
@@ -169,7 +165,9 @@ def main():
     parser.add_argument("exhand")
     parser.add_argument("--long", action="store_true", help="each attack ten times")
     parser.add_argument("--flood", type=int, default=100000, help="datagrams of a flood (100000)")
-    parser.add_argument("--only", default=",".join(PARTS), help="some of the parts (%(default)s)")
+    parser.add_argument("--only", default="link,key,bilateral,modbus,files,listen",
+                        help="some of the parts, or image,image-key,image-com2 (%(default)s)")
+    parser.add_argument("--images", default="build/pc104", help="where they are (%(default)s)")
     parser.add_argument("--planted", action="store_true",
                         help="each verdict must tell an error that is planted for it")
     parser.add_argument("--keep", help="leave logs in this folder")

@@ -144,15 +144,9 @@ def liar(box, other, key):
     return (box, os.urandom(16)) if key else (other, None)
 
 
-def port():
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
-        sock.bind(("127.0.0.1", 0))
-        return sock.getsockname()[1]
-
-
 def recorded(options, folder, name, log, key):
     """A log sent to `exhand listen`, between lies: (lies told, status, what it said, the file)."""
-    at, out = ("127.0.0.1", port()), os.path.join(folder, name + ".out")
+    at, out = ("127.0.0.1", rig.free_port()), os.path.join(folder, name + ".out")
     words = [options.exhand, "listen", "--at", "%s:%d" % at, "--out", out, "--silence", "3",
              "--wait", "20"] + (["--key", rig.key_file(folder, key, "listen")] if key else [])
     program = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)

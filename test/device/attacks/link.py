@@ -11,6 +11,7 @@ import wire
 
 MAT_K, MAT_F_MAX = 0x0B01, 0x0B03
 HARDER = (wire.param(MAT_K, 1000000 << 10), wire.param(MAT_F_MAX, 100 << 20))
+FROM_STATE_TO_STATE = 10
 FAR = (0.0, 0.0, 1.0)
 
 
@@ -35,39 +36,40 @@ class Aim:
         self.stray.sendto(data, self.world.box)
 
 
-def paced(send, many, gap_s=0.001):
+def paced(aim, send, many):
     """Slow enough that the box's queue is never full: what is counted was sent."""
     n = 0
     for data in many:
         send(data)
         n += 1
-        time.sleep(gap_s)
+        if n % FROM_STATE_TO_STATE == 0:
+            aim.world.next()
     return n
 
 
 def param_other_port(aim):
-    return paced(aim.by_other, (wire.packet(wire.PARAM, 77, n, 0, HARDER[n % 2])
+    return paced(aim, aim.by_other, (wire.packet(wire.PARAM, 77, n, 0, HARDER[n % 2])
                                 for n in range(1, 401)))
 
 
 def param_of_session(aim):
-    return paced(aim.by_other, (aim.world.make(wire.PARAM, HARDER[n % 2], aim.world.number + n)
+    return paced(aim, aim.by_other, (aim.world.make(wire.PARAM, HARDER[n % 2], aim.world.number + n)
                                 for n in range(1, 401)))
 
 
 def param_as_peer(aim):
     """The best that he can do who sees the link and has the peer's address: next numbers."""
     at = aim.next_numbers(400)
-    return paced(aim.by_peer, [aim.world.make(wire.PARAM, HARDER[n % 2], at + n)
+    return paced(aim, aim.by_peer, [aim.world.make(wire.PARAM, HARDER[n % 2], at + n)
                                for n in range(400)])
 
 
 def replay_session(aim):
-    return paced(aim.by_peer, aim.world.sent[:400])
+    return paced(aim, aim.by_peer, aim.world.sent[:400])
 
 
 def replay_earlier(aim):
-    return paced(aim.by_peer, aim.world.before[:400] * 3)
+    return paced(aim, aim.by_peer, aim.world.before[:400] * 3)
 
 
 def reordered(aim):
@@ -79,25 +81,25 @@ def reordered(aim):
             for n in range(200)]
     while aim.world.number < first + 200 + 70:
         time.sleep(0.05)
-    return paced(aim.by_peer, held)
+    return paced(aim, aim.by_peer, held)
 
 
 def hello_storm(aim):
     hello = wire.hello(aim.world.version)
-    return paced(aim.by_peer, (wire.packet(wire.HELLO, 1000 + n, 1, n, hello)
+    return paced(aim, aim.by_peer, (wire.packet(wire.HELLO, 1000 + n, 1, n, hello)
                                for n in range(1500)))
 
 
 def planes_far(aim):
     at = aim.next_numbers(400)
-    return paced(aim.by_peer, (
+    return paced(aim, aim.by_peer, (
         aim.world.make(wire.PLANES, aim.world.plane(FAR, (-1.9, 1.9)[n % 2]), at + n)
         for n in range(400)))
 
 
 def planes_long(aim):
     at = aim.next_numbers(400)
-    return paced(aim.by_peer, (
+    return paced(aim, aim.by_peer, (
         aim.world.make(wire.PLANES, aim.world.plane((1.2, 1.2, -1.06), 0.5), at + n)
         for n in range(400)))
 
@@ -106,7 +108,7 @@ def misshapen(aim):
     whole = aim.world.make(wire.PLANES, aim.world.plane(), aim.world.number + 500)
     cut = [whole[:n] for n in range(1, len(whole))]
     more = [whole + bytes(n) for n in range(1, 120)]
-    return paced(aim.by_peer, cut + more)
+    return paced(aim, aim.by_peer, cut + more)
 
 
 def tags_forged(aim):
@@ -115,7 +117,7 @@ def tags_forged(aim):
     echo = struct.pack("<QQ", aim.world.keyed.next + 500, aim.world.keyed.heard)
     false = wire.Keyed(os.urandom(16))
     false.heard, false.next = aim.world.keyed.heard, aim.world.keyed.next + 500
-    return paced(aim.by_peer, [whole + echo + os.urandom(8) for _ in range(200)] +
+    return paced(aim, aim.by_peer, [whole + echo + os.urandom(8) for _ in range(200)] +
                  [false.seal(whole) for _ in range(200)])
 
 

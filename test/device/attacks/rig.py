@@ -21,6 +21,14 @@ COLUMN = {"person_f": "f_des_n", "person_i": "i_des_a"}
 TOLD = {}  # what boxes are told other than that: planted.py
 
 
+def until(what, seconds, said):
+    end = time.monotonic() + seconds
+    while not what():
+        if time.monotonic() > end:
+            raise RuntimeError(said)
+        time.sleep(0.02)
+
+
 def ceiling():
     """Words that tell a box the person's ceiling."""
     return [word for name, value in {**CEILING, **TOLD}.items()
@@ -42,12 +50,22 @@ class World(threading.Thread):
         self.at = "127.0.0.1:%d" % self.sock.getsockname()[1]
         self.key, self.keyed = key, key and wire.Keyed(key)
         self.box, self.version, self.stamp, self.answers, self.state = None, 0, 0, 0, 0
-        self.tick = self.touching = self.number = 0
+        self.tick = self.number = 0
         self.mute, self.ended = False, False
         self.sent, self.before, self.session = [], [], 0
         self.asked, self.heard = 0, []  # number of the newest question; ticks with an answer
-        self.lock = threading.RLock()
+        self.lock, self.stated = threading.RLock(), threading.Event()
         self.anew()
+
+    def wait(self, seconds):
+        """So long by the box's own clock."""
+        last = self.tick + int(seconds * RATE_HZ)
+        until(lambda: self.tick >= last, 120, "the box says no STATE")
+
+    def next(self):
+        """Until the next STATE, or a second."""
+        self.stated.clear()
+        self.stated.wait(1)
 
     def anew(self):
         with self.lock:
@@ -94,6 +112,9 @@ class World(threading.Thread):
             if self.keyed:
                 data = self.keyed.opened(data)
             got = wire.parts(data)
+            if got and got[0] == wire.STATE:
+                self.tick, self.state = int.from_bytes(got[4][:4], "little"), got[4][5]
+                self.stated.set()
             if self.mute or self.box is None:
                 continue
             if got and got[0] == wire.HELLO:
@@ -108,14 +129,14 @@ class World(threading.Thread):
             if got and got[0] == wire.TRACE and got[4][:4] == self.asked.to_bytes(4, "little"):
                 self.heard.append(self.tick)
             if got and got[0] == wire.STATE:
-                _, _, self.answers, self.stamp, body = got
-                self.tick, self.state = int.from_bytes(body[:4], "little"), body[5]
-                self.touching = body[7]
+                _, _, self.answers, self.stamp, _ = got
                 self.say(wire.PLANES, self.plane())
 
 
 class Box:
     """`exhand run`, its log and what it says; or `exhand bilateral`, which ends by itself."""
+
+    flood = 1000000
 
     def __init__(self, exhand, folder, name, words, approaches=0):
         self.exhand, self.ends = exhand, approaches > 0
@@ -125,6 +146,7 @@ class Box:
             self.log = os.path.join(folder, name, "bilateral_natural.exh")
             command = ["bilateral", "--speed", "natural", "--approaches", str(approaches), "--out",
                        os.path.join(folder, name)]
+        self.of = ["--finger", "index"] if "--udp" in words else []
         self.ends_with = (0, 1) if self.ends else (130,)  # 1: an approach while nobody was heard
         self.said = os.path.join(folder, name + ".said")
         with open(self.said, "wb") as said:
@@ -163,9 +185,7 @@ class Box:
             return self.process.wait()
 
     def rows(self):
-        words = [self.exhand, "csv", self.log, "--all"]
-        if "--udp" in self.process.args:
-            words += ["--finger", "index"]
+        words = [self.exhand, "csv", self.log, "--all"] + self.of
         out = subprocess.run(words, stdout=subprocess.PIPE, check=True).stdout.decode()
         return list(csv.DictReader(io.StringIO(out)))
 
@@ -179,6 +199,12 @@ class Box:
         to_fault = r"(?:[-+][\d.]+ +)?"
         return [(int(tick), line) for tick, line in re.findall(
             r"^ *(\d+) +[\d.]+ +%s(parameter .*)" % to_fault, text, re.MULTILINE)]
+
+
+def free_port(kind=socket.SOCK_DGRAM):
+    with socket.socket(socket.AF_INET, kind) as sock:
+        sock.bind(("127.0.0.1", 0))
+        return sock.getsockname()[1]
 
 
 def key_file(folder, key, name="link"):
