@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* fix, bytes and record: below everything else. */
+/* fix, bytes, mac and record: below everything else. */
 #include "modules.h"
 
 #include "exhand/fix.h"
+#include "exhand/mac.h"
 #include "exhand/record.h"
 
 static int32_t any_i32(struct golden_rng *r)
@@ -138,6 +139,35 @@ void golden_bytes(struct golden *g, uint32_t rate_Hz)
         golden_put(g, f.u32);
         golden_put(g, f.i32);
         golden_put(g, f.i64);
+        golden_tick(g);
+    }
+}
+
+/* --- mac --- */
+
+#define TEXT_B    32
+#define PUBLISHED 64u /* ticks: tags of the paper's key and texts, of so many bytes */
+
+static void put_word(uint8_t *to, uint64_t v)
+{
+    for (unsigned i = 0; i < 8; i++) { to[i] = (uint8_t)(v >> 8 * i & UINT8_MAX); }
+}
+
+void golden_mac(struct golden *g, uint32_t rate_Hz)
+{
+    struct golden_rng r = golden_rng("mac", rate_Hz, 0);
+    while (g->tick < GOLDEN_TICKS) {
+        const int any = g->tick >= PUBLISHED;
+        const uint32_t n = any ? (uint32_t)golden_draw(&r, 0, TEXT_B) : g->tick;
+        uint8_t byte[EXH_MAC_KEY_B], text[PUBLISHED];
+        struct exh_mac_key key;
+        for (unsigned i = 0; i < PUBLISHED; i++) { text[i] = (uint8_t)i; }
+        (void)memcpy(byte, text, sizeof byte);
+        for (unsigned i = 0; any && i < sizeof byte; i += 8) { put_word(byte + i, golden_u64(&r)); }
+        for (unsigned i = 0; any && i < TEXT_B; i += 8) { put_word(text + i, golden_u64(&r)); }
+        key = exh_mac_key(byte);
+        golden_put(g, n);
+        golden_put(g, as_i64(exh_mac(&key, text, n)));
         golden_tick(g);
     }
 }

@@ -166,6 +166,7 @@ TEST(first_tick_that_differs_is_told)
 
 MODULE(fix);
 MODULE(bytes);
+MODULE(mac);
 MODULE(record);
 MODULE(ring);
 MODULE(signal);
@@ -208,8 +209,8 @@ MODULE(drop);
 MODULE(guarded);
 MODULE(bilateral);
 
-TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, record, ring, signal, slots, quad,
-    quad_ab, velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table, drive,
-    track, watch, chatter, guard, supply, passivity, safety, calibrate, probe, home, weigh, filter,
-    filter_cheap, quantizer, gains, glove, glove_every, glove_cal, angle, hand, precontact, wire,
-    mirror, modbus, modbus_rtu, drop, guarded, bilateral);
+TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, mac, record, ring, signal, slots,
+    quad, quad_ab, velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table,
+    drive, track, watch, chatter, guard, supply, passivity, safety, calibrate, probe, home, weigh,
+    filter, filter_cheap, quantizer, gains, glove, glove_every, glove_cal, angle, hand, precontact,
+    wire, mirror, modbus, modbus_rtu, drop, guarded, bilateral);

@@ -1,5 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""mac: SipHash-2-4 in Python's integers, as the paper has it; prints the 64 published tags."""
+"""mac: SipHash-2-4 in Python's integers, as the paper has it."""
+
+from functools import cache
+from struct import pack
+
+from .num import TICKS, Rng, wrap64
 
 M64 = (1 << 64) - 1
 
@@ -33,6 +38,22 @@ def mac(key, text):
     return v[0] ^ v[1] ^ v[2] ^ v[3]
 
 
-if __name__ == "__main__":
-    for n in range(64):
-        print(f"{mac(bytes(range(16)), bytes(range(n))):016X}")
+@cache
+def published(n):
+    return mac(bytes(range(16)), bytes(range(n)))
+
+
+def ticks(rate):
+    """The 64 tags of the paper's key and texts, then any key and up to 32 bytes."""
+    r = Rng("mac", rate, 0)
+    for tick in range(TICKS):
+        if tick < 64:
+            n, tag = tick, published(tick)
+        else:
+            n = r.draw(0, 32)
+            key, text = pack("<QQ", r.u64(), r.u64()), pack("<QQQQ", *(r.u64() for _ in range(4)))
+            tag = mac(key, text[:n])
+        yield (n, wrap64(tag)), b""
+
+
+MODULES = {"mac": ("n | tag", ticks)}

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* mac.h: all 64 tags that the authors published, key 00..0f, of 0 to 63 bytes 00 01 02 ..; the
- * model in test/golden/model/mac.py prints the same. */
+/* mac.h: all 64 tags that the authors published, key 00..0f, of 0 to 63 bytes 00 01 02 .. */
 #include "exhand/mac.h"
 
 #include "check.h"
