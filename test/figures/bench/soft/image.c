@@ -273,6 +273,14 @@ static void tick_start(void)
 
 static void tick_op(uint32_t i) { soft_sink = tick_once(&box, &box_in[i]); }
 
+/* --- the tag of a STATE on a link with a key --- */
+
+static void mac_op(uint32_t i)
+{
+    static const struct exh_mac_key key = {{1, 2}};
+    soft_sink = (int64_t)(exh_mac(&key, &soft_x[i & 511], 252) >> 1);
+}
+
 /* --- all --- */
 
 static void empty(uint32_t i) { (void)i; }
@@ -322,6 +330,7 @@ static const struct soft_op others[] = {
     {"velocity,plain double window", window_double_op},
     {"velocity,plain float window", window_float_op},
     {"tick,exhand", tick_op},
+    {"mac,252 bytes", mac_op},
 };
 
 static void others_start(void)
