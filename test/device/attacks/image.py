@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The pc104 image under QEMU, its network card at a user network of QEMU's own, COM2 at a socket.
 
-Cards inside the image with a link have at their connectors what a log of the host recorded (tape.c): a finger
-that approaches a wall. Its log comes over UDP.
+Cards inside the image with a link have at their connectors what a log of the host recorded
+(tape.c): a finger that approaches a wall. Its log comes over UDP.
 """
 
 import os

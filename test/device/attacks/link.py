@@ -12,6 +12,7 @@ import wire
 MAT_K, MAT_F_MAX = 0x0B01, 0x0B03
 HARDER = (wire.param(MAT_K, 1000000 << 10), wire.param(MAT_F_MAX, 100 << 20))
 FROM_STATE_TO_STATE = 10
+OTHERS = "packets of other senders"
 FAR = (0.0, 0.0, 1.0)
 
 
@@ -145,14 +146,13 @@ def flood_as_peer(aim):
 
 
 # name, what it does, by what, what is counted: column -> least share of what was tried; what the
-# true peer is: it "stays" heard, or is heard "again" within a second of the end. Where one goes
-# by the peer's address with the numbers that come next, a link without a key believes it
+# true peer is: it "stays" heard, or is heard "again" within a second of the end. Where an attack
+# goes by the peer's address with the numbers that come next, a link without a key believes it
 # (docs/WIRE.md, "Whom to answer"): the peer's next HELLO behind `quiet` is heard.
 OPEN = (
     ("param-port", "PARAM mat_k 1e6, mat_f_max 100, another port", param_other_port,
-     {"packets of other senders": 0.9}, "stays"),
-    ("param-session", "the same, of the true session", param_of_session,
-     {"packets of other senders": 0.9}, "stays"),
+     {OTHERS: 0.9}, "stays"),
+    ("param-session", "the same, of the true session", param_of_session, {OTHERS: 0.9}, "stays"),
     ("replay", "the session's own packets once more", replay_session, {"late": 0.9}, "stays"),
     ("replay-earlier", "packets of the session before", replay_earlier, {"late": 0.9}, "stays"),
     ("reordered", "skipped numbers, more than 64 back", reordered, {"late": 0.9}, "stays"),
@@ -173,8 +173,7 @@ KEYED = (
     ("key-replay", "the session's own packets once more", replay_session, {"again": 0.9}, "stays"),
     ("key-earlier", "packets of the run before", replay_earlier, {"not proved": 0.9}, "stays"),
     ("key-misshapen", "cut off and too long", misshapen, {"damaged": 0.3}, "stays"),
-    ("flood-port", "random bytes, another port", flood_other_port,
-     {"packets of other senders": 0.0}, "again"),
+    ("flood-port", "random bytes, another port", flood_other_port, {OTHERS: 0.0}, "again"),
 )
 # Of `exhand bilateral`, which tells no senders.
 APPROACHES = (
