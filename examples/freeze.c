@@ -47,12 +47,13 @@ const struct freeze_type freeze_quad = TYPE(exh_quad_cfg, F(exh_quad_cfg, par, P
     F(exh_quad_cfg, jump_cnt, I32), F(exh_quad_cfg, unused, U8));
 const struct freeze_type freeze_velocity_window = TYPE(exh_velocity_window_cfg,
     F(exh_velocity_window_cfg, gain, GAIN), F(exh_velocity_window_cfg, n, U8));
-const struct freeze_type freeze_drive = TYPE(exh_drive_cfg, F(exh_drive_cfg, par, PAR),
-    F(exh_drive_cfg, force_to_cur, TABLE), F(exh_drive_cfg, cur_to_force, TABLE),
-    F(exh_drive_cfg, f_top_N_q20, I32), F(exh_drive_cfg, i_top_A_q26, I32),
-    F(exh_drive_cfg, top_limit, U32), F(exh_drive_cfg, tick_N_q20, GAIN),
-    F(exh_drive_cfg, i2t_budget_q32, I64), F(exh_drive_cfg, i2t_fold, GAIN),
-    F(exh_drive_cfg, i2t_shift, U8), F(exh_drive_cfg, dac_A_q26, GAIN));
+const struct freeze_type freeze_drive =
+    TYPE(exh_drive_cfg, F(exh_drive_cfg, par, PAR), F(exh_drive_cfg, force_to_cur, TABLE),
+        F(exh_drive_cfg, cur_to_force, TABLE), F(exh_drive_cfg, f_top_N_q20, I32),
+        F(exh_drive_cfg, i_top_A_q26, I32), F(exh_drive_cfg, i_whole_A_q26, I32),
+        F(exh_drive_cfg, top_limit, U32), F(exh_drive_cfg, tick_N_q20, GAIN),
+        F(exh_drive_cfg, i2t_budget_q32, I64), F(exh_drive_cfg, i2t_fold, GAIN),
+        F(exh_drive_cfg, i2t_shift, U8), F(exh_drive_cfg, dac_A_q26, GAIN));
 const struct freeze_type freeze_track =
     TYPE(exh_tracking_cfg, F(exh_tracking_cfg, tol_A_q26, I32), F(exh_tracking_cfg, ticks, U32));
 const struct freeze_type freeze_safety =

@@ -82,7 +82,7 @@ static uint32_t sense(struct bilateral *s, const struct bilateral_cfg *cfg,
     uint32_t din = in->drive.din & (EXH_DIN_DRIVE0 - 1u);
     for (unsigned k = 0; k < n; k++) {
         const unsigned f = bilateral_at(cfg, k);
-        const struct exh_axis axis = bilateral_axis(s, cfg, k);
+        const struct exh_axis axis = bilateral_axis(s, cfg, k, f);
         now[k] = exh_axis_sense(&axis, &in->drive, f);
         p[f].q_m_q30 = now[k].pos_m_q30;
         p[f].qd_mps_q27 = now[k].vel_mps_q27;
@@ -202,7 +202,7 @@ void bilateral_tick(struct bilateral *s, const struct bilateral_cfg *cfg,
     out_by_finger(cfg, &placed, out);
     for (unsigned k = 0; k < n; k++) {
         const unsigned f = bilateral_at(cfg, k);
-        const struct exh_axis axis = bilateral_axis(s, cfg, k);
+        const struct exh_axis axis = bilateral_axis(s, cfg, k, f);
         sig->paper[f].i_des_A_q26 = i[k].coded_A_q26;
         exh_axis_update(&axis, now[k].cnt, i[k].coded_A_q26);
         sig->more[f].limits = (int32_t)limits[k];

@@ -270,11 +270,10 @@ static inline unsigned bilateral_at(const struct bilateral_cfg *cfg, unsigned k)
     return f & (0u - (f < BILATERAL_FINGERS)); /* a branch would double whatever indexes by it */
 }
 
-/* The parts of the finger at a place. */
+/* The parts of the finger f = bilateral_at(cfg, k) at a place k. */
 static inline struct exh_axis bilateral_axis(
-    struct bilateral *s, const struct bilateral_cfg *cfg, unsigned k)
+    struct bilateral *s, const struct bilateral_cfg *cfg, unsigned k, unsigned f)
 {
-    const unsigned f = bilateral_at(cfg, k);
     struct bilateral_finger *now = &s->finger[f];
     const struct bilateral_finger_cfg *c = &cfg->finger[f];
     return (struct exh_axis){&now->quad, &c->quad, &now->velocity, &c->velocity, &now->watch,

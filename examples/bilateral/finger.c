@@ -98,19 +98,18 @@ static void wind_in(struct bilateral_finger *s, uint32_t rest_ticks)
 }
 
 /* Arming's pull, in the place of the law: no more than it asks for, whatever share the ramp has. */
-static uint32_t pull(struct bilateral *s, const struct bilateral_cfg *cfg, unsigned place,
-    struct exh_permit permit, struct exh_force_ledger *force, struct exh_current_ledger *i)
+static uint32_t pull(const struct bilateral *s, const struct bilateral_cfg *cfg, unsigned f,
+    const struct exh_axis *axis, struct exh_permit permit, struct exh_force_ledger *force,
+    struct exh_current_ledger *i)
 {
-    const unsigned f = bilateral_at(cfg, place);
     const struct exh_polarity_cfg *c = &cfg->finger[f].polarity;
-    const struct exh_axis axis = bilateral_axis(s, cfg, place);
     const struct exh_drive_par *drive = &cfg->par->drive[f];
     const struct exh_drive_most own = {
         exh_clamp(c->pull_N_q20, 0, drive->f_max_N_q20), drive->slew_up_Nps};
     *force =
         (struct exh_force_ledger){.pullback_N_q20 = exh_polarity_force_N_q20(&s->polarity[f], c)};
     permit.share_q30 = INT32_C(1) << 30;
-    return exh_axis_force_within(&axis, &permit, own, force, i);
+    return exh_axis_force_within(axis, &permit, own, force, i);
 }
 
 uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *cfg, unsigned place,
@@ -125,7 +124,7 @@ uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *
     struct exh_contact_in q = {p->q_m_q30, p->qd_mps_q27, 0};
     struct exh_contact_par law;
     struct exh_force_ledger force;
-    const struct exh_axis axis = bilateral_axis(s, cfg, place);
+    const struct exh_axis axis = bilateral_axis(s, cfg, place, f);
     uint32_t limits;
 
     *bits = (int32_t)exh_precontact_step(&now->precontact, &cfg->finger[f].precontact, &where);
@@ -140,7 +139,7 @@ uint32_t bilateral_finger_feel(struct bilateral *s, const struct bilateral_cfg *
     }
     wind_in(now, cfg->rest_ticks);
     limits = s->pulls
-                 ? pull(s, cfg, place, *permit, &force, i)
+                 ? pull(s, cfg, f, &axis, *permit, &force, i)
                  : exh_axis_force_within(&axis, permit, most(&now->precontact, cfg, f), &force, i);
     if (!(limits & EXH_LIMIT_SLEW)) { exh_precontact_arrived(&now->precontact); }
     p->f_des_N_q20 = force.force_N_q20;

@@ -88,6 +88,7 @@ struct exh_drive_cfg {
     struct exh_table cur_to_force;   /* monitor: A q26 -> N q20 */
     int32_t f_top_N_q20;             /* end of that table or person_f: no force beyond it */
     int32_t i_top_A_q26;             /* person_i in whole codes; i_peak where that is no more */
+    int32_t i_whole_A_q26;           /* i_peak in whole codes */
     uint32_t top_limit;              /* enum exh_limit: whose f_top_N_q20 is */
     struct exh_gain tick_N_q20;      /* N q20 per tick, per N/s */
     int64_t i2t_budget_q32;          /* A^2 ticks above i_cont^2 */

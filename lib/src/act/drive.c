@@ -122,9 +122,8 @@ static void setup_top(struct exh_drive_cfg *cfg, const struct exh_drive_par *par
     cfg->top_limit = cut ? EXH_LIMIT_PERSON : EXH_LIMIT_FORCE;
     /* Of the same codes it is i_peak that holds back. */
     cfg->i_top_A_q26 = whole_codes(cfg, par->person_A_q26);
-    if (cfg->i_top_A_q26 >= whole_codes(cfg, par->i_peak_A_q26)) {
-        cfg->i_top_A_q26 = par->i_peak_A_q26;
-    }
+    cfg->i_whole_A_q26 = whole_codes(cfg, par->i_peak_A_q26);
+    if (cfg->i_top_A_q26 >= cfg->i_whole_A_q26) { cfg->i_top_A_q26 = par->i_peak_A_q26; }
 }
 
 int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, struct exh_period T,
@@ -221,9 +220,11 @@ uint32_t exh_drive_force_within(struct exh_drive *s, const struct exh_drive_cfg 
     return limits;
 }
 
-/* What I2t allows now: i_cont, plus a share of the peak while there is budget. */
+/* What I2t allows now: i_cont, plus a share of the peak while there is budget. Behind the knee, at
+ * a quarter of it, that is all of the peak: with half of it left there is nothing to compute. */
 static int32_t i2t_limit(const struct exh_drive *s, const struct exh_drive_cfg *cfg)
 {
+    if (s->i2t_q32 < cfg->i2t_budget_q32 >> 1) { return cfg->par->i_peak_A_q26; }
     const int32_t span = cfg->par->i_peak_A_q26 - cfg->par->i_cont_A_q26;
     const int64_t left = exh_wrap_diff64(cfg->i2t_budget_q32, s->i2t_q32) >> (cfg->i2t_shift & 63);
     const int64_t extra = exh_gain_mul(cfg->i2t_fold, exh_clamp(left, 0, INT32_MAX));
@@ -242,9 +243,11 @@ uint32_t exh_drive_current_step(struct exh_drive *s, const struct exh_drive_cfg 
     const struct exh_force_ledger *f, struct exh_current_ledger *i)
 {
     const int32_t table = exh_table_at(cfg->force_to_cur, f->force_N_q20);
-    const int32_t allowed = i2t_limit(s, cfg), hot = whole_codes(cfg, allowed);
+    const int32_t allowed = i2t_limit(s, cfg);
+    const int warm = allowed < cfg->par->i_peak_A_q26;
+    const int32_t hot = warm ? whole_codes(cfg, allowed) : cfg->i_whole_A_q26;
     /* Without heat the two limits are one, and it is the peak's. */
-    const int32_t drive = allowed < cfg->par->i_peak_A_q26 ? cfg->par->i_peak_A_q26 : hot;
+    const int32_t drive = warm ? cfg->par->i_peak_A_q26 : hot;
     const int person = cfg->i_top_A_q26 < drive;
     const int32_t top = person ? cfg->i_top_A_q26 : drive;
     const int32_t peak = exh_clamp32(table, -top, top);

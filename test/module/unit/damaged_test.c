@@ -141,6 +141,7 @@ static void make_drive(struct exh_drive_cfg *cfg, uint32_t round)
     damage(&cfg->force_to_cur.n, 1, round);
     damage(&cfg->f_top_N_q20, sizeof cfg->f_top_N_q20, round);
     damage(&cfg->i_top_A_q26, sizeof cfg->i_top_A_q26, round);
+    damage(&cfg->i_whole_A_q26, sizeof cfg->i_whole_A_q26, round);
     damage(&cfg->top_limit, sizeof cfg->top_limit, round);
     damage(&cfg->tick_N_q20, sizeof cfg->tick_N_q20, round);
     damage(&cfg->dac_A_q26, sizeof cfg->dac_A_q26, round);

@@ -49,6 +49,7 @@ static void any_cfg(void)
     par.dac_rawpA_q16 = Frama_C_interval(65536, INT32_MAX);
     cfg.f_top_N_q20 = Frama_C_interval(1, INT32_MAX);
     cfg.i_top_A_q26 = Frama_C_interval(0, I_PEAK_MAX_A_Q26);
+    cfg.i_whole_A_q26 = Frama_C_interval(0, I_PEAK_MAX_A_Q26);
     cfg.top_limit = any8() & 1 ? EXH_LIMIT_FORCE : EXH_LIMIT_PERSON;
     cfg.tick_N_q20.mant = Frama_C_interval(0, INT32_MAX);
     cfg.tick_N_q20.shift = (uint8_t)Frama_C_unsigned_int_interval(0, 62);

@@ -31,6 +31,7 @@
       0 <= p->dac_zero_raw <= 65535 && 0 <= p->dac_span_raw <= 32767 && -32768 <= p->mon_zero_raw <= 32767 &&
       131072 <= p->person_N_q20 <= 104857600 && 0 <= p->person_A_q26 <= 442918502;
     predicate drive_made(struct exh_drive_cfg *c) = 1 <= c->f_top_N_q20 && 0 <= c->i_top_A_q26 <= 442918502 &&
+      0 <= c->i_whole_A_q26 <= 442918502 &&
       2 <= c->top_limit <= 2048 && gain(&c->tick_N_q20) && gain(&c->i2t_fold) &&
       gain(&c->dac_A_q26) && 0 <= c->i2t_budget_q32 <= 1 << 60 && c->i2t_shift <= 62;
     predicate drive_cfg(struct exh_drive_cfg *c) = \valid_read(c->par) && drive_par(c->par) && table(&c->force_to_cur) &&
