@@ -43,8 +43,8 @@ box="--loop --glove-age 1"
 even="--spread 60000"
 # The most instructions that a tick of the full box may take, the image's part and the scene's: with
 # a glove frame in every tick, and with one in every twentieth, computed and taken in parts.
-dear="--most 24000"
-dear_parts="--most 17200"
+dear="--most 23600"
+dear_parts="--most 17000"
 # With as few accesses as a tick can do with (docs/CARDS.md); the glove at 500 Hz, in parts.
 sparing="monitor=2 turns=1"
 parts="--loop --turns --glove-last --set every=20"
