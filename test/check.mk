@@ -52,7 +52,8 @@ check:
 # These run built images and programs, one core each, as many at a time as there are cores.
 check_runs := boot-run hil-short nic-run contract-run two-run fmi-run picture
 # Of these a core is mostly one's, or waits.
-check_waits := doc-names kill-short doc attacks-short attacks-image-short stress-short same fmt-check
+check_waits := doc-names kill-short doc attacks-short attacks-image-short stress-short same \
+               fmt-check
 .PHONY: hil-short picture bits
 hil-short:
 	@$(MAKE) --no-print-directory hil-run HIL_TICKS=2000 HIL_FEW=500 HIL_QEMU=2000 > $(B)/hil.txt || \
