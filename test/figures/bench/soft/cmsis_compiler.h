@@ -17,9 +17,23 @@
 #define __WEAK               __attribute__((weak))
 #define __ASM                __asm__
 #define __CLZ(x)             ((uint8_t)((x) ? __builtin_clz(x) : 32))
-#define __SSAT(x, bits)      __ssat((x), (bits))
-#define __USAT(x, bits)      __usat((x), (bits))
 #define __ROR(x, n)          __ror((x), (n))
+
+#ifdef __ARM_FEATURE_SAT
+#define __SSAT(x, bits) __ssat((x), (bits))
+#define __USAT(x, bits) __usat((x), (bits))
+#else /* a Cortex-M0 has no such instructions */
+static inline int32_t __SSAT(int32_t x, uint32_t bits)
+{
+    const int32_t most = (int32_t)((UINT32_C(1) << (bits - 1)) - 1);
+    return x > most ? most : x < -most - 1 ? -most - 1 : x;
+}
+static inline uint32_t __USAT(int32_t x, uint32_t bits)
+{
+    const int32_t most = (int32_t)((UINT32_C(1) << bits) - 1);
+    return (uint32_t)(x > most ? most : x < 0 ? 0 : x);
+}
+#endif
 
 #ifdef __ARM_FEATURE_DSP
 #define __PKHBT(a, b, n) \
