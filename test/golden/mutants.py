@@ -448,6 +448,7 @@ THIN = {
     # codes are few to an ampere: only then a limit is another
     "exh_clamp(peak, 0, most)": 0.50,                  # unit/gate, proof
     "coded(cfg, now) >>": 0.80,                        # unit/drive
+    "cfg->i_whole_A_q26 = whole_codes(cfg, par->i_peak_A_q26);": 0.85,  # unit/drive
     # a person's ceiling that is drawn is seldom below i_peak
     "top = person ? cfg->i_top_A_q26 : drive;": 0.10,  # unit/drive, proof
     "cfg->f_top_N_q20 = cut ?": 0.20,
