@@ -42,11 +42,8 @@ check:
 	@$(timed) world boot-built contract-built nic-built hil-built
 	@$(timed) $(check_runs)
 	@$(timed) $(check_waits)
-	@$(timed) size
+	@$(timed) $(check_single)
 	@$(timed) sbom > $(B)/exhand.spdx
-	@$(timed) structure
-	@$(timed) bench
-	@$(timed) report-test
 	@$(timed) report ARGS=--short
 
 # These run built images and programs, one core each, as many at a time as there are cores.
@@ -54,6 +51,8 @@ check_runs := boot-run hil-short nic-run contract-run two-run fmi-run picture
 # Of these a core is mostly one's, or waits.
 check_waits := doc-names kill-short doc attacks-short attacks-image-short stress-short same \
                fmt-check
+# A core is enough for each of these for most of its time.
+check_single := size bench structure report-test
 .PHONY: hil-short picture bits
 hil-short:
 	@$(MAKE) --no-print-directory hil-run HIL_TICKS=2000 HIL_FEW=500 HIL_QEMU=2000 > $(B)/hil.txt || \
