@@ -4,8 +4,8 @@
 # of one that failed everything it said; ends with `N passed, N failed`.
 #
 # Environment: PARTS (1): the random cases of each are dealt to so many processes (EXH_PART,
-# EXH_PARTS), JOBS (1) of which run at a time; a line each, as it ends. LIMIT (1200 s): what
-# runs longer hangs, and has failed.
+# EXH_PARTS), JOBS (1) of which run at a time; a line each, as it ends. LIMIT (3600 s): what
+# runs longer hangs, and has failed. The longest takes a minute of a core.
 
 # run_part BINARY PART: its line, and `PASSED FAILED` at the end of the file $TALLY
 run_part()
@@ -13,9 +13,9 @@ run_part()
     name=${1#"${1%/*/*}"/} log=$(mktemp) || return 1
     [ "$PARTS" = 1 ] || name="$name $(($2 + 1))/$PARTS"
     start=$(date +%s)
-    EXH_PART=$2 EXH_PARTS=$PARTS timeout --foreground "${LIMIT:-1200}" "$1" >"$log" 2>&1
+    EXH_PART=$2 EXH_PARTS=$PARTS timeout --foreground "${LIMIT:-3600}" "$1" >"$log" 2>&1
     status=$?
-    [ "$status" != 124 ] || echo "stopped after ${LIMIT:-1200} s: it hangs" >>"$log"
+    [ "$status" != 124 ] || echo "stopped after ${LIMIT:-3600} s: it hangs" >>"$log"
     p=$(sed -n 's/^\[  PASSED  \] \([0-9]*\) test.*/\1/p' "$log" | tail -n 1)
     f=$(sed -n 's/^\[  FAILED  \] \([0-9]*\) test.*/\1/p' "$log" | tail -n 1)
     if [ -z "$p$f" ]; then # not CMocka: the plain printer's last line

@@ -104,7 +104,7 @@ static modbus_t *client_of_2(int port)
     at.sin_port = htons((uint16_t)port);
     CHECK(connect(fd, (struct sockaddr *)&at, sizeof at) == 0, "connect: %s", strerror(errno));
     modbus_set_socket(c, fd);
-    modbus_set_response_timeout(c, 5, 0);
+    modbus_set_response_timeout(c, RIG_PATIENCE_S, 0);
     return c;
 }
 

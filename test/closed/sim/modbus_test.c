@@ -28,10 +28,12 @@ TEST(over_a_serial_line)
     }
     snprintf(where, sizeof where, "rtu:%s:115200", ptsname(fd));
     pid = said_start(dir, cli_run, WORDS("run", "--pace", "--modbus", where, "--modbus-write"));
-    for (int i = 0; i < 200 && said_size(said_path(dir, "said.out")) <= 0; i++) { rig_sleep(0.01); }
+    for (int i = 0; i < 100 * RIG_PATIENCE_S && said_size(said_path(dir, "said.out")) <= 0; i++) {
+        rig_sleep(0.01);
+    }
     modbus_set_slave(c, 1);
     modbus_set_socket(c, fd);
-    modbus_set_response_timeout(c, 2, 0);
+    modbus_set_response_timeout(c, RIG_PATIENCE_S, 0);
     for (int i = 0; i < 50; i++) {
         CHECK(modbus_read_input_registers(c, 0, 6, word) == 6, "%s", modbus_strerror(errno));
         CHECK_EQ_I64(rig_value(word, 2), 0x12345678);
@@ -57,7 +59,7 @@ TEST(over_a_serial_line)
     modbus_set_slave(c, 0); /* all: done, not answered */
     CHECK(modbus_write_bit(c, EXH_COIL_OFF, 1) == -1 && errno == ETIMEDOUT, "answered to all");
     modbus_set_slave(c, 1);
-    modbus_set_response_timeout(c, 2, 0);
+    modbus_set_response_timeout(c, RIG_PATIENCE_S, 0);
     CHECK(modbus_read_input_registers(c, (int)RIG_HEAD(EXH_HEAD_DONE), 2, word) == 2, "%s",
         modbus_strerror(errno));
     CHECK_EQ_I64(rig_value(word, 0), 1);

@@ -146,7 +146,7 @@ TEST(a_reader_that_goes)
     struct writer *w = begin();
     int is = 1;
     close(end[0]);
-    for (int i = 0; i < 200 && is == 1; i++) {
+    for (int i = 0; i < 6000 && is == 1; i++) {
         const struct timespec a_while = {0, 10000000};
         is = writer_put(w, "x", 1, 0);
         (void)nanosleep(&a_while, NULL);

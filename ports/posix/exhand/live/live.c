@@ -264,7 +264,7 @@ int cli_run(int argc, char **argv)
         {"rate", CLI_REAL, &o.rate_Hz, 1, 20000, "HZ", "of the loop (2000)"},
         {"pace", CLI_FLAG, &o.pace, 0, 0, NULL,
             "follow the wall clock, by which ticks may be missed; else as fast as it goes"},
-        {"slack", CLI_REAL, &o.slack_s, 0, 1, "S",
+        {"slack", CLI_REAL, &o.slack_s, 0, 60, "S",
             "with --pace: a tick so late is made up for, else it is missed (0; with --udp 1)"},
         {"seconds", CLI_REAL, &o.seconds, 0, 1e9, "S", "the box's time, then it ends (never)"},
         {"fingers", CLI_CALL, &fingers, 0, 0, "F[,F...]",
