@@ -76,6 +76,9 @@
 /* the tick of one finger */
 #include "exhand/axis.h"
 
+/* a guard for any motor */
+#include "exhand/limiter.h"
+
 /* measuring the box */
 #include "exhand/calibrate.h"
 #include "exhand/probe.h"

@@ -15,8 +15,8 @@
  * Three kinds of command:
  *   effort    is limited in size and slew
  *   position  is held within a range, with limited velocity and acceleration
- *   wall      the command is a wall's position: effort = b v + k (x - wall) + F0 by the contact law
- *             (contact.h), then as an effort
+ *   wall      the command is a wall's position: effort = b v + k (x - wall) + F0 out of the wall, 0
+ *             .. 104.8576 units, by exh_contact_force() (contact.h); then as an effort
  *
  * States are those of the box (enum exh_state, safety.h) by the same table:
  *   OFF -> ARM (limits rise from 0) -> RUN <-> LIMIT -> RELEASE -> OFF, or FAULT if there was a
@@ -86,7 +86,7 @@ enum exh_limiter_after {
 struct exh_limiter_par {
     int32_t kind;       /* enum exh_limiter_kind */
     int32_t uses;       /* bits of enum exh_limiter_use */
-    int32_t rate_milli; /* steps a second, mHz, 1000 .. 20000000 */
+    int32_t rate_milli; /* steps a second, mHz, 1 .. 20000000 */
 
     int32_t effort_max;        /* EFFORT, WALL: no more is sent, micro, 1 .. 2*10^9 */
     int32_t effort_up_milli;   /* its rise from 0, a second, milli, 1 .. 2*10^9 */
@@ -94,14 +94,14 @@ struct exh_limiter_par {
     int32_t ramp_ms;           /* arming: limits rise from 0 to full, ms, 1 .. 10000 */
     int32_t release_ms; /* EFFORT, WALL: effort held to 0, ms, 1 .. 1000; one step at least */
 
-    int32_t pos_min;       /* uses POS: least position commanded, micro, +-10^9 */
-    int32_t pos_max;       /* most, micro, above pos_min, +-10^9 */
-    int32_t pos_over;      /* measured farther beyond them: cause RANGE; micro, 0 .. 10^9 */
+    int32_t pos_min;       /* uses POS: least position commanded, micro, +-5*10^8 */
+    int32_t pos_max;       /* most, micro, above pos_min, +-5*10^8 */
+    int32_t pos_over;      /* measured farther beyond them: cause RANGE; micro, 0 .. 5*10^8 */
     int32_t vel_max;       /* POSITION: of what is sent, micro a second, 1 .. 10^9 */
     int32_t acc_max_milli; /* POSITION: of what is sent, milli a second^2, 1 .. 2*10^9 */
 
     int32_t first_max; /* first command, farther from the measured position (POSITION) or from 0:
-                        * far off; micro, 0 .. 2*10^9 */
+                        * far off; micro, 0 .. 10^9 */
     int32_t first;     /* enum exh_limiter_first */
     int32_t after;     /* POSITION: enum exh_limiter_after */
 
@@ -109,8 +109,9 @@ struct exh_limiter_par {
     int32_t gap_max_us; /* steps farther apart, or a clock that stands for so many steps' time:
                          * cause TIME; us, two steps .. 10^7 */
 
-    int32_t speed_max; /* uses VEL: measured speed beyond it for longer than speed_ms: cause SPEED;
-                        * micro a second, 0 .. 2*10^9, 0: not watched */
+    int32_t speed_max; /* uses VEL: measured speed beyond it for longer than speed_ms: cause SPEED,
+                        * and WALL damps no more speed than it; micro a second, 0 .. 2*10^9; 0: not
+                        * watched, but WALL needs it */
     int32_t speed_ms;  /* ms, 0 .. 1000 */
 
     int32_t stall_effort; /* uses POS: an effort above it for longer than stall_ms without
@@ -120,17 +121,14 @@ struct exh_limiter_par {
 
     int32_t heat_nominal; /* effort for ever, micro, 0 .. heat_peak */
     int32_t heat_peak;    /* effort for heat_ms from cold, micro, 0 .. 2*10^9, 0: not watched */
-    int32_t heat_ms;      /* time constant of I2t, ms, 16 steps .. 600000, where it is watched */
+    int32_t heat_ms;      /* time constant of I2t, ms, 64 steps .. 600000, where it is watched */
 
     int32_t wall_below;   /* WALL: 0: positions above the command are in the wall; 1: below it */
     int32_t wall_k_milli; /* stiffness, milli effort per position, 0 .. 10^9 */
     int32_t wall_b;       /* damping, micro effort per velocity, 0 .. 10^9 */
-    int32_t wall_f0;      /* pull-back force F0, micro, 0 .. 2*10^9 */
-    int32_t wall_f0_band; /* movement that reverses F0, micro, 0 .. 10^6 */
-    int32_t wall_hyst;    /* contact ends so far outside the wall, micro, 0 .. 10^6 */
-    int32_t wall_passive; /* 0; other values are kept for the passivity of a wall */
+    int32_t wall_f0;      /* F0, while the velocity is out of the wall; micro, 0 .. 10^8 */
 };
-#define EXH_LIMITER_FIELDS 33 /* in exh_limiter_par */
+#define EXH_LIMITER_FIELDS 30 /* in exh_limiter_par */
 
 /* What holds a command back in this step, as bits; names by exh_limiter_limit_name(). */
 enum exh_limiter_limit {
@@ -163,7 +161,7 @@ enum exh_limiter_cause {
 
 /* What a step goes by. */
 struct exh_limiter_in {
-    int64_t now_us;   /* a clock that only rises, us, any origin */
+    uint32_t now_us;  /* a clock that goes on, us, any origin; it may wrap at 2^32 */
     int32_t command;  /* by kind, micro */
     int32_t pos;      /* measured, micro */
     int32_t vel;      /* measured, micro a second */
@@ -185,43 +183,46 @@ struct exh_limiter_out {
     uint32_t present; /* seen in this step: why it does not arm */
 };
 
-/* As it is set up; constant in the tick, without pointers: it may be copied. Written by
+/* As it is set up; constant in the step, without pointers: it may be copied. Written by
  * exh_limiter_setup() alone. */
 struct exh_limiter_cfg {
+    int32_t up, down;    /* effort a step, micro */
+    int32_t ramp_q30;    /* share gained a step */
+    uint32_t fall_q32;   /* 1 / steps of release */
+    int32_t heat_top;    /* heat_peak, or no limit */
+    int32_t heat_bottom; /* heat_nominal */
+    int64_t heat_budget; /* squares of (effort >> heat_shift), summed over steps, below 2^47 */
+    uint32_t heat_shift;
+    uint32_t heat_knee;   /* bits of the budget left, >> 16, where heat begins to hold back */
+    int32_t vel, acc;     /* POSITION: a step, a step^2, micro << frac */
+    int32_t brake;        /* POSITION: more than the way to brake in from full speed, micro */
+    uint32_t frac;        /* fraction bits of a position sent */
+    uint32_t still_steps; /* gap_max_us */
+    int32_t pos_scale, vel_scale; /* WALL: from micro to what the law is given */
+    int32_t near_min, near_max;   /* uses POS: measured position outside is RANGE */
+    struct exh_motion_par motion;
+    uint32_t speed_steps, stall_steps; /* of motion.h */
+    struct exh_contact_par wall;
     struct exh_limiter_par par;
-    struct exh_contact_par wall;  /* in the scales below */
-    struct exh_motion_par motion; /* micro */
-    struct exh_gain fall;         /* 1 / release steps */
-    struct exh_gain heat_fold;    /* effort per (budget left >> heat_fold_shift) */
-    int64_t heat_budget;          /* in squares of (effort >> heat_shift), times steps */
-    int64_t brake;                /* POSITION: way from full speed, micro << frac */
-    int32_t up, down;             /* effort a step, micro */
-    int32_t ramp_q30;             /* share gained a step */
-    int32_t vel, acc;             /* POSITION: a step, a step^2, micro << frac */
-    uint32_t release_steps, speed_steps, stall_steps, still_steps;
-    uint8_t frac; /* fraction bits of a position sent */
-    uint8_t heat_shift, heat_fold_shift;
-    uint8_t pos_shift, vel_shift; /* WALL: what the law is given, micro << shift */
 };
 
 /* From step to step. A state of zeros is OFF. Read-only outside this module. */
 struct exh_limiter {
-    int64_t at;        /* POSITION: sent, micro << frac */
-    int64_t heat;      /* above nominal, 0 .. 2 budgets */
-    int64_t now_us;    /* of the last step */
-    int32_t vel;       /* POSITION: change of it a step */
+    uint8_t state;     /* enum exh_state */
+    uint8_t opened;    /* 1: the dead-man was open since */
+    uint8_t started;   /* 1: now_us is of a step that was */
+    uint8_t holds;     /* POSITION: 1: FAULT holds it, until it is off or armed */
+    uint32_t now_us;   /* of the last step */
+    int64_t heat;      /* above nominal, 0 .. 5/4 of the budget and 1 */
     int32_t sent;      /* effort or position of the last step, micro */
-    int32_t fall;      /* RELEASE: taken away a step */
+    int32_t part;      /* POSITION: beyond it, micro << frac, 0 .. 2^frac - 1 */
+    int32_t vel;       /* POSITION: change of it in the last step, micro << frac */
+    int32_t fall;      /* RELEASE: effort taken away a step */
     int32_t stood;     /* position of the last movement, micro */
-    int32_t share_q30; /* ARM: of the limits */
+    int32_t share_q30; /* ARM: of the limits; else all of them */
     uint32_t causes, first, limits;
-    uint32_t steps;       /* of RELEASE */
     uint32_t still_steps; /* since the clock moved */
-    struct exh_contact contact;
     struct exh_motion motion;
-    uint8_t state;   /* enum exh_state */
-    uint8_t opened;  /* 1: the dead-man was open since */
-    uint8_t started; /* 1: now_us is of a step that was */
 };
 
 /* Set-up (divides). 0, or -(1 + k) where the field of number k is the first that is wrong: it lies
@@ -248,6 +249,8 @@ const char *exh_limiter_field_name(unsigned k);
 
 /* Programs with floats define this before they include the header. */
 #ifdef EXH_LIMITER_FLOAT
+EXH_STATIC_ASSERT(double_has_64_bits, sizeof(double) == sizeof(uint64_t));
+
 /* Nearest millionth of x, half away from 0. NaN and infinity become EXH_LIMITER_NONE; a number
  * beyond int32_t becomes +-INT32_MAX, with its sign. It looks at the number's bits (IEEE 754), so
  * it also holds where a compiler was told that there are no NaNs (-ffast-math). */
@@ -258,7 +261,6 @@ static inline int32_t exh_limiter_micro(double x)
         double x;
         uint64_t bits;
     } of;
-    EXH_STATIC_ASSERT(double_has_64_bits, sizeof(double) == sizeof(uint64_t));
     of.x = x;
     if ((of.bits & exponent) == exponent) { return EXH_LIMITER_NONE; }
     if (x >= 2147.483647) { return INT32_MAX; }

@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: MIT */
+/* Set-up of a limiter: ranges of its fields, then what a step needs, in its own scales. */
+#include "exhand/limiter.h"
+
+#include "exhand/fix.h"
+
+#include <stddef.h>
+#include <string.h>
+
+/* Half of what the law's formats hold: positions within it. */
+#define LAW_MOST (INT32_C(1) << 30)
+/* Fraction bits of a position sent, at most; its speed a step, so that the square of four times it
+ * has room; and the way to brake. */
+#define FRAC_MAX 12
+#define VEL_MOST (INT32_C(1) << 29)
+#define WAY_MOST (UINT64_C(1) << 30)
+/* An effort is squared in so many bits: with 2^24 steps of heat_ms that is below HEAT_MOST. The
+ * least difference of squares: a quarter of the budget is then some units of 2^HEAT_SHIFT. */
+#define SQUARE_BITS   11
+#define SQUARES_LEAST (UINT32_C(1) << 14)
+#define HEAT_MOST     (INT64_C(1) << (31 + HEAT_SHIFT))
+#define HEAT_STEPS    64
+#define HEAT_SHIFT    16
+
+/* --- ranges --- */
+
+#define EFFORT_ (1u << EXH_LIMITER_EFFORT)
+#define PLACE_  (1u << EXH_LIMITER_POSITION)
+#define WALL_   (1u << EXH_LIMITER_WALL)
+#define FORCE_  (EFFORT_ | WALL_)
+#define ALL_    (FORCE_ | PLACE_)
+#define EITHER  0x80u /* of either sign */
+
+static const int32_t most[] = {1, 2, 15, 1000, 10000, 60000, 600000, 10000000, 20000000, 100000000,
+    500000000, 1000000000, 2000000000};
+enum { M1, M2, M15, M1E3, M1E4, M6E4, M6E5, M1E7, M2E7, M1E8, M5E8, M1E9, M2E9 };
+
+/* Its largest value, an index into most[]; the kinds for which it must not be 0; and what must be
+ * measured if it is not. */
+static const struct range {
+    uint8_t most, needed, uses;
+} ranges[EXH_LIMITER_FIELDS] = {
+    {M2, 0, 0}, {M15, 0, 0}, {M2E7, ALL_, 0},                /* kind uses rate */
+    {M2E9, FORCE_, 0}, {M2E9, FORCE_, 0}, {M2E9, FORCE_, 0}, /* effort */
+    {M1E4, ALL_, 0}, {M1E3, FORCE_, 0},                      /* ramp release */
+    {M5E8, EITHER, 0}, {M5E8, EITHER, 0}, {M5E8, 0, 0},      /* pos */
+    {M1E9, PLACE_, 0}, {M2E9, PLACE_, 0},                    /* vel acc */
+    {M1E9, 0, 0}, {M1, 0, 0}, {M1, 0, 0},                    /* first after */
+    {M1E7, ALL_, 0}, {M1E7, ALL_, 0},                        /* age gap */
+    {M2E9, WALL_, EXH_LIMITER_VEL}, {M1E3, 0, 0},            /* speed */
+    {M2E9, 0, EXH_LIMITER_POS}, {M1E9, 0, 0}, {M6E4, 0, 0},  /* stall */
+    {M2E9, 0, 0}, {M2E9, 0, 0}, {M6E5, 0, 0},                /* heat */
+    {M1, 0, 0}, {M1E9, 0, 0}, {M1E9, 0, 0}, {M1E8, 0, 0},    /* wall */
+};
+EXH_STATIC_ASSERT(
+    fields_are_counted, sizeof(struct exh_limiter_par) == EXH_LIMITER_FIELDS * sizeof(int32_t));
+
+#define FIELD(name) (-(int)(1 + offsetof(struct exh_limiter_par, name) / sizeof(int32_t)))
+/* The first that does not hold names the field. */
+#define NEED(cond, name) \
+    do { \
+        if (!(cond)) { return FIELD(name); } \
+    } while (0)
+
+/* Copies, too: field by field, so that no memcpy is needed. */
+static int copy_checked(struct exh_limiter_cfg *cfg, const struct exh_limiter_par *par)
+{
+    for (int k = 0; k < EXH_LIMITER_FIELDS; k++) {
+        const int32_t hi = most[ranges[k].most];
+        int32_t v, lo;
+        memcpy(&v, (const char *)par + (size_t)k * sizeof v, sizeof v);
+        memcpy((char *)&cfg->par + (size_t)k * sizeof v, &v, sizeof v);
+        /* The kind is right by then; its own needs are none. */
+        lo = ranges[k].needed == EITHER ? -hi : ranges[k].needed >> (cfg->par.kind & 3) & 1;
+        if (!exh_inside(v, lo, hi) || (v != 0 && ranges[k].uses & ~cfg->par.uses)) {
+            return -1 - k;
+        }
+    }
+    return 0;
+}
+
+/* What must go with what. */
+static int check_relations(struct exh_limiter_cfg *cfg)
+{
+    const struct exh_limiter_par *par = &cfg->par;
+    const int place = par->kind == EXH_LIMITER_POSITION;
+    /* What a position sent does to the motor is known only where it is measured. */
+    const int32_t needs =
+        (par->kind == EXH_LIMITER_EFFORT ? 0 : EXH_LIMITER_POS) |
+        (place && (par->stall_effort | par->heat_peak) ? EXH_LIMITER_MEASURED : 0);
+    NEED(!(needs & ~par->uses), uses);
+    cfg->near_min = cfg->near_max = 0; /* where it is not measured it is 0 */
+    if (par->uses & EXH_LIMITER_POS) {
+        NEED(par->pos_min < par->pos_max, pos_max);
+        cfg->near_min = par->pos_min - par->pos_over;
+        cfg->near_max = par->pos_max + par->pos_over;
+    }
+    return 0;
+}
+
+/* --- what a step needs --- */
+
+/* floor(v * scale / by), at most 2^31 - 1. `by` is not 0. */
+static int32_t scaled(int32_t v, uint32_t scale, uint32_t by)
+{
+    const uint64_t q = exh_udiv64((uint64_t)(uint32_t)v * scale, by, NULL);
+    return q > INT32_MAX ? INT32_MAX : (int32_t)q;
+}
+
+static uint32_t steps_in(int32_t ms, uint32_t rate_milli)
+{
+    return (uint32_t)scaled(ms, rate_milli, 1000000);
+}
+
+/* Velocity and acceleration a step, in the finest scale in which full speed, its square and the way
+ * to brake have room. */
+static int setup_place(struct exh_limiter_cfg *cfg)
+{
+    const uint32_t rate = (uint32_t)cfg->par.rate_milli;
+    const int32_t second = scaled(cfg->par.acc_max_milli, 1000000, rate);
+    for (int frac = FRAC_MAX; frac >= 0; frac--) {
+        const int32_t vel = scaled(cfg->par.vel_max, UINT32_C(1000) << frac, rate);
+        const int32_t acc = scaled(second, UINT32_C(1000) << frac, rate);
+        uint64_t brake;
+        NEED(vel > 0, vel_max);
+        NEED(acc > 0, acc_max_milli);
+        if (vel >= VEL_MOST) { continue; }
+        cfg->frac = (uint32_t)frac;
+        cfg->vel = vel;
+        /* From full speed to full speed the other way: no limit. */
+        cfg->acc = acc < vel * 2 ? acc : vel * 2;
+        /* fits() asks for v^2/2a + v/2 + a/8, and a <= 2v. */
+        brake = exh_udiv64((uint64_t)(uint32_t)vel * (uint32_t)vel, (uint32_t)cfg->acc * 2u, NULL);
+        brake = ((brake + (uint32_t)vel) >> frac) + 2;
+        cfg->brake = (int32_t)brake;
+        if (brake < WAY_MOST >> frac) { return 0; }
+    }
+    return FIELD(vel_max);
+}
+
+/* As drive.c has it, for any unit: squares above the nominal one, summed over steps. */
+static int setup_heat(struct exh_limiter_cfg *cfg, uint32_t steps)
+{
+    const uint32_t top = (uint32_t)cfg->par.heat_peak, bottom = (uint32_t)cfg->par.heat_nominal;
+    unsigned shift = 0, knee = 30;
+    uint32_t squares;
+    cfg->heat_top = INT32_MAX;
+    cfg->heat_shift = 31; /* no effort is seen, and there is room for ever */
+    cfg->heat_budget = HEAT_MOST;
+    cfg->heat_knee = knee;
+    cfg->heat_bottom = 0;
+    if (top == 0) { return 0; }
+    while (top >> shift >> SQUARE_BITS) { shift++; }
+    squares = (top >> shift) * (top >> shift) - (bottom >> shift) * (bottom >> shift);
+    NEED(bottom >> shift && bottom < top && squares >= SQUARES_LEAST, heat_nominal);
+    NEED(steps >= HEAT_STEPS, heat_ms);
+    cfg->heat_top = cfg->par.heat_peak;
+    cfg->heat_bottom = cfg->par.heat_nominal;
+    cfg->heat_shift = shift;
+    cfg->heat_budget = (int64_t)((uint64_t)squares * steps);
+    while (cfg->heat_budget >> HEAT_SHIFT >> 2 >> knee == 0) { knee--; }
+    cfg->heat_knee = knee;
+    return 0;
+}
+
+/* A gain in the law's format, by the least shift that fits. */
+static int32_t law_gain(int32_t gain, uint32_t unit, unsigned q, unsigned *shift)
+{
+    int32_t v;
+    *shift = 0;
+    for (;;) {
+        v = scaled(gain, UINT32_C(1) << (q - *shift), unit);
+        if (v < INT32_MAX) { return v; }
+        (*shift)++;
+    }
+}
+
+static int setup_wall(struct exh_limiter_cfg *cfg)
+{
+    const struct exh_limiter_par *par = &cfg->par;
+    unsigned pos, vel;
+    cfg->wall.k_Npm_q10 =
+        law_gain(par->wall_k_milli, 1000, EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE, &pos);
+    cfg->wall.b_Nspm_q20 = law_gain(par->wall_b, 1000000, EXH_Q_B + EXH_Q_VEL - EXH_Q_FORCE, &vel);
+    cfg->wall.f0_N_q20 = par->wall_f0;
+    cfg->pos_scale = INT32_C(1) << pos;
+    cfg->vel_scale = INT32_C(1) << vel;
+    if (par->wall_below) {
+        cfg->pos_scale = -cfg->pos_scale;
+        cfg->vel_scale = -cfg->vel_scale;
+    }
+    NEED(cfg->near_max < LAW_MOST >> pos && -cfg->near_min < LAW_MOST >> pos, wall_k_milli);
+    NEED(par->speed_max <= INT32_MAX >> vel, wall_b);
+    return 0;
+}
+
+/* Times; and what motion.h watches. */
+static int setup_times(struct exh_limiter_cfg *cfg)
+{
+    const struct exh_limiter_par *par = &cfg->par;
+    const uint32_t rate = (uint32_t)par->rate_milli;
+    const uint32_t release = steps_in(par->release_ms, rate);
+    cfg->fall_q32 = (uint32_t)scaled(2, UINT32_C(1) << 30, release + (release == 0)) * 2;
+    cfg->ramp_q30 = scaled(1, UINT32_C(1) << 30, steps_in(par->ramp_ms, rate) + 1) + 1;
+    cfg->up = scaled(par->effort_up_milli, 1000000, rate);
+    cfg->up += cfg->up == 0;
+    cfg->down = scaled(par->effort_down_milli, 1000000, rate);
+    cfg->down += cfg->down == 0;
+    cfg->speed_steps = steps_in(par->speed_ms, rate) + 1;
+    cfg->stall_steps = par->stall_effort > 0 ? steps_in(par->stall_ms, rate) + 1 : 0;
+    cfg->motion.speed_mps_q27 = par->speed_max > 0 ? par->speed_max : INT32_MAX;
+    cfg->motion.stuck_cur_A_q26 = par->stall_effort;
+    cfg->still_steps = (uint32_t)scaled(par->gap_max_us, rate, 1000000000);
+    NEED(cfg->still_steps >= 2, gap_max_us);
+    return setup_heat(cfg, steps_in(par->heat_ms, rate));
+}
+
+int exh_limiter_setup(struct exh_limiter_cfg *cfg, const struct exh_limiter_par *par)
+{
+    int err = copy_checked(cfg, par);
+    if (err == 0) { err = check_relations(cfg); }
+    if (err == 0) { err = setup_times(cfg); }
+    if (err == 0 && cfg->par.kind == EXH_LIMITER_POSITION) { err = setup_place(cfg); }
+    if (err == 0 && cfg->par.kind == EXH_LIMITER_WALL) { err = setup_wall(cfg); }
+    return err;
+}
