@@ -94,7 +94,7 @@ static int heat_up(struct exh_limiter *s, const struct exh_limiter_cfg *cfg, int
     const unsigned shift = cfg->heat_shift & 31u;
     const int32_t e = least(effort >> shift, SQUARED_MOST), nominal = cfg->heat_bottom >> shift;
     const int64_t most = cfg->heat_budget + (cfg->heat_budget >> 2);
-    s->heat += e * e - nominal * nominal;
+    s->heat = exh_wrap_add64(s->heat, e * e - nominal * nominal);
     if (s->heat < 0) { s->heat = 0; }
     if (s->heat <= most) { return 0; }
     s->heat = most + 1; /* a quarter above, and it is not forgotten */
@@ -113,12 +113,15 @@ static void look(struct exh_limiter *s, const struct exh_limiter_cfg *cfg,
     if (time_is_bad(s, cfg, in->now_us)) { c = EXH_LIMITER_TIME; }
     if (p->uses & EXH_LIMITER_DEADMAN && !in->deadman) { c |= EXH_LIMITER_RELEASED; }
     if (in->age_us > (uint32_t)p->age_max_us) { c |= EXH_LIMITER_STALE; }
-    if (read(cfg, in, t)) { c |= EXH_LIMITER_NUMBER; }
-    if (sent && p->kind != EXH_LIMITER_POSITION) { t->effort = size_of(s->sent); }
-    /* A way of more than stall_move is a movement; motion.h counts how long there is none. */
-    if (t->pos < cfg->near_min || t->pos > cfg->near_max) {
+    if (sent && p->kind != EXH_LIMITER_POSITION) {
+        t->effort = size_of(exh_clamp32(s->sent, -INT32_MAX, INT32_MAX));
+    }
+    if (read(cfg, in, t)) {
+        c |= EXH_LIMITER_NUMBER;
+    } else if (t->pos < cfg->near_min || t->pos > cfg->near_max) {
         c |= EXH_LIMITER_RANGE;
     } else if (is_far(t->pos, s->stood, p->stall_move)) {
+        /* A way of more than stall_move is a movement; motion.h counts how long there is none. */
         s->stood = t->pos;
     }
     exh_motion_update(&s->motion, &m, s->stood, t->effort);
@@ -153,7 +156,9 @@ static unsigned trigger(const struct exh_limiter *s, int position, uint32_t pres
     if (rests && !s->opened) { return EXH_ON_NONE; }
     if (state == EXH_STATE_FAULT) { return EXH_ON_CLEAR; }
     if (state == EXH_STATE_ARM && s->share_q30 >= FULL_Q30) { return EXH_ON_ARMED; }
-    if (state >= EXH_STATE_RUN && s->limits) { return EXH_ON_LIMITED; }
+    if (s->limits && (state == EXH_STATE_RUN || state == EXH_STATE_LIMIT)) {
+        return EXH_ON_LIMITED;
+    }
     return rests ? EXH_ON_RUN : EXH_ON_NONE;
 }
 
@@ -259,7 +264,7 @@ static int32_t towards(struct exh_limiter *s, int32_t v, int32_t d, int32_t vmax
 {
     const int32_t hi = least(v + acc, vmax), off = d - v;
     const uint64_t room = (uint64_t)(uint32_t)d * (uint32_t)acc;
-    int32_t lo = v - acc, half = acc;
+    int32_t lo = v > acc ? v - acc : 0, half = acc;
     if (least(acc, vmax) >= d && off <= acc && off >= -acc) { return d; }
     if (fits(hi, acc, room)) {
         s->limits |= hi == vmax ? EXH_LIMITER_BY_VEL : EXH_LIMITER_BY_ACC;
@@ -276,23 +281,25 @@ static int32_t towards(struct exh_limiter *s, int32_t v, int32_t d, int32_t vmax
 static void move(struct exh_limiter *s, const struct exh_limiter_cfg *cfg, int32_t asked)
 {
     const unsigned frac = cfg->frac & 15u;
-    const int32_t part = s->part, acc = cfg->acc;
+    const int32_t mask = (INT32_C(1) << frac) - 1, part = s->part & mask, acc = cfg->acc;
     const int32_t to = exh_clamp32(asked, cfg->par.pos_min, cfg->par.pos_max);
     const int32_t way = exh_clamp32(exh_wrap_diff(to, s->sent), -cfg->brake, cfg->brake);
     const int32_t d = way * (INT32_C(1) << frac) - part;
     const int32_t side = d < 0 ? -1 : 1;
+    const int32_t vmax =
+        s->state == EXH_STATE_ARM ? exh_mul_hi(cfg->vel, s->share_q30) * 4 : cfg->vel;
     int32_t v = s->vel * side;
     if (s->state == EXH_STATE_RELEASE) {
         s->limits = EXH_LIMITER_BY_RELEASE;
         v = v > acc ? v - acc : v < -acc ? v + acc : 0;
     } else {
         s->limits = to != asked ? EXH_LIMITER_BY_RANGE : 0u;
-        v = towards(s, v, d * side, exh_mul_hi(cfg->vel, s->share_q30) * 4 + 3, acc);
+        v = towards(s, v, d * side, vmax, acc);
     }
     s->vel = v * side;
     v = part + s->vel;
-    s->sent += v >> frac;
-    s->part = v & ((INT32_C(1) << frac) - 1);
+    s->sent = exh_wrap_add(s->sent, v >> frac);
+    s->part = v & mask;
 }
 
 /* At rest it follows what is measured, unless FAULT holds it. */
@@ -333,7 +340,7 @@ void exh_limiter_step(struct exh_limiter *s, const struct exh_limiter_cfg *cfg,
     s->sent =
         cfg->par.kind == EXH_LIMITER_POSITION ? position(s, cfg, &t) : effort(s, cfg, t.asked);
     out->send = s->sent;
-    out->enable = is_on(s->state) | s->holds;
+    out->enable = is_on(s->state) | (s->holds != 0);
     out->state = s->state;
     out->limits = s->limits;
     out->first = s->first;

@@ -89,6 +89,7 @@ static int check_relations(struct exh_limiter_cfg *cfg)
         (par->kind == EXH_LIMITER_EFFORT ? 0 : EXH_LIMITER_POS) |
         (place && (par->stall_effort | par->heat_peak) ? EXH_LIMITER_MEASURED : 0);
     NEED(!(needs & ~par->uses), uses);
+    NEED(par->stall_effort == 0 || par->stall_ms > 0, stall_ms);
     cfg->near_min = cfg->near_max = 0; /* where it is not measured it is 0 */
     if (par->uses & EXH_LIMITER_POS) {
         NEED(par->pos_min < par->pos_max, pos_max);
