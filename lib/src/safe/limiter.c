@@ -8,8 +8,6 @@
 /* Of an effort that is squared: twice the heat of the peak, and no sum overflows. */
 #define SQUARED_MOST 2896
 #define HEAT_SHIFT   16 /* of what is left of it, to 32 bits */
-/* Halvings in the search of the speed at which braking begins. */
-#define HALVINGS 3
 
 /* What one step knows, for those after it. Zeros where a value is not used or is none. */
 struct step {
@@ -251,30 +249,24 @@ static int32_t effort(struct exh_limiter *s, const struct exh_limiter_cfg *cfg, 
 
 /* --- positions --- */
 
-/* 1 if v a step, towards a place whose distance times acc is `room`, can be braked away by there.
- * It asks for (2v + a)^2 / 8a, which is at most a/8 more than the steps v + (v - a) + ... are. */
+/* 1 if v >= 0 a step, towards a place whose distance times 8 acc is `room`, can be braked away by
+ * there. It asks for (2v + a)^2 / 8a, at most a/8 more than the steps v + (v - a) + ... are. */
 static int fits(int32_t v, int32_t acc, uint64_t room)
 {
     const uint32_t twice = (uint32_t)(2 * v + acc);
-    return v <= 0 || (uint64_t)twice * twice >> 3 <= room;
+    return (uint64_t)twice * twice <= room;
 }
 
-/* Velocity of this step, towards a place d >= 0 away. */
+/* Velocity of this step, towards a place d >= 0 away: the fastest of three that can be braked. */
 static int32_t towards(struct exh_limiter *s, int32_t v, int32_t d, int32_t vmax, int32_t acc)
 {
-    const int32_t hi = least(v + acc, vmax), off = d - v;
-    const uint64_t room = (uint64_t)(uint32_t)d * (uint32_t)acc;
-    int32_t lo = v > acc ? v - acc : 0, half = acc;
-    if (least(acc, vmax) >= d && off <= acc && off >= -acc) { return d; }
-    if (fits(hi, acc, room)) {
-        s->limits |= hi == vmax ? EXH_LIMITER_BY_VEL : EXH_LIMITER_BY_ACC;
-        return hi;
-    }
+    const uint64_t room = (uint64_t)(uint32_t)d * (uint32_t)acc * 8;
+    const int32_t hi = least(v + acc, vmax), lo = v > acc ? v - acc : 0, mid = (hi + lo) / 2;
+    if (d <= hi && d <= acc && d >= v - acc) { return d; }
+    s->limits |= hi == vmax ? EXH_LIMITER_BY_VEL : EXH_LIMITER_BY_ACC;
+    if (hi <= 0 || fits(hi, acc, room)) { return hi; }
     s->limits |= EXH_LIMITER_BY_ACC;
-    for (int i = 0; i < HALVINGS; i++, half >>= 1) {
-        if (lo + half <= hi && fits(lo + half, acc, room)) { lo += half; }
-    }
-    return lo;
+    return fits(mid, acc, room) ? mid : lo;
 }
 
 /* Moves by this step's velocity. */
