@@ -31,26 +31,22 @@
 #define ALL_    (FORCE_ | PLACE_)
 #define EITHER  0x80u /* of either sign */
 
-static const int32_t most[] = {1, 2, 15, 1000, 10000, 60000, 600000, 10000000, 20000000, 100000000,
-    500000000, 1000000000, 2000000000};
-enum { M1, M2, M15, M1E3, M1E4, M6E4, M6E5, M1E7, M2E7, M1E8, M5E8, M1E9, M2E9 };
-
-/* Its largest value, an index into most[]; the kinds for which it must not be 0; and what must be
+/* Its largest value, 0xmn for m * 10^n; the kinds for which it must not be 0; and what must be
  * measured if it is not. */
 static const struct range {
     uint8_t most, needed, uses;
 } ranges[EXH_LIMITER_FIELDS] = {
-    {M2, 0, 0}, {M15, 0, 0}, {M2E7, ALL_, 0},                /* kind uses rate */
-    {M2E9, FORCE_, 0}, {M2E9, FORCE_, 0}, {M2E9, FORCE_, 0}, /* effort */
-    {M1E4, ALL_, 0}, {M1E3, FORCE_, 0},                      /* ramp release */
-    {M5E8, EITHER, 0}, {M5E8, EITHER, 0}, {M5E8, 0, 0},      /* pos */
-    {M1E9, PLACE_, 0}, {M2E9, PLACE_, 0},                    /* vel acc */
-    {M1E9, 0, 0}, {M1, 0, 0}, {M1, 0, 0},                    /* first after */
-    {M1E7, ALL_, 0}, {M1E7, ALL_, 0},                        /* age gap */
-    {M2E9, WALL_, EXH_LIMITER_VEL}, {M1E3, 0, 0},            /* speed */
-    {M2E9, 0, EXH_LIMITER_POS}, {M1E9, 0, 0}, {M6E4, 0, 0},  /* stall */
-    {M2E9, 0, 0}, {M2E9, 0, 0}, {M6E5, 0, 0},                /* heat */
-    {M1, 0, 0}, {M1E9, 0, 0}, {M1E9, 0, 0}, {M1E8, 0, 0},    /* wall */
+    {0x20, 0, 0}, {0xF0, 0, 0}, {0x27, ALL_, 0},             /* kind uses rate */
+    {0x29, FORCE_, 0}, {0x29, FORCE_, 0}, {0x29, FORCE_, 0}, /* effort */
+    {0x14, ALL_, 0}, {0x13, FORCE_, 0},                      /* ramp release */
+    {0x58, EITHER, 0}, {0x58, EITHER, 0}, {0x58, 0, 0},      /* pos */
+    {0x19, PLACE_, 0}, {0x29, PLACE_, 0},                    /* vel acc */
+    {0x19, 0, 0}, {0x10, 0, 0}, {0x10, 0, 0},                /* first after */
+    {0x17, ALL_, 0}, {0x17, ALL_, 0},                        /* age gap */
+    {0x29, WALL_, EXH_LIMITER_VEL}, {0x13, 0, 0},            /* speed */
+    {0x29, 0, EXH_LIMITER_POS}, {0x19, 0, 0}, {0x64, 0, 0},  /* stall */
+    {0x29, 0, 0}, {0x29, 0, 0}, {0x65, 0, 0},                /* heat */
+    {0x10, 0, 0}, {0x19, 0, 0}, {0x19, 0, 0}, {0x18, 0, 0},  /* wall */
 };
 EXH_STATIC_ASSERT(
     fields_are_counted, sizeof(struct exh_limiter_par) == EXH_LIMITER_FIELDS * sizeof(int32_t));
@@ -66,8 +62,8 @@ EXH_STATIC_ASSERT(
 static int copy_checked(struct exh_limiter_cfg *cfg, const struct exh_limiter_par *par)
 {
     for (int k = 0; k < EXH_LIMITER_FIELDS; k++) {
-        const int32_t hi = most[ranges[k].most];
-        int32_t v, lo;
+        int32_t hi = ranges[k].most >> 4, v, lo;
+        for (int n = ranges[k].most & 15; n > 0; n--) { hi *= 10; }
         memcpy(&v, (const char *)par + (size_t)k * sizeof v, sizeof v);
         memcpy((char *)&cfg->par + (size_t)k * sizeof v, &v, sizeof v);
         /* The kind is right by then; its own needs are none. */
