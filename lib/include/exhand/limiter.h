@@ -192,6 +192,7 @@ struct exh_limiter_cfg {
     int32_t heat_top;    /* heat_peak, or no limit */
     int32_t heat_bottom; /* heat_nominal */
     int64_t heat_budget; /* squares of (effort >> heat_shift), summed over steps, below 2^47 */
+    int32_t heat_square; /* of the nominal effort, in that scale */
     uint32_t heat_shift;
     uint32_t heat_knee;   /* bits of the budget left, >> 16, where heat begins to hold back */
     int32_t vel, acc;     /* POSITION: a step, a step^2, micro << frac */

@@ -89,10 +89,9 @@ static int32_t wall(const struct exh_limiter_cfg *cfg, int32_t at, int32_t pos, 
 /* The heat of the last step: squares above the nominal one. 1 if there is too much of it. */
 static int heat_up(struct exh_limiter *s, const struct exh_limiter_cfg *cfg, int32_t effort)
 {
-    const unsigned shift = cfg->heat_shift & 31u;
-    const int32_t e = least(effort >> shift, SQUARED_MOST), nominal = cfg->heat_bottom >> shift;
+    const int32_t e = least(effort >> (cfg->heat_shift & 31u), SQUARED_MOST);
     const int64_t most = cfg->heat_budget + (cfg->heat_budget >> 2);
-    s->heat = exh_wrap_add64(s->heat, e * e - nominal * nominal);
+    s->heat = exh_wrap_add64(s->heat, e * e - cfg->heat_square);
     if (s->heat < 0) { s->heat = 0; }
     if (s->heat <= most) { return 0; }
     s->heat = most + 1; /* a quarter above, and it is not forgotten */
@@ -183,8 +182,7 @@ static void go_on(struct exh_limiter *s, const struct exh_limiter_cfg *cfg,
         s->opened = 0;
         s->first = 0;
     } else {
-        s->share_q30 =
-            least(s->share_q30 & (FULL_Q30 - 1), FULL_Q30 - cfg->ramp_q30) + cfg->ramp_q30;
+        s->share_q30 = least((s->share_q30 & (FULL_Q30 - 1)) + cfg->ramp_q30, FULL_Q30);
     }
 }
 
@@ -194,9 +192,10 @@ static void go_on(struct exh_limiter *s, const struct exh_limiter_cfg *cfg,
  * through 0 by no more than either. Both within +-effort_max. */
 static int32_t slewed(const struct exh_limiter_cfg *cfg, int32_t from, int32_t to)
 {
-    const int32_t side = (from ? from : to) < 0 ? -1 : 1, top = cfg->par.effort_max;
-    const int32_t a = from * side, back = a - cfg->down;
-    const int32_t hi = a > top - cfg->up ? top : a + cfg->up;
+    const int32_t side = (from ? from : to) < 0 ? -1 : 1;
+    const int32_t a = size_of(from), back = a - cfg->down;
+    const uint32_t far = (uint32_t)a + (uint32_t)cfg->up, top = (uint32_t)cfg->par.effort_max;
+    const int32_t hi = (int32_t)(far < top ? far : top);
     const int32_t lo = back < -cfg->up ? -cfg->up : back;
     return exh_clamp32(to * side, lo, hi) * side;
 }
@@ -207,9 +206,9 @@ static int32_t heat_leaves(const struct exh_limiter *s, const struct exh_limiter
     const uint32_t knee = cfg->heat_knee & 31u;
     const int64_t left = cfg->heat_budget - s->heat;
     const uint32_t part = left < 0 ? 0 : (uint32_t)(left >> HEAT_SHIFT);
+    const uint32_t span = (uint32_t)cfg->heat_top - (uint32_t)cfg->heat_bottom;
     if (part >> knee) { return cfg->heat_top; }
-    return cfg->heat_bottom + (int32_t)exh_umul_hi((uint32_t)(cfg->heat_top - cfg->heat_bottom) * 2,
-                                  part << (31u - knee));
+    return exh_from_u32((uint32_t)cfg->heat_bottom + exh_umul_hi(span * 2, part << (31u - knee)));
 }
 
 /* What is held goes in equal steps. */
@@ -217,9 +216,7 @@ static int32_t let_go(struct exh_limiter *s, const struct exh_limiter_cfg *cfg, 
 {
     const int32_t a = size_of(held);
     int32_t rest;
-    if (s->fall <= 0) {
-        s->fall = (int32_t)(exh_umul_hi((uint32_t)a, cfg->fall_q32) & (FULL_Q30 * 2u - 1)) + 2;
-    }
+    if (s->fall <= 0) { s->fall = (int32_t)exh_umul_hi((uint32_t)a, cfg->fall_q32) + 2; }
     rest = a > s->fall ? a - s->fall : 0;
     return held < 0 ? -rest : rest;
 }
@@ -239,7 +236,7 @@ static int32_t effort(struct exh_limiter *s, const struct exh_limiter_cfg *cfg, 
     if (size > top) { limits = EXH_LIMITER_BY_EFFORT; }
     if (size > most) { limits |= most < top ? EXH_LIMITER_BY_RAMP : 0u; }
     if (size > hot) { limits |= EXH_LIMITER_BY_HEAT; }
-    most = least(most, hot);
+    most = exh_clamp32(hot, 0, most);
     want = exh_clamp32(asked, -most, most);
     now = slewed(cfg, held, want);
     if (now != want) { limits |= EXH_LIMITER_BY_RISE; }

@@ -140,20 +140,23 @@ static int setup_heat(struct exh_limiter_cfg *cfg, uint32_t steps)
 {
     const uint32_t top = (uint32_t)cfg->par.heat_peak, bottom = (uint32_t)cfg->par.heat_nominal;
     unsigned shift = 0, knee = 30;
-    uint32_t squares;
+    uint32_t square, squares;
     cfg->heat_top = INT32_MAX;
     cfg->heat_shift = 31; /* no effort is seen, and there is room for ever */
     cfg->heat_budget = HEAT_MOST;
     cfg->heat_knee = knee;
     cfg->heat_bottom = 0;
+    cfg->heat_square = 0;
     if (top == 0) { return 0; }
     while (top >> shift >> SQUARE_BITS) { shift++; }
-    squares = (top >> shift) * (top >> shift) - (bottom >> shift) * (bottom >> shift);
-    NEED(bottom >> shift && bottom < top && squares >= SQUARES_LEAST, heat_nominal);
+    square = (bottom >> shift) * (bottom >> shift);
+    squares = (top >> shift) * (top >> shift) - square;
+    NEED(square > 0 && bottom < top && squares >= SQUARES_LEAST, heat_nominal);
     NEED(steps >= HEAT_STEPS, heat_ms);
     cfg->heat_top = cfg->par.heat_peak;
     cfg->heat_bottom = cfg->par.heat_nominal;
     cfg->heat_shift = shift;
+    cfg->heat_square = (int32_t)square;
     cfg->heat_budget = (int64_t)((uint64_t)squares * steps);
     while (cfg->heat_budget >> HEAT_SHIFT >> 2 >> knee == 0) { knee--; }
     cfg->heat_knee = knee;
@@ -198,7 +201,7 @@ static int setup_times(struct exh_limiter_cfg *cfg)
     const uint32_t rate = (uint32_t)par->rate_milli;
     const uint32_t release = steps_in(par->release_ms, rate);
     cfg->fall_q32 = (uint32_t)scaled(2, UINT32_C(1) << 30, release + (release == 0)) * 2;
-    cfg->ramp_q30 = scaled(1, UINT32_C(1) << 30, steps_in(par->ramp_ms, rate) + 1) + 1;
+    cfg->ramp_q30 = scaled(1, (UINT32_C(1) << 30) - 1, steps_in(par->ramp_ms, rate) + 1) + 1;
     cfg->up = scaled(par->effort_up_milli, 1000000, rate);
     cfg->up += cfg->up == 0;
     cfg->down = scaled(par->effort_down_milli, 1000000, rate);
