@@ -44,3 +44,13 @@ install-lib: $(lib) $(if $(filter posix,$(PORT)),$(shared))
 	$(if $(filter posix,$(PORT)),install -m 755 $(shared) $(DESTDIR)$(LIBDIR) && \
 	    cd $(DESTDIR)$(LIBDIR) && \
 	    ln -sf libexhand.so.$(version) $(soname) && ln -sf $(soname) libexhand.so)
+
+## Write build/amalgamation: the library as one header and one source, and one finger's law and
+## the limiter, each alone.
+.PHONY: amalgamation
+amalgamation:
+	@rm -rf $(B)/amalgamation
+	@lib/amalgamate.py $(B)/amalgamation/exhand exhand.h
+	@lib/amalgamate.py $(B)/amalgamation/exhand_law quad.h velocity.h contact.h
+	$(if $(wildcard lib/include/exhand/limiter.h),@lib/amalgamate.py \
+	    $(B)/amalgamation/exhand_limiter limiter.h)

@@ -28,13 +28,16 @@ porting:
 
 ## Link the library to a program in each way of examples/link/README.md, and check its ABI.
 .PHONY: link
-link: $(lib)
+amalgamated := $(patsubst %.c,$(B)/posix/%.o,$(golden_src) $(wildcard test/golden/*_test.c) \
+               test/support.c)
+link: $(lib) $(amalgamated) amalgamation
 	@.ci/deps "the ways to link" \
 	    "for t in cmake pkg-config clang tcc g++; do command -v $$t || exit; done; \
 	python3 -c 'import ensurepip'" \
 	    cmake pkg-config clang tcc g++ python3-venv || :
 	@test/walk/link/abi.py $(lib) gcc $(notdir $(shell command -v i686-linux-gnu-gcc))
 	@test/walk/link/package.sh $(B)/link/package
+	@WARN="$(warn)" test/walk/link/amalgamation.sh $(B)/amalgamation $(lib) $(amalgamated)
 	@test/walk/link/link.py $(B)/link $(ARGS)
 
 ## Run both README commands in a fresh Debian with only git, make and a C compiler (root;

@@ -7,7 +7,7 @@
 
 /* What a cell allows. Before the set-up is over no cell but NEVER and SAME holds anything back. */
 enum cell {
-    NEVER, /* what no row below names, too */
+    NEVER, /* what is neither a source nor a class, too */
     SAME,  /* as it stands: who writes a whole block may write it back */
     SETUP, /* before the loop, then as it stands */
     REST,  /* another value while no force may be */
@@ -16,8 +16,10 @@ enum cell {
     ANY    /* at any time */
 };
 
+/* In the order of both enums and without a gap: g++ takes such designators alone. */
 static const uint8_t may[EXH_SOURCES][EXH_WHENS] = {
-    [EXH_FROM_PERSON] = {[EXH_WHEN_SETUP] = SETUP,
+    [EXH_FROM_PERSON] = {[EXH_WHEN_OUTPUT] = NEVER,
+        [EXH_WHEN_SETUP] = SETUP,
         [EXH_WHEN_ANY] = ANY,
         [EXH_WHEN_SLEWED] = ANY,
         [EXH_WHEN_LIMIT] = ANY,
@@ -27,10 +29,12 @@ static const uint8_t may[EXH_SOURCES][EXH_WHENS] = {
         [EXH_WHEN_REST] = ANY,
         [EXH_WHEN_MATERIAL] = ANY,
         [EXH_WHEN_WORD] = ANY},
-    [EXH_FROM_IMAGE] = {[EXH_WHEN_SETUP] = SETUP,
+    [EXH_FROM_IMAGE] = {[EXH_WHEN_OUTPUT] = NEVER,
+        [EXH_WHEN_SETUP] = SETUP,
         [EXH_WHEN_ANY] = SETUP,
         [EXH_WHEN_SLEWED] = SETUP,
         [EXH_WHEN_LIMIT] = SETUP,
+        [EXH_WHEN_PERSON] = NEVER,
         [EXH_WHEN_BOUND] = SETUP,
         [EXH_WHEN_WALL] = SETUP,
         [EXH_WHEN_REST] = SETUP,
@@ -47,7 +51,17 @@ static const uint8_t may[EXH_SOURCES][EXH_WHENS] = {
         [EXH_WHEN_REST] = REST,
         [EXH_WHEN_MATERIAL] = FALL,
         [EXH_WHEN_WORD] = SAME},
-    [EXH_FROM_WORLD] = {[EXH_WHEN_MATERIAL] = FALL},
+    [EXH_FROM_WORLD] = {[EXH_WHEN_OUTPUT] = NEVER,
+        [EXH_WHEN_SETUP] = NEVER,
+        [EXH_WHEN_ANY] = NEVER,
+        [EXH_WHEN_SLEWED] = NEVER,
+        [EXH_WHEN_LIMIT] = NEVER,
+        [EXH_WHEN_PERSON] = NEVER,
+        [EXH_WHEN_BOUND] = NEVER,
+        [EXH_WHEN_WALL] = NEVER,
+        [EXH_WHEN_REST] = NEVER,
+        [EXH_WHEN_MATERIAL] = FALL,
+        [EXH_WHEN_WORD] = NEVER},
 };
 
 int exh_authority_check(struct exh_authority who, unsigned when, int32_t was, int32_t raw)

@@ -11,7 +11,7 @@ static uint32_t capacity(size_t B) { return B < UINT32_MAX ? (uint32_t)B : UINT3
 
 struct exh_bytes exh_bytes_writer(void *buf, size_t cap_B)
 {
-    const struct exh_bytes c = {buf, capacity(cap_B), 0, EXH_BYTES_WRITE};
+    const struct exh_bytes c = {(uint8_t *)buf, capacity(cap_B), 0, EXH_BYTES_WRITE};
     return c;
 }
 

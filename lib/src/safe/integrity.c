@@ -7,7 +7,7 @@
 void exh_integrity_seal(
     struct exh_integrity *g, const void *area, size_t len_B, struct exh_params *params)
 {
-    g->area = area;
+    g->area = (const uint8_t *)area;
     g->len_B = (uint32_t)len_B;
     g->want = exh_crc32(0, area, len_B);
     g->at = g->crc = 0;
@@ -20,7 +20,7 @@ void exh_integrity_seal(
  * same. */
 static void look_at_area(struct exh_integrity *g)
 {
-    static const uint8_t nothing[EXH_INTEGRITY_B];
+    static const uint8_t nothing[EXH_INTEGRITY_B] = {0};
     const uint32_t left = g->len_B - g->at, n = left < EXH_INTEGRITY_B ? left : EXH_INTEGRITY_B;
     g->crc = exh_crc32(g->crc, g->area + g->at, n);
     (void)exh_crc32(0, nothing, EXH_INTEGRITY_B - n);

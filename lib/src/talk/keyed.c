@@ -24,7 +24,7 @@ static void put(uint8_t *p, uint64_t v)
 void exh_keyed_setup(
     struct exh_keyed *s, const struct exh_mac_key *key, enum exh_wire_role ours, uint64_t start)
 {
-    static const struct exh_keyed none;
+    static const struct exh_keyed none = {0};
     *s = none;
     s->key = *key;
     s->next = (start & (WHO / 2 - 1)) | 1u; /* 0 is no number, and none reaches WHO */
@@ -88,7 +88,7 @@ static int judge(struct exh_keyed *s, uint64_t number, uint64_t echo)
 
 int32_t exh_keyed_decode(struct exh_keyed *s, const void *buf, size_t len_B)
 {
-    const uint8_t *const p = buf;
+    const uint8_t *const p = (const uint8_t *)buf;
     uint32_t whole_B;
     int is;
     if (len_B < EXH_WIRE_OVERHEAD) { return refuse(&s->damaged, EXH_E_SHORT); }

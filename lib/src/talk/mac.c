@@ -50,7 +50,7 @@ struct exh_mac_key exh_mac_key(const uint8_t byte[EXH_MAC_KEY_B])
 
 uint64_t exh_mac(const struct exh_mac_key *key, const void *buf, size_t len_B)
 {
-    const uint8_t *p = buf;
+    const uint8_t *p = (const uint8_t *)buf;
     /* "somepseudorandomlygeneratedbytes", in the paper */
     struct words v = {key->k[0] ^ UINT64_C(0x736F6D6570736575),
         key->k[1] ^ UINT64_C(0x646F72616E646F6D), key->k[0] ^ UINT64_C(0x6C7967656E657261),

@@ -23,7 +23,7 @@ uint16_t exh_crc16(const uint8_t *p, size_t len_B)
 
 int exh_modbus_rtu_setup(struct exh_modbus_rtu *u, uint32_t address, uint32_t baud)
 {
-    static const struct exh_modbus_rtu none;
+    static const struct exh_modbus_rtu none = {0};
     if (address < 1 || address > 247 || baud < 300 || baud > 10000000) { return -EXH_E_RANGE; }
     *u = none;
     u->address = (uint8_t)address;

@@ -38,7 +38,7 @@ uint32_t exh_record_end(struct exh_bytes *c)
 
 int32_t exh_record_decode(const void *buf, uint32_t len_B, struct exh_record *r)
 {
-    const uint8_t *p = buf;
+    const uint8_t *p = (const uint8_t *)buf;
     struct exh_bytes c = exh_bytes_reader(buf, len_B);
     struct exh_bytes tail;
     uint16_t sync = 0;

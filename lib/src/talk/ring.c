@@ -71,10 +71,10 @@ uint32_t exh_record_out(struct exh_record_out *o, uint8_t *to, uint32_t cap_B)
 
 int exh_ring_setup(struct exh_ring *r, void *mem, size_t cap_B)
 {
-    static const struct exh_ring empty;
+    static const struct exh_ring empty = {0};
     if (cap_B < EXH_RING_MIN_B || cap_B > EXH_RING_MAX_B) { return -EXH_E_RANGE; }
     *r = empty;
-    r->mem = mem;
+    r->mem = (uint8_t *)mem;
     r->cap_B = (uint32_t)cap_B;
     return 0;
 }
@@ -142,7 +142,7 @@ int exh_ring_put(
     exh_bytes_u32(&c, &tick);
     if (begins) { r->start[slot(r, parts(r))] = r->head; }
     at = copy_in(r, r->head, head, sizeof head);
-    r->head = copy_in(r, at, payload, len_B); /* from here on it is there */
+    r->head = copy_in(r, at, (const uint8_t *)payload, len_B); /* from here on it is there */
     if (begins) { r->live = r->live + 1; }
     return 1;
 }

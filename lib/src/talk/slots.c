@@ -18,7 +18,7 @@ static uint32_t u32_at(const uint8_t *p, size_t at)
 
 int exh_slot_decode(struct exh_slot *is, const void *slot, size_t slot_B)
 {
-    const uint8_t *p = slot;
+    const uint8_t *p = (const uint8_t *)slot;
     uint32_t sequence, len_B;
     size_t end;
     if (slot_B < EXH_SLOT_B(0)) { return -EXH_E_SHORT; }

@@ -7,8 +7,8 @@
 int exh_trace_setup(
     struct exh_trace *t, struct exh_trace_frame *frame, uint32_t frames, uint32_t signals)
 {
-    static const struct exh_trace none;
-    static const struct exh_trace_frame empty;
+    static const struct exh_trace none = {0};
+    static const struct exh_trace_frame empty = {0};
     if (frames < 2 || frames > EXH_TRACE_FRAMES || (frames & (frames - 1)) != 0 || signals == 0) {
         return -EXH_E_RANGE;
     }

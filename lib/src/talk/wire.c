@@ -315,7 +315,7 @@ int exh_wire_decode(
     struct exh_wire_packet now = {0};
     struct head h = {0, 0, 0, 0, 0, 0, 0};
     const uint32_t reordered = rx->reordered;
-    int r = read_packet(rx, &h, &now, buf, len_B);
+    int r = read_packet(rx, &h, &now, (const uint8_t *)buf, len_B);
     if (r < 0) { return r; }
     if (is_next(rx, &h)) {
         advance(rx, &h);
