@@ -4,6 +4,8 @@
 #ifndef EXHAND_AUTHORITY_H
 #define EXHAND_AUTHORITY_H
 
+#include "exhand/error.h"
+
 #include <stdint.h>
 
 #ifdef __cplusplus

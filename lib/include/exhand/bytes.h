@@ -8,6 +8,7 @@
 #ifndef EXHAND_BYTES_H
 #define EXHAND_BYTES_H
 
+#include "exhand/error.h"
 #include "exhand/units.h"
 
 #include <stddef.h>

@@ -64,7 +64,8 @@ struct exh_force_ledger {
     int64_t clamp_N_q20;     /* pull only, and the force limit */
     int64_t slew_N_q20;      /* what its rise or fall is held back by */
     int64_t release_N_q20;   /* from what was asked to what the release law gives */
-    int32_t force_N_q20;     /* the force commanded */
+    int32_t force_N_q20;     /* the force commanded: drive.h's; by the law alone, ask
+                                exh_contact_force() */
 };
 
 /* Where a distance may leave 32 bits, and of the first sample: the wall to go by, no farther than
@@ -145,8 +146,9 @@ static inline int exh_contact_past(struct exh_contact_in in, uint32_t *past)
     return in.pos_m_q30 >= in.lim_m_q30;
 }
 
-/* Fills spring, damper and pullback, zeroes passivity; the rest is drive.h's. Each term is rounded
- * once: their sum is within 1 LSB of exact. Returns 1 in contact. */
+/* Fills spring, damper and pullback, zeroes passivity; the rest is drive.h's, and not
+ * written here: without drive.h, exh_contact_force() is the call. Each term is rounded once: their
+ * sum is within 1 LSB of exact. Returns 1 in contact. */
 static inline int exh_contact_law(
     const struct exh_contact_par *par, struct exh_contact_in in, struct exh_force_ledger *out)
 {
@@ -162,8 +164,8 @@ static inline int exh_contact_law(
     return c;
 }
 
-/* The force to command by the same law, N, q20, where nobody asks why: 0 .. EXH_FORCE_MAX_N_Q20,
- * limited at both ends, within 0.51 LSB of exact. */
+/* The force to command by the same law, N, q20, in one call and without drive.h, where nobody asks
+ * why: 0 .. EXH_FORCE_MAX_N_Q20, limited at both ends, within 0.51 LSB of exact. */
 static inline int32_t exh_contact_force(const struct exh_contact_par *par, struct exh_contact_in in)
 {
     const unsigned shift = EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE;

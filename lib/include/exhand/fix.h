@@ -8,6 +8,7 @@
 #ifndef EXHAND_FIX_H
 #define EXHAND_FIX_H
 
+#include "exhand/error.h"
 #include "exhand/units.h"
 
 #include <stdint.h>

@@ -37,6 +37,8 @@
 #ifndef EXHAND_SLOTS_H
 #define EXHAND_SLOTS_H
 
+#include "exhand/error.h"
+
 #include <stddef.h>
 #include <stdint.h>
 

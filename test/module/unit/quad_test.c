@@ -253,6 +253,16 @@ TEST(position_by_hand)
     }
 }
 
+/* 2 pi radius / (4 pulses) 2^42, worked out to 20 digits and truncated. */
+TEST(step_of_an_encoder)
+{
+    static const int32_t step[] = {EXH_QUAD_STEP(1000, 8000), EXH_QUAD_STEP(1024, 5000),
+        EXH_QUAD_STEP(100, 31000), EXH_QUAD_STEP(1, 1), EXH_QUAD_STEP(10000, 29000),
+        EXH_QUAD_STEP(4 * 100000, 400000)};
+    static const int32_t want[] = {55267482, 33732594, 2141614944, 6908435, 20034462, 6908435};
+    for (size_t i = 0; i < LEN(step); i++) { CHECK_EQ_I64(step[i], want[i]); }
+}
+
 TEST(state_round_trip)
 {
     struct exh_quad s = {0xDEADBEEFu, -123456789, 1, 1};
@@ -376,5 +386,6 @@ TEST(setup_rejections)
 TEST_MAIN("unit/quad", all_transitions_in_all_modes, a_turn_and_back, chatter_does_not_drift,
     count_wraps_without_a_jump, runs_of_one_kind, a_run_of_nothing_starts_nothing,
     words_hang_together, index_latches_the_count, first_value_is_count_zero, wraps_at_both_ends,
-    bits_above_the_counter_are_ignored, long_walks, position_by_hand, state_round_trip,
-    lines_round_trip, index_round_trip, a_jump_is_told_at_every_rate, setup_rejections);
+    bits_above_the_counter_are_ignored, long_walks, position_by_hand, step_of_an_encoder,
+    state_round_trip, lines_round_trip, index_round_trip, a_jump_is_told_at_every_rate,
+    setup_rejections);
