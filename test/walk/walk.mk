@@ -38,6 +38,7 @@ link: $(lib) $(amalgamated) amalgamation
 	@test/walk/link/abi.py $(lib) gcc $(notdir $(shell command -v i686-linux-gnu-gcc))
 	@test/walk/link/package.sh $(B)/link/package
 	@WARN="$(warn)" test/walk/link/amalgamation.sh $(B)/amalgamation $(lib) $(amalgamated)
+	@test/walk/link/uses.py $(B)/amalgamation
 	@test/walk/link/link.py $(B)/link $(ARGS)
 
 ## Run both README commands in a fresh Debian with only git, make and a C compiler (root;
