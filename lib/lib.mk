@@ -26,6 +26,11 @@ fill_in  := sed 's|@prefix@|$(PREFIX)|; s|@version@|$(version)|; \
             s|@includedir_from_package@|'"$$(realpath -m \
                 --relative-to=$(LIBDIR)/cmake/exhand $(INCLUDEDIR))"'|'
 
+# Of the host port's compiler: yes, if it makes programs for an operating system. A bare-metal CPU
+# has no shared libraries.
+hosted := $(if $(and $(filter posix,$(PORT)),$(filter install%,$(MAKECMDGOALS))),$(shell \
+          $(CC) $(CFLAGS) -dM -E -xc /dev/null | grep -qE '__(unix|APPLE)__' && echo yes))
+
 ##@ Installation
 ##6 Install library, headers, pkg-config and CMake files, host program under DESTDIR/PREFIX.
 .PHONY: install install-lib
@@ -33,15 +38,15 @@ install: all install-lib
 	$(if $(filter posix,$(PORT)),install -d $(DESTDIR)$(PREFIX)/bin && \
 	    install -m 755 $(program) $(DESTDIR)$(PREFIX)/bin)
 
-## Install the same without the host program.
-install-lib: $(lib) $(if $(filter posix,$(PORT)),$(shared))
+## Install the same without the host program, for any CPU (CROSS=arm-none-eabi- CFLAGS=-mcpu=...).
+install-lib: $(lib) $(if $(hosted),$(shared))
 	install -d $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(LIBDIR)/cmake/exhand \
 	    $(DESTDIR)$(INCLUDEDIR)/exhand
 	install -m 644 $(lib) $(DESTDIR)$(LIBDIR)
 	install -m 644 lib/include/exhand/*.h $(DESTDIR)$(INCLUDEDIR)/exhand
 	$(Q)for f in $(packages); do $(fill_in) lib/$$(basename $$f).in > $$f && chmod 644 $$f || \
 	    exit 1; done
-	$(if $(filter posix,$(PORT)),install -m 755 $(shared) $(DESTDIR)$(LIBDIR) && \
+	$(if $(hosted),install -m 755 $(shared) $(DESTDIR)$(LIBDIR) && \
 	    cd $(DESTDIR)$(LIBDIR) && \
 	    ln -sf libexhand.so.$(version) $(soname) && ln -sf $(soname) libexhand.so)
 

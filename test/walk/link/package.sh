@@ -49,6 +49,14 @@ for where in lib "$PWD/usr/lib"; do
     for ask in "" "$minor" "$version" "$version EXACT"; do asks "$ask" 1; done
     for ask in "$minor.999" "${minor%.*}.999" 999; do asks "$ask" 0; done
 done
+# A CPU without an operating system gets the static library alone.
+if command -v arm-none-eabi-gcc >/dev/null; then
+    rm -rf usr
+    make -s -C "$lib/.." install-lib B="$PWD/arm" PREFIX="$PWD/usr" CROSS=arm-none-eabi- \
+        CFLAGS="-mcpu=cortex-m4 -mthumb" >said 2>&1 || { cat said >&2; exit 1; }
+    [ "$(echo usr/lib/libexhand*)" = usr/lib/libexhand.a ] ||
+        { echo "package: for a bare-metal CPU: $(echo usr/lib/libexhand*)" >&2; failed=1; }
+fi
 [ $failed = 0 ] &&
     echo "package: found by CMake and pkg-config, libraries in lib or in full;" \
         "$version as itself and $minor alone"
