@@ -73,6 +73,23 @@ static const struct unit_var own_var[OWN] = {
 };
 static int32_t command;
 
+/* With all defaults the run is that of `exhand drop --rate 2000 --falls 1 --runs 1`: these are its
+ * values, raw, where they are not the scene's: the paper's gains at that rate, the wall where seed
+ * 1 draws it, scales of the simulated device, which has no calibration. */
+static const struct {
+    const char *name;
+    int32_t raw;
+} drop_value[] = {{"step", 291678445}, {"k", 20480000}, {"b", 62914560}, {"mon_scale", 567801944},
+    {"q_lim", 75174133}, {"uncalibrated", 1}};
+
+static int32_t start_raw(const struct exh_signal *row)
+{
+    for (size_t i = 0; i < sizeof drop_value / sizeof drop_value[0]; i++) {
+        if (strcmp(drop_value[i].name, row->name) == 0) { return drop_value[i].raw; }
+    }
+    return row->dflt;
+}
+
 static uint32_t params(void) { return exh_signal_count(scene->params->table); }
 
 static double scaled(const struct exh_signal *row, int32_t raw)
@@ -110,7 +127,7 @@ void unit_var(uint32_t i, struct unit_var *v)
         v->name, sizeof v->name, instance ? "%s_%u" : "%s", row->name, (unsigned)instance);
     v->min = scaled(row, row->min);
     v->max = scaled(row, row->max);
-    v->start = scaled(row, row->dflt);
+    v->start = scaled(row, start_raw(row));
     if (v->role == UNIT_OUTPUT && (row->min == INT32_MIN || row->max == INT32_MAX)) {
         v->min = 1;
         v->max = 0;
@@ -177,6 +194,11 @@ void unit_reset(void)
     T = (struct exh_period){1, scene->rate_Hz};
     started = 0;
     scene->defaults();
+    for (uint32_t i = 0; i < params(); i++) {
+        uint16_t instance;
+        const struct exh_signal *row = exh_signal_at(scene->params->table, i, &instance);
+        (void)exh_params_stage(scene->params, row->id, instance, start_raw(row));
+    }
     for (uint32_t i = 0; i < exh_signal_count(scene->signals); i++) {
         exh_scene_signals(scene)[i] = 0;
     } /* of an instance before */

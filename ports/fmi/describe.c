@@ -13,6 +13,44 @@ static const char *const role_text[] = {"causality=\"parameter\" variability=\"f
     "causality=\"parameter\" variability=\"tunable\"", "causality=\"input\"",
     "causality=\"output\""};
 
+/* The tables' units as importers know them, with their exponents of kg, m, s and A. */
+struct si {
+    const char *ours, *name;
+    int kg, m, s, a;
+};
+static const struct si si[] = {{"a", "A", 0, 0, 0, 1}, {"hz", "Hz", 0, 0, -1, 0},
+    {"j", "J", 1, 2, -2, 0}, {"kg", "kg", 1, 0, 0, 0}, {"m", "m", 0, 1, 0, 0},
+    {"m_per_s", "m/s", 0, 1, -1, 0}, {"n", "N", 1, 1, -2, 0}, {"n_per_a", "N/A", 1, 1, -2, -1},
+    {"n_per_m", "N/m", 1, 0, -2, 0}, {"ns_per_m", "N.s/m", 1, 0, -1, 0},
+    {"ohm", "Ohm", 1, 2, -3, -2}, {"per_a", "1/A", 0, 0, 0, -1}, {"s", "s", 0, 0, 1, 0},
+    {"v", "V", 1, 2, -3, -1}, {"w", "W", 1, 2, -3, 0}};
+
+/* NULL: none of these. */
+static const struct si *si_of(const char *unit)
+{
+    for (size_t i = 0; i < sizeof si / sizeof si[0]; i++) {
+        if (strcmp(si[i].ours, unit) == 0) { return &si[i]; }
+    }
+    return NULL;
+}
+
+static const char *shown(const char *unit)
+{
+    const struct si *u = si_of(unit);
+    return u ? u->name : unit;
+}
+
+static void define(const char *unit)
+{
+    const struct si *u = si_of(unit);
+    if (u == NULL) {
+        printf("    <Unit name=\"%s\"/>\n", unit);
+        return;
+    }
+    printf("    <Unit name=\"%s\"><BaseUnit kg=\"%d\" m=\"%d\" s=\"%d\" A=\"%d\"/></Unit>\n",
+        u->name, u->kg, u->m, u->s, u->a);
+}
+
 static void text(const char *s)
 {
     for (; *s; s++) {
@@ -40,7 +78,7 @@ static void units(void)
         for (unit_var(k, &other);
              k < i && (other.type != UNIT_FLOAT64 || strcmp(other.unit, v.unit) != 0);
              unit_var(++k, &other)) {}
-        if (k == i) { printf("    <Unit name=\"%s\"/>\n", v.unit); }
+        if (k == i) { define(v.unit); }
     }
     printf("  </UnitDefinitions>\n");
 }
@@ -53,10 +91,10 @@ static void variable(uint32_t i, const struct unit_var *v)
     if (v->type == UNIT_FLOAT64 && v->role == UNIT_OUTPUT) { printf(" variability=\"discrete\""); }
     if (v->role != UNIT_OUTPUT) { printf(" start=\"%.17g\"", v->start); }
     if (v->min <= v->max) { printf(" min=\"%.17g\" max=\"%.17g\"", v->min, v->max); }
-    if (v->unit[0] && v->type == UNIT_FLOAT64) { printf(" unit=\"%s\"", v->unit); }
+    if (v->unit[0] && v->type == UNIT_FLOAT64) { printf(" unit=\"%s\"", shown(v->unit)); }
     printf(" description=\"");
     text(v->help);
-    if (v->unit[0] && v->type == UNIT_INT32) { printf(", %s", v->unit); }
+    if (v->unit[0] && v->type == UNIT_INT32) { printf(", %s", shown(v->unit)); }
     printf("\"/>\n");
 }
 

@@ -45,7 +45,7 @@ FMI_RATES ?= 90 500 2000
 fmi:
 	@.ci/deps "the FMUs" "command -v cmake && command -v python3 && python3 -c 'import ensurepip'" \
 	    cmake make python3 python3-venv || exit 3
-	@$(MAKE) --no-print-directory $(if $(V),,-s) fmu $(B)/fmi/native
+	@$(MAKE) --no-print-directory $(if $(V),,-s) fmu $(B)/fmi/native $(exhand)
 	@$(fmi_run)
 fmi_run = B=$(B) test/walk/fmi/fmi.sh $(FMI_RATES)
 # The part for CI. Exit status 3 means that the packages cannot be had.

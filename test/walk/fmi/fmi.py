@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The FMUs against the native run: fmi.py FMU-FOLDER NATIVE FALLS RATE...: FMPy validates and
+"""The FMUs against the native run: fmi.py FMU-FOLDER NATIVE EXHAND FALLS RATE...: FMPy validates and
 compiles them and runs them alone and together; fmuloader, another importer, runs them together,
-too. Every output of every step is the native one, bit for bit. A third, ecos, where it can be
-had."""
+too. Every output of every step is the native one, bit for bit. With all defaults they are a run
+of `exhand drop`, row by row. A third importer, ecos, where it can be had."""
 import os
 import pathlib
 import shutil
 import subprocess
 import sys
+import tempfile
 import zipfile
 
 import fmpy
@@ -293,6 +294,63 @@ def parallel_ecos(folder, steps):
     return rows
 
 
+DROP = ("--rate", "2000", "--falls", "1", "--runs", "1")
+
+
+def dropped(exhand):
+    """The columns and the rows of that run's log, as `exhand csv --all` prints them."""
+    with tempfile.TemporaryDirectory() as at:
+        subprocess.run([exhand, "drop", *DROP, "--out", at], check=True, capture_output=True)
+        text = subprocess.run([exhand, "csv", "--all", f"{at}/drop_2000Hz.exh"], check=True,
+                              capture_output=True, text=True).stdout
+    columns, *rows = [line.split(",") for line in text.splitlines()]
+    return columns, rows
+
+
+def by_default(folder, exhand):
+    """Nothing is set but what one gives the other: each row of that run, in all its digits."""
+    columns, rows = dropped(exhand)
+    c, d = ByFmpy(folder["ExhandController"]), ByFmpy(folder["ExhandDevice"])
+    names = [max((v for v in c.variable if col == v or col.startswith(v + "_")), key=len)
+             for col in columns[1:]]
+    c.start()
+    d.start()
+    h, bad = float(c.description.defaultExperiment.stepSize), 0
+    for n, row in enumerate(rows):
+        for name in INTO_CONTROLLER:
+            c.put(name, d.get(name))
+        c.step(n * h, h)
+        got = [f"{n * h:.9f}"] + [f"{c.get(name):.9g}" for name in names]
+        if got != row and not bad:
+            print(f"  row {n} of {columns}: {got}, exhand drop {row}")
+        bad += got != row
+        for name in INTO_DEVICE:
+            d.put(name, c.get(name))
+        d.step(n * h, h)
+    say(not bad and len(rows) > 2000 and d.get("done") == 1,
+        f"both with all defaults: {len(rows) - bad} of {len(rows)} rows of exhand drop "
+        f"{' '.join(DROP)}, {len(columns)} columns")
+    c.end()
+    d.end()
+
+
+def defaults_of_drop(folder, native):
+    """Start values are what the native run took, to the bit."""
+    v = Described(folder["ExhandController"]).variable
+    wrong = [n for n, x in native.param.items() if float(v[n].start) != x]
+    say(not wrong, f"start values: {len(native.param)} as in exhand drop {' '.join(DROP)}"
+                   f"{wrong or ''}")
+
+
+def units(folder):
+    """Every unit has its dimension, so an importer can check it."""
+    for name in folder:
+        d = Described(folder[name]).description
+        bare = [u.name for u in d.unitDefinitions if u.baseUnit is None]
+        say(d.unitDefinitions and not bare,
+            f"{name}: {len(d.unitDefinitions)} units with base units{bare or ''}")
+
+
 def refused(call):
     try:
         call()
@@ -317,7 +375,7 @@ def refusals(folder):
     c.end()
 
 
-def main(fmus, native_program, falls, *rates):
+def main(fmus, native_program, exhand, falls, *rates):
     folder, fmus = {}, pathlib.Path(fmus).resolve()
     for name in ("ExhandController", "ExhandDevice"):
         fmu = fmus / f"{name}.fmu"
@@ -344,6 +402,9 @@ def main(fmus, native_program, falls, *rates):
                                    output_interval=0.0005)
         say(len(result) == 2001, f"FMPy simulated {name} for 1 s: {len(result)} rows of "
                                  f"{len(result.dtype.names)} variables")
+    units(folder)
+    defaults_of_drop(folder, Native(native_program, 2000, 1))
+    by_default(folder, exhand)
     for rate in rates:
         native = Native(native_program, int(rate), int(falls))
         say(len(native.tick) > int(rate) and any(t["c"] for t in native.tick),

@@ -19,4 +19,4 @@ command -v cmake >/dev/null ||
     # one more, where it can be had
     "$venv/bin/pip" install -q --disable-pip-version-check ecospy tbb >"$B/fmi/pip" 2>&1 || true
 LD_LIBRARY_PATH=$venv/lib "$venv/bin/python" test/walk/fmi/fmi.py "$B/fmu" "$B/fmi/native" \
-    "${FALLS:-1}" "$@"
+    "$B/posix/exhand" "${FALLS:-1}" "$@"

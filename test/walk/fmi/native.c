@@ -66,6 +66,7 @@ int main(int argc, char **argv)
     c.k_Npm = g->k_Npm;
     c.b_Nspm = g->b_Nspm;
     c.more = &hooks;
+    c.wall = RUN_WALL_DRAWN; /* as exhand drop has it */
     c.board = posix_config_default();
     c.board.falls = atoi(argv[2]);
     c.board.seed = (uint64_t)atol(argv[3]);
