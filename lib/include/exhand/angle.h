@@ -1,8 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Angle: binary angles, where 2^32 is one turn, and their sine and cosine.
  *
- * An int32_t x_turn_q32 covers -1/2 .. 1/2 turn with an LSB of 0.084 millionths of
- * a degree (1.46 nrad) and wraps by design: sums of angles need no reduction.
+ * An int32_t x_turn_q32 covers -1/2 .. 1/2 turn. Its LSB is 0.084 millionths of a degree (1.46
+ * nrad). It wraps by design, so sums of angles need no reduction.
+ *
+ *   struct exh_sincos y;
+ *   exh_sincos(EXH_DEG(30, 1), &y);
+ *   int32_t half = y.sin_q30; // 2^29 within 3 LSB
  */
 #ifndef EXHAND_ANGLE_H
 #define EXHAND_ANGLE_H
@@ -13,9 +17,10 @@
 extern "C" {
 #endif
 
-/* num/den degrees or millionths of a radian as a binary angle, for initialisers: integer
- * constant expressions, truncated towards zero, error <= 1 LSB. Within -180 <= x < 180 degrees and
- * |num| < 2^31 (EXH_DEG), |num| <= 3141592 (EXH_URAD). 683.565275576 LSB are 1 urad. */
+/* Binary angles for initialisers: EXH_DEG takes num/den degrees, EXH_URAD takes millionths of a
+ * radian. Both are integer constant expressions, truncated towards zero, with an error of at most 1
+ * LSB. EXH_DEG requires -180 <= num/den < 180 and |num| < 2^31. EXH_URAD requires |num| <= 3141592.
+ * 1 urad is 683.565275576 LSB. */
 #define EXH_DEG(num, den) ((int32_t)((num) * (INT64_C(1) << 32) / (INT64_C(360) * (den))))
 #define EXH_URAD(num)     ((int32_t)((num)*INT64_C(683565275576) / INT64_C(1000000000)))
 
@@ -24,11 +29,12 @@ struct exh_sincos {
     int32_t sin_q30, cos_q30; /* -2^30 .. 2^30 */
 };
 
-/* Sine and cosine of any angle. Error <= 2.25 LSB of q30 (0.0021 ppm), found over all 2^32
- * angles; 0 and +-2^30 exactly at whole quarters of a turn, never beyond +-2^30. Symmetric to the
- * last bit: sin(-x) = -sin(x), cos(-x) = cos(x), but at the four odd eighths, where the two are 2
- * LSB apart and change places; a quarter turn on makes them cos(x), -sin(x) at every angle. The
- * work is the same for every angle: no table, no branch, nine products. */
+/* Sine and cosine of any angle. The error is at most 2.25 LSB of q30 (0.0021 ppm), measured over
+ * all 2^32 angles. Results are exactly 0 or +-2^30 at multiples of a quarter turn, and never beyond
+ * +-2^30. sin(-x) = -sin(x) and cos(-x) = cos(x) hold to the last bit, except at the four odd
+ * eighths of a turn: there the two magnitudes differ by 2 LSB and swap. A quarter turn more gives
+ * exactly cos(x), -sin(x) at every angle. The run time does not depend on the angle: nine products,
+ * no table, no branch. */
 void exh_sincos(int32_t x_turn_q32, struct exh_sincos *y);
 
 #ifdef __cplusplus

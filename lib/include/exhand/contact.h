@@ -1,12 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-/* Contact law of one finger: F = b*qd + k*q + F0 past q_lim, F0 before (eq. 1).
+/* Contact law of one finger, eq. 1 of the paper: F = b*qd + k*q + F0 beyond q_lim, F0 before it.
  *
- * q is the string pulled out, so a finger that closes makes q grow and qd
- * positive; F is the tension that pulls it back, never negative after drive.h.
- * F0 pulls the slack string in: 0 while the string runs out, f0 while it runs
- * in. The paper switches at qd = 0, where a quantised velocity chatters; here
- * F0 has two states and a dead band in position, so noise within the band
- * switches at most once per reversal.
+ * q is the length of string pulled out. Closing the finger increases q and makes qd positive. F is
+ * the tension that pulls the string back; drive.h keeps it from becoming negative. F0 winds in the
+ * slack string: it is 0 while the string runs out, f0 while it runs in. The paper switches F0 at qd
+ * = 0, where a quantised velocity chatters. Here F0 has two states and a dead band in position, so
+ * noise within the band switches it at most once per reversal.
+ *
+ * exh_contact_step() is the law with hysteresis and band, exh_contact_law() the law as printed.
+ * Both fill a ledger that drive.h completes. Without drive.h, call exh_contact_force():
+ *
+ *   struct exh_contact_par par = {EXH_Q(1500, 1, EXH_Q_K), EXH_Q(5, 1, EXH_Q_B)};
+ *   struct exh_contact_in in = {pos_m_q30, vel_mps_q27, EXH_Q(30, 1000, EXH_Q_POS)};
+ *   int32_t force_N_q20 = exh_contact_force(&par, in);
  */
 #ifndef EXHAND_CONTACT_H
 #define EXHAND_CONTACT_H
@@ -22,8 +28,8 @@
 extern "C" {
 #endif
 
-/* Parameters of one finger's law; rows in exh_contact_rows[]. May change between
- * any two ticks. */
+/* Parameters of one finger's law; rows in exh_contact_rows[]. They may change between any two
+ * ticks. */
 struct exh_contact_par {
     int32_t k_Npm_q10;     /* stiffness, N/m, 0 .. 10^6 */
     int32_t b_Nspm_q20;    /* damping, Ns/m, 0 .. 1000 */
@@ -32,48 +38,49 @@ struct exh_contact_par {
     int32_t hyst_m_q30;    /* contact ends at q < q_lim - hyst, m, 0 .. 10 mm */
 };
 #define EXH_CONTACT_ROWS 5
-#define EXH_CONTACT_K_ID 0x0401 /* of the row of k */
-#define EXH_CONTACT_B_ID 0x0402 /* of the row of b */
+#define EXH_CONTACT_K_ID 0x0401 /* id of the row of k */
+#define EXH_CONTACT_B_ID 0x0402 /* id of the row of b */
 extern const struct exh_signal exh_contact_rows[EXH_CONTACT_ROWS];
 
-/* What one finger's law remembers. All zeros: no sample yet. The first position becomes the first
+/* State of one finger's law. All zeros: no sample yet. The first position becomes the first
  * reversal point. */
 struct exh_contact {
     int32_t turn_m_q30; /* farthest position since the last reversal */
-    uint8_t inward;     /* 1: string runs in, F0 acts */
+    uint8_t inward;     /* 1: string runs in, F0 is active */
     uint8_t touching;   /* 1: the contact condition applies (the paper's c) */
-    uint8_t started;    /* 1: turn is of a position that was seen */
+    uint8_t started;    /* 1: turn_m_q30 holds a measured position */
 };
 
-/* What the law goes by in a tick. */
+/* Inputs of the law in a tick. */
 struct exh_contact_in {
     int32_t pos_m_q30;   /* string position q, any int32_t */
     int32_t vel_mps_q27; /* its velocity, any int32_t */
     int32_t lim_m_q30;   /* virtual contact q_lim, any int32_t */
 };
 
-/* The force ledger: why there is each newton. The law fills the first three,
- * drive.h the rest; force = spring + damper + pullback + passivity + clamp + slew
- * + release, exactly, always. N, q20; the terms of the law are int64_t so that none of them
- * ever saturates. */
+/* The force ledger: the sum of reasons for the force, in N, q20. Always and exactly, force = spring
+ * + damper + pullback + passivity + clamp + slew + release. The law sets the first four and leaves
+ * the others, force_N_q20 too, unchanged; drive.h sets those. The first three are int64_t so that
+ * they never saturate. */
 struct exh_force_ledger {
-    int64_t spring_N_q20;    /* k (q - q_lim) while it touches, below 0 within hyst; else 0 */
-    int64_t damper_N_q20;    /* b qd while it touches, negative as the string runs in; else 0 */
+    int64_t spring_N_q20;    /* k (q - q_lim) in contact, negative within hyst; else 0 */
+    int64_t damper_N_q20;    /* b qd in contact, negative while the string runs in; else 0 */
     int64_t pullback_N_q20;  /* F0: f0 while the string runs in, else 0 */
-    int64_t passivity_N_q20; /* 0 where that module is not linked */
-    int64_t clamp_N_q20;     /* pull only, and the force limit */
-    int64_t slew_N_q20;      /* what its rise or fall is held back by */
-    int64_t release_N_q20;   /* from what was asked to what the release law gives */
-    int32_t force_N_q20;     /* the force commanded: drive.h's; by the law alone, ask
-                                exh_contact_force() */
+    int64_t passivity_N_q20; /* set by passivity.h; else 0 */
+    int64_t clamp_N_q20;     /* correction to 0 .. force limit */
+    int64_t slew_N_q20;      /* correction to the allowed rise or fall */
+    int64_t release_N_q20;   /* correction by the release law */
+    int32_t force_N_q20;     /* the force to command; only drive.h sets it. Without drive.h,
+                                call exh_contact_force() */
 };
 
-/* Where a distance may leave 32 bits, and of the first sample: the wall to go by, no farther than
- * +-2 m. */
+/* The wall that exh_contact_step() uses on the first sample, or where the distance may leave 32
+ * bits: q_lim moved to at most 2 m from the position. */
 int32_t exh_contact_wall(struct exh_contact *s, int32_t pos_m_q30, int32_t lim_m_q30);
 
-/* Two states: the farthest point since the last reversal moves along; a return of more than the
- * band from it is the next reversal. The distance fits uint32_t in both directions. Returns F0. */
+/* The pull-back force F0 at this position, N, q20. In each of two states the reversal point follows
+ * the farthest position. A return from it by more than the band switches the state. Distances fit
+ * uint32_t in both directions. */
 static inline int32_t exh_contact_pullback(
     struct exh_contact *s, const struct exh_contact_par *par, int32_t pos)
 {
@@ -99,14 +106,15 @@ static inline int32_t exh_contact_pullback(
     return 0;
 }
 
-/* One tick. Fills spring, damper and pullback, zeroes passivity; the rest is drive.h's. Each term
- * is rounded once: the sum is within 1 LSB (0.95 uN) of exact for every input; penetration q -
- * q_lim saturates at +-2 m. Returns `touching`: it sets at q >= q_lim and clears at q < q_lim -
- * hyst. Inline, as a scene has one law: a call with all that goes in costs half of it again. */
+/* One tick of the law: sets spring, damper, pullback, and passivity to 0. Call
+ * exh_drive_force_step() for the rest. Each term is rounded once; their sum is within 1 LSB (0.95
+ * uN) of exact for every input. The penetration q - q_lim saturates at +-2 m. Returns touching,
+ * which sets at q >= q_lim and clears at q < q_lim - hyst. Inline, since a call would cost half as
+ * much again. */
 static inline int exh_contact_step(struct exh_contact *s, const struct exh_contact_par *par,
     struct exh_contact_in in, struct exh_force_ledger *out)
 {
-    /* Half of the format: of two positions within it no difference wraps. */
+    /* Half of the format's range: the difference of two positions within it does not wrap. */
     const uint32_t half = UINT32_C(1) << 30;
     const uint32_t beyond =
         (((uint32_t)in.pos_m_q30 + half) | ((uint32_t)in.lim_m_q30 + half)) >> 31;
@@ -114,12 +122,13 @@ static inline int exh_contact_step(struct exh_contact *s, const struct exh_conta
     int32_t pen, on;
     if (beyond || !s->started) { in.lim_m_q30 = exh_contact_wall(s, in.pos_m_q30, in.lim_m_q30); }
     pen = exh_wrap_diff(in.pos_m_q30, in.lim_m_q30);
-    /* All bits set unless below 0 and below -hyst; a hysteresis of damaged memory is none. */
+    /* All bits set unless pen is below 0 and below -hyst. A negative hysteresis, from damaged
+     * memory, acts as none. */
     on = ~((pen & (exh_wrap_add(pen, hyst) | hyst)) >> 31);
     s->touching = (uint8_t)-on;
 
-    /* Both products in every tick: the cost must not depend on contact. Each is stored before the
-     * next begins: a small CPU has no registers for all. */
+    /* Computes both products in every tick, so that the cost does not depend on contact. Stores
+     * each before the next begins, since a small CPU lacks registers for both. */
     out->spring_N_q20 = exh_mul_shr(par->k_Npm_q10, pen & on, EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE);
     out->damper_N_q20 =
         exh_mul_shr(par->b_Nspm_q20, in.vel_mps_q27 & on, EXH_Q_B + EXH_Q_VEL - EXH_Q_FORCE);
@@ -128,27 +137,27 @@ static inline int exh_contact_step(struct exh_contact *s, const struct exh_conta
     return -on;
 }
 
-/* The same where there is nothing to touch: no q_lim is far enough away for every position. The
- * pull-back force alone is left, and the contact has ended. */
+/* The law where no contact is possible; no q_lim is far enough for every position. Contact ends,
+ * and only the pull-back force remains. */
 void exh_contact_step_free(struct exh_contact *s, const struct exh_contact_par *par,
     int32_t pos_m_q30, struct exh_force_ledger *out);
 
 /* --- the law without memory --- */
 
-/* Eq. 1 as it is printed: contact begins and ends at q_lim, and F0 acts while the velocity is below
- * 0, so the hysteresis and F0's band are not read. It suits a wall without F0, and an encoder whose
- * velocity does not chatter about 0. Both functions take every int32_t.
+/* Eq. 1 as printed: contact begins and ends at q_lim, and F0 acts while the velocity is below 0.
+ * The hysteresis and the band of F0 are not used. It suits a wall without F0, and an encoder whose
+ * velocity does not chatter about 0. The functions accept every int32_t.
  *
- * 1 at q >= q_lim. *past: the penetration in 2^-30 m, 0 .. 4 m; no meaning where it returns 0. */
+ * Returns 1 at q >= q_lim. *past is the penetration in 2^-30 m, 0 .. 4 m; undefined if it returns
+ * 0. */
 static inline int exh_contact_past(struct exh_contact_in in, uint32_t *past)
 {
     *past = (uint32_t)in.pos_m_q30 - (uint32_t)in.lim_m_q30;
     return in.pos_m_q30 >= in.lim_m_q30;
 }
 
-/* Fills spring, damper and pullback, zeroes passivity; the rest is drive.h's, and not
- * written here: without drive.h, exh_contact_force() is the call. Each term is rounded once: their
- * sum is within 1 LSB of exact. Returns 1 in contact. */
+/* Sets spring, damper, pullback, and passivity to 0; drive.h sets the rest. Each term is rounded
+ * once, so their sum is within 1 LSB of exact. Returns 1 in contact. */
 static inline int exh_contact_law(
     const struct exh_contact_par *par, struct exh_contact_in in, struct exh_force_ledger *out)
 {
@@ -164,8 +173,8 @@ static inline int exh_contact_law(
     return c;
 }
 
-/* The force to command by the same law, N, q20, in one call and without drive.h, where nobody asks
- * why: 0 .. EXH_FORCE_MAX_N_Q20, limited at both ends, within 0.51 LSB of exact. */
+/* The force to command by the same law, N, q20, in one call, without a ledger and without drive.h.
+ * Limited to 0 .. EXH_FORCE_MAX_N_Q20; within 0.51 LSB of exact. */
 static inline int32_t exh_contact_force(const struct exh_contact_par *par, struct exh_contact_in in)
 {
     const unsigned shift = EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE;
@@ -176,7 +185,7 @@ static inline int32_t exh_contact_force(const struct exh_contact_par *par, struc
     const uint64_t sum = (uint64_t)(uint32_t)par->k_Npm_q10 * past + (uint64_t)damper;
     const int64_t terms = exh_shr_round(exh_from_u64(sum), shift);
     const int64_t f = (c ? terms : 0) + (par->f0_N_q20 & in.vel_mps_q27 >> 31);
-    const uint64_t pull = (uint64_t)f; /* beyond the limit where f is below 0, too */
+    const uint64_t pull = (uint64_t)f; /* above the limit if f is negative */
     if (pull <= EXH_FORCE_MAX_N_Q20) { return (int32_t)pull; }
     return f < 0 ? 0 : EXH_FORCE_MAX_N_Q20;
 }

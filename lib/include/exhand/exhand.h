@@ -1,33 +1,45 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand: from 22 glove voltages and 5 encoder counts to 5 motor currents, in
- * integers, without allocation, with the same bits on every machine.
+/* exhand: from 22 glove voltages and 5 encoder counts to 5 motor currents. It uses integers only,
+ * allocates no memory, and gives the same bits on every machine.
  *
- *   numbers   units fix bytes angle error      formats, arithmetic, cursors, sine and cosine
- *             signal params                    one descriptor per value; values that may change
- *   sensing   frame                            raw codes of a tick, as a board reads and writes
- * them quad velocity                    counts to position and velocity filter quantizer glove
- * glove voltages to codes that stand still, to angles hand                             glove angles
- * to the robot hand's fingertips laws      contact passivity                a force from a contact,
- * and no energy out of it gains precontact                 limits of stiffness; the virtual contact
- * q_lim actuation table drive                      force to current, within limits supply track the
- * drives' voltage; does the current follow? safety    safety watch guard               states and
- * gate; speed limit; configuration, self-test a finger  axis                             the tick
- * of one finger, in its order bench     calibrate probe                  tables of the box, and the
- * motions that measure them talking   record ring trace                the log, the newest of it, a
- * few signals wire                             packets between controller and world regs modbus
- * modbus_rtu           the box as registers; a Modbus slave slots                            images
- * in flash that outlive a power cut board                                      what a port
- * provides; only the loop calls it
+ *   group      header                       what it does
+ *   numbers    units fix bytes angle error  formats, arithmetic, byte cursors, sine, error codes
+ *              signal params authority      one descriptor per value; parameters; who may set them
+ *   sensing    frame                        raw codes that a board reads and writes in a tick
+ *              quad velocity                encoder count to position and velocity
+ *              filter filter_cheap          low-pass of second order, accurate or cheap
+ *              quantizer                    codes without jitter
+ *              glove hand                   voltages to joint angles; angles to fingertips
+ *   laws       contact passivity            contact force; passivity observer and controller
+ *              gains precontact             stable stiffness and damping; virtual contact q_lim
+ *   actuation  table drive                  force to current to D/A code, within limits
+ *              supply tracking              supply voltage; does the current follow?
+ *   safety     safety integrity             states and gate; checks of configuration and memory
+ *              chatter motion polarity      limit cycle; overspeed; sign of motor and encoder
+ *   finger     axis                         one tick of one finger, in its order
+ *   bench      calibrate probe              tables of the device; motions that measure them
+ *   talking    record ring trace            log, its newest part, a few signals
+ *              wire keyed mac               packets of controller and world; signed packets
+ *              regs modbus modbus_rtu       registers and a Modbus slave
+ *              slots                        images in flash that survive a power cut
+ *   port       board                        what a port provides; only the loop calls it
  *
- * A scene is a pure function over these modules (examples/minimal is the
- * shortest); lib/src/run/loop.c is the one loop around it. docs/DESIGN.md says why.
+ * A scene is a pure function over these modules; examples/minimal is the shortest one.
+ * lib/src/run/loop.c calls it once per tick. docs/DESIGN.md gives the reasons.
+ *
+ * Call a module directly if you have your own loop:
+ *
+ *   #include "exhand/exhand.h"
+ *   int32_t pos = exh_quad_pos_m_q30(&quad_par, cnt);
+ *   int32_t vel = exh_velocity_window_step(&window, &window_cfg, cnt);
+ *   int32_t force_N_q20 = exh_contact_force(&contact_par, (struct exh_contact_in){pos, vel, lim});
  */
 #ifndef EXHAND_EXHAND_H
 #define EXHAND_EXHAND_H
 
-/* The library's version, as semver has it; the number, major << 16 | minor << 8 | patch, is what a
- * HELLO, a log and a register carry. Wire, records, images and the map of registers have versions
- * of their own, in their headers. */
+/* The version of the library, by semantic versioning. The number is major << 16 | minor << 8 |
+ * patch; HELLO packets, logs and a register carry it. Wire, records, images and the register map
+ * have their own versions, defined in their headers. */
 #define EXH_VERSION_MAJOR 0
 #define EXH_VERSION_MINOR 3
 #define EXH_VERSION_PATCH 0

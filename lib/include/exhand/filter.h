@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* Filter: low-pass of first or second order for many channels over one set of
- * coefficients.
+/* Filter: low-pass of first or second order for many channels with one set of coefficients.
  *
- * Butterworth by the bilinear transform, as a state-variable filter: the output is
- * an integral that stands still only where it equals the input, so gain at 0 Hz is 1
- * whatever the coefficients round to, and a constant input comes out exactly.
+ * It is a Butterworth filter by the bilinear transform, realised as a state-variable filter. The
+ * output is an integral that comes to rest only when it equals the input. So the gain at 0 Hz is
+ * exactly 1, and a constant input comes out exactly, however the coefficients are rounded.
+ *
+ *   struct exh_filter_par par = {2, EXH_Q(50, 1, 16)}; // order 2, 50 Hz
+ *   int err = exh_filter_setup(&cfg, &par, (struct exh_period){1, 2000});
+ *   exh_filter_reset(state, x, 22);
+ *   exh_filter_step(state, &cfg, x, y, 22); // once per tick
  */
 #ifndef EXHAND_FILTER_H
 #define EXHAND_FILTER_H
@@ -19,15 +23,15 @@
 extern "C" {
 #endif
 
-/* Parameters of all channels; rows in exh_filter_rows[]. */
+/* Parameters, common to all channels; rows in exh_filter_rows[]. */
 struct exh_filter_par {
     int32_t order;     /* 1 or 2 */
-    int32_t fc_Hz_q16; /* -3.01 dB, Hz, 0.01 .. 10^4, below half the rate */
+    int32_t fc_Hz_q16; /* frequency at -3.01 dB, Hz, 0.01 .. 10^4, below half the sample rate */
 };
 #define EXH_FILTER_ROWS 2
 extern const struct exh_signal exh_filter_rows[EXH_FILTER_ROWS];
 
-/* docs/NUMERICS.md, "low-pass" */
+/* The form of the recursion (docs/NUMERICS.md, "low-pass"). */
 enum exh_filter_kind {
     EXH_FILTER_LOW2,  /* low fc, order 2 */
     EXH_FILTER_LOW1,  /* low fc, order 1 */
@@ -35,46 +39,49 @@ enum exh_filter_kind {
     EXH_FILTER_HIGH1  /* high fc, order 1 */
 };
 
-/* Coefficients; what each means depends on the kind. */
+/* Coefficients. Their meaning depends on the kind (docs/NUMERICS.md, "low-pass"). */
 struct exh_filter_cfg {
-    /* docs/NUMERICS.md, "low-pass", has what is rounded to them. */
     int32_t a, b, c; /* 0 where unused */
     uint8_t shift;   /* 0 .. 31 */
-    uint8_t kind;    /* enum exh_filter_kind: low is fc up to 0.105 of the rate */
+    uint8_t kind;    /* enum exh_filter_kind; low: fc up to 0.105 of the sample rate */
 };
 
-/* One channel. */
+/* State of one channel. */
 struct exh_filter {
-    int64_t pos;  /* low-pass state, LSB of x in q31, and half an LSB more */
-    int64_t vel;  /* band-pass state, 23/16 LSB of x in q32; of HIGH2 LSB of x a tick */
-    uint8_t wide; /* 1: of a high kind, both in q22 */
+    int64_t pos;  /* low-pass state, LSB of x in q31, plus half an LSB */
+    int64_t vel;  /* band-pass state, 23/16 LSB of x in q32; of HIGH2: LSB of x per tick */
+    uint8_t wide; /* 1: a high kind; both states are in q22 */
 };
 
-/* Set-up (divides). Coefficients for the period T. -EXH_E_CUTOFF: fc at or above half
- * the rate; -EXH_E_RATE: no period; -EXH_E_RANGE: order not 1 or 2, fc not positive or below 2^-21
- * (4.8e-7) of the rate. Relative error of fc and Q: NUMERICS.md, "low-pass: fc". Gain at 0 Hz is 1.
- */
+/* Set-up (divides): coefficients for the period T. -EXH_E_CUTOFF: fc at or above half the sample
+ * rate. -EXH_E_RATE: no period. -EXH_E_RANGE: order not 1 or 2, fc not positive, or fc below 2^-21
+ * (4.8e-7) of the rate. docs/NUMERICS.md, "low-pass: fc", gives the relative errors of fc and Q. */
 int exh_filter_setup(
     struct exh_filter_cfg *cfg, const struct exh_filter_par *par, struct exh_period T);
 
-/* n channels settled at x: the next outputs are x while the inputs are. */
+/* Settles n channels at x: the next outputs are x while the inputs stay x. */
 void exh_filter_reset(struct exh_filter *s, const int32_t *x, unsigned n);
 
-/* One sample of n channels, any int32; y may be x. A constant input is reached exactly and
- * kept; while anything moves, be it from rail to rail, the output of a low kind is within 6 LSB of
- * the ideal filter's (rms 0.3 to 1 LSB). Of a high kind up to 0.45 of the rate it is within 16 LSB;
- * the rms is up to 2.3 LSB at 0.37 of full scale. Towards half the rate errors grow, and above
- * 0.489 a large input that swings at half the rate wraps the states: the output is anywhere until
- * it ends. y saturates with the right sign (a step overshoots by 4.3 %) and comes back: no other
- * input wraps a state. A state from damaged bytes that none can cause finds its way back. */
+/* Filters one sample of each of n channels: any int32_t in x[n], result in y[n]; y may be x. The
+ * output reaches a constant input exactly and keeps it.
+ *
+ * Error against the ideal filter while the signal moves, even from rail to rail:
+ * - low kinds: at most 6 LSB, rms 0.3 to 1 LSB;
+ * - high kinds up to 0.45 of the sample rate: at most 16 LSB, rms up to 2.3 LSB at 0.37 of full
+ *   scale;
+ * - towards half the rate it grows. Above 0.489 a large input that alternates at half the rate
+ *   wraps the states; the output is undefined until that input ends. No other input wraps a state.
+ *
+ * y saturates with the right sign and recovers; a step overshoots by 4.3 %. From a corrupted state
+ * the filter recovers. */
 void exh_filter_step(struct exh_filter *s, const struct exh_filter_cfg *cfg, const int32_t *x,
     int32_t *y, unsigned n);
 
-/* From one set of coefficients to another, between two ticks, of n channels. A settled
- * channel stays exactly where it is; one that moves goes on from its place, and with its
- * speed if both are LOW2, or HIGH2 and fc no lower than before. So the next output is at most
- * from->c + to->c LSB away from the last, LOW2 both: 23/16 tan(pi fc T) of full scale each; any
- * tick may add two thirds of that. */
+/* Changes n channels from one set of coefficients to another, between two ticks. A settled channel
+ * keeps its value exactly. A moving one continues from its position. It keeps its speed if both
+ * sets are LOW2, or if both are HIGH2 and fc does not fall. With both LOW2, the next output differs
+ * from the last by at most from->c + to->c LSB; each is 23/16 tan(pi fc T) of full scale. Any
+ * ordinary tick may change the output by two thirds of that. */
 void exh_filter_retune(struct exh_filter *s, const struct exh_filter_cfg *from,
     const struct exh_filter_cfg *to, unsigned n);
 

@@ -1,5 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* Quadrature: A/B lines or a hardware counter to a count, a count to metres. */
+/* Quadrature: A/B lines or a hardware counter to a count, a count to metres.
+ *
+ * With a hardware counter, call exh_quad_setup() once and exh_quad_step() per tick. Without one,
+ * call exh_quad_ab_step() per sample of the lines; it needs no set-up. Both counts go to
+ * exh_quad_pos_m_q30(), which reads step_m_q42 alone. 500 pulses per turn in x4 mode on a pulley of
+ * 32 mm diameter are 100.531 mm / 2000 per count:
+ *
+ *   struct exh_quad_par par = {EXH_Q(100531, 2000 * INT64_C(1000000), EXH_Q_STEP),
+ *                              EXH_Q(4, 1, EXH_Q_VEL)};
+ *   int err = exh_quad_setup(&cfg, &par, (struct exh_period){1, 2000}, 16);
+ *   int32_t pos_m_q30 = exh_quad_pos_m_q30(&par, exh_quad_step(&quad, &cfg, raw));
+ */
 #ifndef EXHAND_QUAD_H
 #define EXHAND_QUAD_H
 
@@ -24,87 +35,87 @@ extern "C" {
 
 /* Parameters of one encoder; rows in exh_quad_rows[]. */
 struct exh_quad_par {
-    int32_t step_m_q42;        /* string per count, m, 1 .. 488 um, LSB 0.23 pm */
-    int32_t speed_max_mps_q27; /* faster is no hand, m/s, 0.1 .. 16 */
+    int32_t step_m_q42;        /* string length per count, m, 1 .. 488 um, LSB 0.23 pm */
+    int32_t speed_max_mps_q27; /* fastest plausible movement, m/s, 0.1 .. 16 */
 };
 #define EXH_QUAD_ROWS 2
 extern const struct exh_signal exh_quad_rows[EXH_QUAD_ROWS];
 
-/* Software decoding of the two lines, for ports without a counter. A sample is
- * A<<1 | B in the low two bits, what is above them is ignored; 00 01 11 10 counts
- * up. x1 counts only the A edges at B = 1, so that noise on B moves nothing, x2 all
- * A edges, x4 all edges. A step in which both lines changed is illegal: it counts 0
- * and is counted. The first sample sets the state and counts nothing, a repeated one
- * counts nothing. Sample faster than the shortest distance of two edges. */
+/* Software decoder of one encoder, for ports without a hardware counter. A sample is A<<1 | B in
+ * the low two bits; higher bits are ignored. The sequence 00 01 11 10 counts up. x1 counts the A
+ * edges at B = 1, so noise on B has no effect. x2 counts all A edges, x4 all edges. If both lines
+ * change in one step, the step is illegal: cnt stays and illegal rises. The first sample sets the
+ * state. Sample faster than the shortest time between two edges. */
 struct exh_quad_ab {
     int32_t cnt;      /* counts since the first sample; wraps modulo 2^32 */
-    uint32_t edges;   /* legal transitions seen, of every mode alike; wraps */
-    uint32_t illegal; /* both lines changed at once: direction lost; wraps */
+    uint32_t edges;   /* legal transitions seen, in every mode; wraps */
+    uint32_t illegal; /* steps in which both lines changed: direction unknown; wraps */
     uint8_t ab;       /* the last sample */
-    uint8_t started;  /* 1 after the first */
+    uint8_t started;  /* 1 after the first sample */
 };
 
-/* What each transition adds, index previous<<2 | now: count << 16 (two's
- * complement), edge << 8, illegal. Only the modes that are used are linked. */
+/* What each transition adds, indexed by previous<<2 | now: count << 16 (two's complement), edge <<
+ * 8, illegal. Only the modes that the program uses are linked. */
 struct exh_quad_mode {
     uint32_t adds[16]; /* one for each pair of samples */
 };
 extern const struct exh_quad_mode exh_quad_x1, exh_quad_x2,
     exh_quad_x4; /* A edges at B = 1; all A edges; all edges */
 
-/* One sample. */
+/* Processes one sample. */
 void exh_quad_ab_step(struct exh_quad_ab *s, const struct exh_quad_mode *mode, unsigned ab);
 
-/* n samples, ab[0] the first: as n steps, at a third of their cost. */
+/* Processes n samples, ab[0] first. Same result as n steps, at a third of their cost. */
 void exh_quad_ab_run(
     struct exh_quad_ab *s, const struct exh_quad_mode *mode, const uint8_t *ab, size_t n);
 
-/* 64 samples in x4, a line a word, bit 0 the first, as a shift register collects
- * them: as 64 steps, at a sixth of the cost of a run. To end a stream within a word,
+/* Processes 64 samples in x4 mode, one word per line, bit 0 first, as a shift register collects
+ * them. Same result as 64 steps, at a sixth of the cost of a run. To end a stream within a word,
  * repeat its last sample. */
 void exh_quad_ab_word(struct exh_quad_ab *s, uint64_t a, uint64_t b);
 
-/* Index mark: the count at its last rising edge. Only for whom it has one. */
+/* Index mark: the count at its last rising edge. Only for encoders with an index line. */
 struct exh_quad_index {
-    int32_t cnt;     /* at the last rising edge */
-    uint32_t seen;   /* rising edges; wraps */
-    uint8_t level;   /* the last */
-    uint8_t started; /* 1 after the first: a level that is high there is no edge */
+    int32_t cnt;     /* count at the last rising edge */
+    uint32_t seen;   /* number of rising edges; wraps */
+    uint8_t level;   /* level of the last sample */
+    uint8_t started; /* 1 after the first sample; a high first level is no edge */
 };
 
-/* One sample, after the step of the same sample: cnt is its count, bit 0 of level
- * the line. */
+/* Processes one sample; call it after the decoder's step of the same sample. cnt is the count of
+ * that step, bit 0 of level is the index line. */
 void exh_quad_index_step(struct exh_quad_index *s, int32_t cnt, unsigned level);
 
-/* Extension of a hardware counter of 16 to 32 bits across its wrap. */
+/* Extends a hardware counter of 16 to 32 bits to a 32-bit count across its wrap. This is the
+ * set-up, struct exh_quad the state of one encoder. */
 struct exh_quad_cfg {
     const struct exh_quad_par *par; /* the caller's */
-    int32_t jump_cnt;               /* what speed_max moves in one tick, rounded, plus 1; a
-                                       smaller error of the encoder is not seen */
-    uint8_t unused;                 /* 32 less the counter's width */
+    int32_t jump_cnt;               /* counts at speed_max in one tick, rounded, plus 1; smaller
+                                     * encoder errors are not detected */
+    uint8_t unused;                 /* 32 minus the counter's width */
 };
 struct exh_quad {
-    uint32_t raw;    /* last counter value as given; its low bits count */
+    uint32_t raw;    /* last counter value as given; the low bits count */
     int32_t cnt;     /* counts since the first sample; wraps modulo 2^32 */
-    uint8_t started; /* the first sample is count 0 */
-    uint8_t lost;    /* 1: a sample moved more than speed_max. cnt left it out and
-                        is not to be trusted until the next set-up: a fault */
+    uint8_t started; /* 1 after the first sample, which is count 0 */
+    uint8_t lost;    /* 1: a sample moved faster than speed_max. cnt ignores that sample and is
+                      * unreliable until the next set-up: a fault */
 };
 
-/* Set-up (divides); par must outlive cfg. bits: the counter's width, from the
- * board. -EXH_E_RATE: T. -EXH_E_RANGE: bits not 16 .. 32, step or speed_max outside its range
- * above, or speed_max moves the counter by a quarter of its width or more in one
- * tick: so a movement of up to three times that speed is still told as too fast. */
+/* Set-up (divides); par must outlive cfg. bits is the counter's width, which the board states.
+ * -EXH_E_RATE: T. -EXH_E_RANGE: bits not 16 .. 32, or step or speed_max outside its range above.
+ * Also -EXH_E_RANGE: speed_max moves the counter by a quarter of its range or more per tick. The
+ * limit ensures that movements of up to three times speed_max are detected as too fast. */
 int exh_quad_setup(
     struct exh_quad_cfg *cfg, const struct exh_quad_par *par, struct exh_period T, unsigned bits);
 
-/* The extended count. Right as long as the counter moves less than half its
- * width between two calls; bits of raw above the width are ignored. A movement
- * of more than jump_cnt is not counted and sets `lost`. */
+/* The extended count after reading raw. Correct while the counter moves by less than half its range
+ * between two calls. Bits of raw above the width are ignored. A movement of more than jump_cnt is
+ * not counted and sets lost. */
 int32_t exh_quad_step(struct exh_quad *s, const struct exh_quad_cfg *cfg, uint32_t raw);
 
-/* Position of a count, m, q30; rounded half up, saturates at +-2 m with the
- * right sign. Error <= 1/2 LSB = 0.47 nm. */
+/* The position of a count, m, q30; rounded half up. Saturates at +-2 m and keeps the sign. The
+ * error is at most 1/2 LSB = 0.47 nm. */
 int32_t exh_quad_pos_m_q30(const struct exh_quad_par *par, int32_t cnt);
 
 /* State through a cursor (bytes.h). */

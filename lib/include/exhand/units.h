@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Units and formats: docs/NUMERICS.md as constants (a test asserts they agree).
+/* Units and fixed-point formats: the table of docs/NUMERICS.md as constants. A test compares the
+ * two.
  *
- * The ranges are the formats'; what a parameter may be is narrower, in its row.
+ * A value in format qN is an int32_t that holds the quantity times 2^N. The range below is that of
+ * the format. The range of a parameter is narrower; its row (signal.h) gives it.
  *
  *   quantity          unit    format  range       LSB
  *   position          m       q30     +-2         0.93 nm
@@ -20,6 +22,12 @@
  *   glove gain        turn/code q38   +-1/128     3.6e-12
  *   supply            V       q20     +-2048      0.95 uV
  *   supply scale      V/code  q30     +-2         0.93 nV
+ *
+ * Example: a stiffness of 1500 N/m, and the length per count of an encoder with 2000 counts per
+ * turn on a pulley of 100.531 mm circumference:
+ *
+ *   int32_t k_Npm_q10 = EXH_Q(1500, 1, EXH_Q_K);
+ *   int32_t step_m_q42 = EXH_Q(100531, 2000 * INT64_C(1000000), EXH_Q_STEP);
  */
 #ifndef EXHAND_UNITS_H
 #define EXHAND_UNITS_H
@@ -42,24 +50,24 @@
 #define EXH_Q_SUPPLY 20 /* V */
 #define EXH_Q_VPRAW  30 /* V/code */
 
-/* num/den in format q, for initialisers: an integer constant expression,
- * truncated towards zero. |num| * 2^q < 2^63 and the result fits int32_t.
- * EXH_Q(20000, 1, EXH_Q_K) is 20 kN/m, EXH_Q(7, 100, EXH_Q_POS) is 7 cm. */
+/* The ratio num/den in format q: an integer constant expression for initialisers, truncated towards
+ * zero. The caller keeps |num| * 2^q below 2^63 and the result within int32_t. EXH_Q(20000, 1,
+ * EXH_Q_K) is 20 kN/m, EXH_Q(7, 100, EXH_Q_POS) is 7 cm. */
 #define EXH_Q(num, den, q) ((int32_t)((num) * (INT64_C(1) << (q)) / (den)))
 
-/* The loop's period as the exact ratio of two integers, in seconds. What a
- * timer was programmed to, never a measurement (docs/DESIGN.md 4). */
+/* The loop period in seconds, as the exact ratio of two integers: {1, 2000} is 2 kHz. It is the
+ * value programmed into the timer, never a measured one (docs/DESIGN.md 4). */
 struct exh_period {
     uint32_t num; /* 1 .. 2^32-1 */
     uint32_t den; /* num/den within 50 us .. 1 s */
 };
 
-/* A point or a direction; which, and its unit and format, is in the name of the value. */
+/* A point or a direction. The name of the value gives its unit and format. */
 struct exh_vec3 {
-    int32_t x, y, z; /* in the frame that whoever has it says */
+    int32_t x, y, z; /* in the coordinate frame that the owner documents */
 };
 
-/* The fingers of the device, in the order of all its arrays. */
+/* The fingers of the device. All arrays of fingers have this order. */
 enum exh_finger {
     EXH_THUMB,  /* 0 */
     EXH_INDEX,  /* 1 */
@@ -67,15 +75,15 @@ enum exh_finger {
     EXH_RING,   /* 3 */
     EXH_LITTLE  /* 4 */
 };
-#define EXH_FINGERS 5 /* how many there are */
+#define EXH_FINGERS 5 /* length of every array of fingers */
 
-/* Ends of ranges that several modules share. */
-#define EXH_FORCE_MAX_N_Q20 EXH_Q(100, 1, EXH_Q_FORCE) /* no force limit is higher */
+/* Limits of ranges that several modules share. */
+#define EXH_FORCE_MAX_N_Q20 EXH_Q(100, 1, EXH_Q_FORCE) /* highest force limit */
 #define EXH_K_MAX_NPM_Q10   EXH_Q(1000000, 1, EXH_Q_K) /* stiffness */
 #define EXH_B_MAX_NSPM_Q20  EXH_Q(1000, 1, EXH_Q_B)    /* damping */
 #define EXH_PAD_MAX_M_Q30   EXH_Q(25, 1000, EXH_Q_POS) /* radius of a fingertip's pad */
 
-/* Compile-time assertion in C99; name must be unique in its scope. */
+/* Compile-time assertion in C99. The name must be unique in its scope. */
 #define EXH_STATIC_ASSERT(name, cond) typedef char exh_static_##name[(cond) ? 1 : -1]
 
 #endif
