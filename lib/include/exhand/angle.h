@@ -6,8 +6,7 @@
  *
  *   struct exh_sincos y;
  *   exh_sincos(EXH_DEG(30, 1), &y);
- *   int32_t half = y.sin_q30; // 2^29 within 3 LSB
- */
+ *   int32_t half = y.sin_q30; // 2^29 within 3 LSB */
 #ifndef EXHAND_ANGLE_H
 #define EXHAND_ANGLE_H
 

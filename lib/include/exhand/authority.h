@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Authority: who may change which parameter, and when; one table, which denies what it does not
- * name. Every way to a parameter asks it (params.h, regs.h, wire.h). */
+/* Authority: who may change which parameter, and when. One table denies every change that it does
+ * not list. All ways to a parameter use it (params.h, regs.h, wire.h). */
 #ifndef EXHAND_AUTHORITY_H
 #define EXHAND_AUTHORITY_H
 
@@ -12,25 +12,25 @@
 extern "C" {
 #endif
 
-/* Whose wish it is. */
+/* The source of a change. */
 enum exh_source {
-    EXH_FROM_PERSON,   /* at the box: command line, boot option; a log that is replayed */
+    EXH_FROM_PERSON,   /* at the device: command line, boot option; a replayed log */
     EXH_FROM_IMAGE,    /* an image of parameters */
-    EXH_FROM_REGISTER, /* Modbus */
-    EXH_FROM_WORLD,    /* PARAM over the link */
-    EXH_SOURCES        /* how many there are */
+    EXH_FROM_REGISTER, /* Modbus register */
+    EXH_FROM_WORLD,    /* PARAM packet over the link */
+    EXH_SOURCES        /* number of sources */
 };
 
-/* Who asks, and in what box. */
+/* The source, and the state of the device. */
 struct exh_authority {
     uint8_t source; /* enum exh_source */
     uint8_t locked; /* set-up is over: exh_params.locked */
-    uint8_t open;   /* the gate is open or may come to be: any state but OFF and FAULT (safety.h) */
+    uint8_t open;   /* gate is open or may open: any state except OFF and FAULT (safety.h) */
 };
 
-/* 0 if a value of class `when` (enum exh_signal_when) may go from `was`, the value wanted, to
- * `raw`; -EXH_E_STATE if not. What is neither a source nor a class of these may not. Ranges and
- * rules are not asked. */
+/* Checks a change from was, the staged value, to raw. when is enum exh_signal_when. Returns 0 if
+ * the source may make it, else -EXH_E_STATE. Unknown sources and classes are refused. Does not
+ * check ranges or other rules. */
 int exh_authority_check(struct exh_authority who, unsigned when, int32_t was, int32_t raw);
 
 #ifdef __cplusplus

@@ -1,20 +1,19 @@
 /* SPDX-License-Identifier: MIT */
-/* Axis: one finger's tick, from the counter to the D/A code, in its one right order.
+/* Axis: the tick of one finger, from the counter to the D/A code, in the required order.
  *
  *   exh_axis_sense()   counter -> count -> position -> velocity -> speed limit;
  *                      monitor -> current -> does it follow?
- *   exh_axis_permit()  what the fingers found -> safety -> what the force may do
+ *   exh_axis_permit()  faults of the fingers -> safety -> permit for the force
  *   (the scene's law)  position and velocity -> force ledger
  *   exh_axis_force()   force ledger -> force limits -> current limits
- *   exh_axis_out()     gate -> code; what was coded -> the next tick's checks
+ *   exh_axis_out()     gate -> code; coded current -> checks of the next tick
  *
- * Each function needs what the one before it made, so a scene cannot leave a step out. A part that
- * a scene does not have is a NULL pointer in its struct exh_axis. The functions are inline: where
- * the pointer is a constant, the compiler drops the call and the linker drops the module.
+ * Each function needs the result of the one before, so a scene cannot omit a step. A part that a
+ * scene does not have is a NULL pointer in its struct exh_axis. The functions are inline: where the
+ * pointer is a constant, the compiler drops the call and the linker drops the module.
  *
- * With n fingers the scene calls sense for each, permit once, law and force for each,
- * exh_gate_step() once and exh_axis_update() for each: exh_axis_out() is these two for one finger.
- */
+ * With n fingers, call sense for each, permit once, law and force for each, exh_gate_step() once
+ * and exh_axis_update() for each. exh_axis_out() combines the last two for one finger. */
 #ifndef EXHAND_AXIS_H
 #define EXHAND_AXIS_H
 
@@ -35,7 +34,7 @@
 extern "C" {
 #endif
 
-/* The parts of one finger, with their set-ups. All pointers are the caller's. */
+/* The parts of one finger and their set-ups. All pointers are the caller's. */
 struct exh_axis {
     struct exh_quad *quad;                              /* encoder */
     const struct exh_quad_cfg *quad_cfg;                /* its set-up */
@@ -43,28 +42,29 @@ struct exh_axis {
     const struct exh_velocity_window_cfg *velocity_cfg; /* its set-up */
     struct exh_motion *watch;               /* NULL: no speed limit, no stuck detector */
     const struct exh_motion_cfg *watch_cfg; /* its set-up */
-    struct exh_tracking *track; /* NULL: nothing compares monitor and code (EXH_UNTRACKED) */
+    struct exh_tracking *track; /* NULL: no check of monitor against code (EXH_UNTRACKED) */
     const struct exh_tracking_cfg *track_cfg; /* its set-up */
     struct exh_drive *drive;                  /* force and current limits */
     const struct exh_drive_cfg
-        *drive_cfg;              /* its set-up; for exh_gate_step() one of an array by finger */
-    struct exh_chatter *chatter; /* NULL: nothing watches for a contact that buzzes */
+        *drive_cfg;              /* its set-up; an element of the array for exh_gate_step() */
+    struct exh_chatter *chatter; /* NULL: no detection of limit cycles */
     const struct exh_chatter_cfg *chatter_cfg; /* its set-up */
 };
 
-/* What one finger measured in this tick. */
+/* Measurements of one finger in this tick. */
 struct exh_axis_now {
     int32_t cnt;         /* extended count */
     int32_t pos_m_q30;   /* string position, m, +-2 */
-    int32_t vel_mps_q27; /* its velocity within the speed limit, m/s, +-16; 0 without velocity */
-    int32_t mon_A_q26;   /* current monitored, A, +-32; 0 without track */
-    uint32_t raised;     /* enum exh_fault: causes this finger shows now */
+    int32_t vel_mps_q27; /* its velocity within the speed limit, m/s, +-16; 0 if velocity is NULL */
+    int32_t mon_A_q26;   /* measured current, A, +-32; 0 if track is NULL */
+    uint32_t raised;     /* enum exh_fault: causes that this finger shows now */
     uint32_t limits;     /* enum exh_limit: limits that acted on the velocity */
 };
 
 /* --- set-up --- */
 
-/* What set-up fills and reads. A NULL set-up is a part that the scene leaves out. */
+/* Arguments of exh_axis_setup(). A NULL set-up omits that part. Pointers marked "kept" must outlive
+ * the set-ups. */
 struct exh_axis_setup {
     struct exh_quad_cfg *quad;                   /* filled */
     const struct exh_quad_par *quad_par;         /* kept */
@@ -80,9 +80,9 @@ struct exh_axis_setup {
     const struct exh_chatter_par *chatter_par;   /* read */
 };
 
-/* Sets up all parts, in the tick's order; divides. T: the board's period; enc_bits: the width of
- * its counters; tables as exh_drive_setup() wants them. 0, or the -EXH_E_... of the first part that
- * refuses. */
+/* Sets up all parts in the order of the tick; divides. T is the period and enc_bits the counter
+ * width of the board; the tables are as for exh_drive_setup(). Returns 0, or the error of the first
+ * part that fails. */
 static inline int exh_axis_setup(const struct exh_axis_setup *of, struct exh_period T,
     unsigned enc_bits, struct exh_table force_to_cur, struct exh_table cur_to_force)
 {
@@ -104,7 +104,7 @@ static inline int exh_axis_setup(const struct exh_axis_setup *of, struct exh_per
 
 /* --- the tick --- */
 
-/* First: what the board read of finger f, 0 .. EXH_FINGERS-1. */
+/* First: processes the board's readings of finger f, 0 .. EXH_FINGERS-1. */
 static inline struct exh_axis_now exh_axis_sense(
     const struct exh_axis *a, const struct exh_drive_in *in, unsigned f)
 {
@@ -127,13 +127,13 @@ static inline struct exh_axis_now exh_axis_sense(
     }
 }
 
-/* Arming's step ENCODER and the cause ENCODER are one bit, so that the tick needs no branch. */
+/* The arming step ENCODER and the fault ENCODER have the same bit, so the tick needs no branch. */
 EXH_STATIC_ASSERT(
     axis_encoder_is_one_bit, (unsigned)EXH_ARM_ENCODER == (unsigned)EXH_FAULT_ENCODER);
 
-/* Then, once: safety. `box` has what the fingers cannot know; to its `raised` come the causes of
- * fingers 0..n-1, and its `fingers` becomes n. Where no encoder is lost, arming's step ENCODER
- * comes to its `ready`. */
+/* Second, once: safety. box holds what the fingers do not know. This function adds the causes of
+ * fingers 0..n-1 to box.raised and sets box.fingers to n. If no encoder is lost, it confirms the
+ * arming step ENCODER in box.ready. */
 static inline struct exh_permit exh_axis_permit(struct exh_safety *s,
     const struct exh_safety_cfg *cfg, const struct exh_axis_now *now, unsigned n,
     struct exh_safety_in box)
@@ -146,7 +146,7 @@ static inline struct exh_permit exh_axis_permit(struct exh_safety *s,
     return exh_safety_step(s, cfg, box);
 }
 
-/* exh_axis_force() with limits of force of this tick's own. */
+/* exh_axis_force() with force limits for this tick. */
 static inline uint32_t exh_axis_force_within(const struct exh_axis *a,
     const struct exh_permit *permit, struct exh_drive_most own, struct exh_force_ledger *f,
     struct exh_current_ledger *i)
@@ -155,8 +155,8 @@ static inline uint32_t exh_axis_force_within(const struct exh_axis *a,
     return limits | exh_drive_current_step(a->drive, a->drive_cfg, f, i);
 }
 
-/* After the law has filled the force ledger: limits of force, then of current. Returns limit bits,
- * which go on to the gate with those of sense. */
+/* After the law has filled the force ledger: force limits, then current limits. Returns limit bits;
+ * combine them with those of exh_axis_sense() for the gate. */
 static inline uint32_t exh_axis_force(const struct exh_axis *a, const struct exh_permit *permit,
     struct exh_force_ledger *f, struct exh_current_ledger *i)
 {
@@ -165,7 +165,7 @@ static inline uint32_t exh_axis_force(const struct exh_axis *a, const struct exh
     return exh_axis_force_within(a, permit, own, f, i);
 }
 
-/* After exh_gate_step(): what was coded, for the checks of the next tick. */
+/* After exh_gate_step(): stores the coded current for the checks of the next tick. */
 static inline void exh_axis_update(const struct exh_axis *a, int32_t cnt, int32_t coded_A_q26)
 {
     if (a->track) { exh_tracking_update(a->track, coded_A_q26); }
@@ -173,8 +173,8 @@ static inline void exh_axis_update(const struct exh_axis *a, int32_t cnt, int32_
     if (a->chatter) { exh_chatter_update(a->chatter, a->chatter_cfg, cnt, coded_A_q26); }
 }
 
-/* Last, of a scene with one finger: the gate, and what was coded. cnt and *limits: of sense, the
- * limits with those of force; the gate adds its own. */
+/* Last, in a scene with one finger: the gate, then exh_axis_update(). cnt comes from
+ * exh_axis_sense(). *limits holds the limits of sense and force; the gate adds its own. */
 static inline void exh_axis_out(const struct exh_axis *a, struct exh_safety *s, int32_t cnt,
     struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out)
 {

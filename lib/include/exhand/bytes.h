@@ -7,8 +7,7 @@
  *
  *   struct exh_bytes c = exh_bytes_writer(buf, sizeof buf);
  *   exh_contact_serialize(&c, &contact);
- *   if (!exh_bytes_ok(&c)) { return -EXH_E_SHORT; }
- */
+ *   if (!exh_bytes_ok(&c)) { return -EXH_E_SHORT; } */
 #ifndef EXHAND_BYTES_H
 #define EXHAND_BYTES_H
 

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* Chatter: a contact that buzzes. Its current swings to and fro, and each cycle drives the string.
+/* Chatter: detects a limit cycle of a contact, in which the current oscillates and drives the
+ * string.
  *
- * A cycle goes from one valley of the coded current to the next, of swings above 0.25 A. What it
- * gives out is exact, as passivity.h has it: the current held times the counts moved, by the force
- * that the table's last point has per ampere. A cycle of more than 50 ms (8 ticks at least) does
- * not count, since a hand may do that. A sum takes what counting cycles give out, less what they
- * take in, and goes towards 0 by `power` at any time. At `energy` it is the fault.
+ * A cycle runs from one minimum of the coded current to the next; swings below 0.25 A do not count.
+ * Its energy output is exact, as in passivity.h: held current times counts moved. The last point of
+ * the force table converts it to energy. Cycles longer than 50 ms (at least 8 ticks) are ignored,
+ * since a hand can make them. A sum adds the energy output of the cycles, subtracts their input,
+ * and decays towards 0 by power. When it reaches energy, the fault is raised.
  *
- * A tap and its bounces take in more than they give. Noise of a code is no swing. A limit cycle of
- * one count gives out less than `power`, and is felt but does not harm. The fault comes no sooner
- * than energy over what is given out, and no later than twice `energy` over what goes beyond
- * `power`, where each cycle counts.
- */
+ * Taps and bounces take in more than they give out. D/A noise causes no swing. A limit cycle of one
+ * count gives out less than power: it is felt, but harmless. The fault comes no sooner than energy
+ * / output power. It comes no later than 2 * energy / (output power - power), if every cycle
+ * counts. */
 #ifndef EXHAND_CHATTER_H
 #define EXHAND_CHATTER_H
 
@@ -28,43 +28,44 @@ extern "C" {
 
 /* Parameters of one finger; rows in exh_chatter_rows[]. */
 struct exh_chatter_par {
-    int32_t power_W_q20;  /* given out without end, W, 0.01 .. 10 */
-    int32_t energy_J_q24; /* given out beyond that: fault, J, 0.001 .. 1; 0: never */
+    int32_t power_W_q20;  /* continuous output power that is allowed, W, 0.01 .. 10 */
+    int32_t energy_J_q24; /* energy beyond that until the fault, J, 0.001 .. 1; 0: never */
 };
 #define EXH_CHATTER_ROWS 2
 extern const struct exh_signal exh_chatter_rows[EXH_CHATTER_ROWS];
 
-/* One finger as it is set up. */
+/* Set-up of one finger. */
 struct exh_chatter_cfg {
-    int64_t energy_Acnt_q20; /* energy by force per ampere and way per count; 0: never */
-    int64_t leak_Acnt_q20;   /* power in a tick, likewise */
-    uint32_t ticks;          /* a cycle so long does not count */
+    int64_t energy_Acnt_q20; /* energy / (force per ampere * length per count); 0: never */
+    int64_t leak_Acnt_q20;   /* power of one tick, in the same unit */
+    uint32_t ticks;          /* length of a cycle that is ignored */
 };
 
-/* One finger from tick to tick. */
+/* State of one finger. All zeros: at rest. */
 struct exh_chatter {
-    int64_t net_Acnt_q20;   /* given out beyond power, -energy .. energy */
-    int64_t cycle_Acnt_q20; /* given out since the valley */
+    int64_t net_Acnt_q20;   /* energy output beyond power, -energy .. energy */
+    int64_t cycle_Acnt_q20; /* energy output since the minimum */
     int32_t held_A_q26;     /* coded in the last tick */
-    int32_t end_A_q26;      /* farthest since the current turned */
-    int32_t cnt;            /* of the last tick */
-    uint32_t ticks;         /* since the valley, 0 .. cfg's */
-    uint8_t rises;          /* 1: it turned at a valley */
+    int32_t end_A_q26;      /* extreme since the current reversed */
+    int32_t cnt;            /* count of the last tick */
+    uint32_t ticks;         /* since the minimum, 0 .. cfg->ticks */
+    uint8_t rises;          /* 1: the current reversed at a minimum and rises */
 };
 
-/* Set-up (divides), behind the drive's, for its table. -EXH_E_RATE: T; -EXH_E_RANGE: a parameter
- * outside its range above, or a step or table that no device has. */
+/* Set-up (divides); after that of the drive, whose table it uses. -EXH_E_RATE: T. -EXH_E_RANGE: a
+ * parameter outside its range above, or an impossible step or table. */
 int exh_chatter_setup(struct exh_chatter_cfg *cfg, const struct exh_chatter_par *par,
     const struct exh_drive_cfg *drive, struct exh_velocity_scale scale);
 
-/* First thing of a tick: EXH_FAULT_CHATTER while due, else 0. */
+/* First call of a tick. Returns EXH_FAULT_CHATTER while the fault is due, else 0. */
 uint32_t exh_chatter_step(const struct exh_chatter *s, const struct exh_chatter_cfg *cfg);
 
-/* Behind the gate, with the count of this tick and the current coded. Ticks missed leak nothing. */
+/* Call it after the gate, with the count and the coded current of this tick. Missed ticks do not
+ * reduce the sum. */
 void exh_chatter_update(
     struct exh_chatter *s, const struct exh_chatter_cfg *cfg, int32_t cnt, int32_t coded_A_q26);
 
-/* State through a cursor. A state of zeros is a finger at rest. */
+/* State through a cursor. */
 void exh_chatter_serialize(struct exh_bytes *c, struct exh_chatter *s);
 
 #ifdef __cplusplus

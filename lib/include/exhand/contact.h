@@ -12,8 +12,7 @@
  *
  *   struct exh_contact_par par = {EXH_Q(1500, 1, EXH_Q_K), EXH_Q(5, 1, EXH_Q_B)};
  *   struct exh_contact_in in = {pos_m_q30, vel_mps_q27, EXH_Q(30, 1000, EXH_Q_POS)};
- *   int32_t force_N_q20 = exh_contact_force(&par, in);
- */
+ *   int32_t force_N_q20 = exh_contact_force(&par, in); */
 #ifndef EXHAND_CONTACT_H
 #define EXHAND_CONTACT_H
 

@@ -6,8 +6,7 @@
  * (safety.h). A programming error goes to EXH_ASSERT.
  *
  *   int err = exh_quad_setup(&cfg, &par, T, 16);
- *   if (err < 0) { puts(exh_error_text(err)); }
- */
+ *   if (err < 0) { puts(exh_error_text(err)); } */
 #ifndef EXHAND_ERROR_H
 #define EXHAND_ERROR_H
 

@@ -8,8 +8,7 @@
  *   struct exh_filter_par par = {2, EXH_Q(50, 1, 16)}; // order 2, 50 Hz
  *   int err = exh_filter_setup(&cfg, &par, (struct exh_period){1, 2000});
  *   exh_filter_reset(state, x, 22);
- *   exh_filter_step(state, &cfg, x, y, 22); // once per tick
- */
+ *   exh_filter_step(state, &cfg, x, y, 22); // once per tick */
 #ifndef EXHAND_FILTER_H
 #define EXHAND_FILTER_H
 

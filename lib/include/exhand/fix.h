@@ -192,8 +192,7 @@ static inline int32_t exh_recip_q24(int32_t x)
  *
  *   struct exh_gain g;
  *   int err = exh_gain_set(&g, 1, 3);
- *   int32_t third = exh_sat32(exh_gain_mul(g, x));
- */
+ *   int32_t third = exh_sat32(exh_gain_mul(g, x)); */
 int exh_gain_set(struct exh_gain *g, uint64_t num, uint64_t den);
 
 /* floor(num/den) without the compiler's division helpers; requires den > 0. Stores the remainder in

@@ -8,8 +8,7 @@
  * its rate, device and finger.
  *
  *   int err = exh_gains_setup(&rule, (struct exh_period){1, 2000});
- *   if (err == 0 && !exh_gains_ok(&rule, k_Npm_q10, b_Nspm_q20)) { err = -EXH_E_GAINS; }
- */
+ *   if (err == 0 && !exh_gains_ok(&rule, k_Npm_q10, b_Nspm_q20)) { err = -EXH_E_GAINS; } */
 #ifndef EXHAND_GAINS_H
 #define EXHAND_GAINS_H
 

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Integrity: is what must stand still still what it was, and does the machine reckon right?
+/* Integrity: detects changed configuration memory and wrong arithmetic.
  *
- * For scenes that want it; nothing else links it. What the guard finds is EXH_FAULT_CONFIG, what
- * the self-test does not is the step EXH_ARM_SELFTEST of arming.
- */
+ * Optional; nothing else links it. A change that the guard finds is EXH_FAULT_CONFIG. A failed
+ * self-test blocks the arming step EXH_ARM_SELFTEST.
+ *
+ *   exh_integrity_seal(&guard, &config, sizeof config, &params); // end of set-up
+ *   if (exh_integrity_step(&guard)) { raised |= EXH_FAULT_CONFIG; } // every tick */
 #ifndef EXHAND_INTEGRITY_H
 #define EXHAND_INTEGRITY_H
 
@@ -16,44 +18,45 @@
 extern "C" {
 #endif
 
-#define EXH_INTEGRITY_B     8 /* bytes of the area looked at in a tick */
-#define EXH_INTEGRITY_WORDS 2 /* parameters likewise */
+#define EXH_INTEGRITY_B     8 /* bytes of the area checked per tick */
+#define EXH_INTEGRITY_WORDS 2 /* parameters checked per tick */
 
-/* All zero: not sealed, nothing is looked at. */
+/* The guard. All zeros: not sealed, no checks. */
 struct exh_integrity {
-    const uint8_t *area;       /* the caller's: configuration made at set-up */
-    uint32_t len_B, at;        /* its bytes; those looked at in this round */
-    uint32_t want, crc;        /* CRC-32 when it was sealed; of this round so far */
-    struct exh_params *params; /* or NULL: it keeps its place in them itself */
-    uint8_t broken;            /* 1: something differed; stays until sealed anew */
+    const uint8_t *area;       /* the caller's configuration, made at set-up */
+    uint32_t len_B, at;        /* length; bytes checked in this round */
+    uint32_t want, crc;        /* CRC-32 when sealed; of this round so far */
+    struct exh_params *params; /* or NULL; keeps its own position */
+    uint8_t broken;            /* 1: a difference was found; stays until sealed again */
 };
 
-/* At the end of set-up: the area as it is now, none of which changes until it is sealed anew, and
- * the parameters (NULL: none, as where they are constants in ROM, or within the area). */
+/* End of set-up: records the area as it is now. The area must not change until sealed again. params
+ * may be NULL, as for parameters in ROM or within the area. */
 void exh_integrity_seal(
     struct exh_integrity *g, const void *area, size_t len_B, struct exh_params *params);
 
-/* Once a tick, at constant cost: the next EXH_INTEGRITY_B bytes of the area, the CRC at the end of
- * a round, and exh_params_verify() at the next EXH_INTEGRITY_WORDS parameters. So a change of one
- * byte is told within len_B / 8 ticks, twice that if it was just passed by; one of a parameter
- * within count / 2, twice that in mid-slew. 1: something differs, or did. */
+/* Once per tick, at constant cost. Checks the next EXH_INTEGRITY_B bytes of the area, the CRC at
+ * the end of a round, and the next EXH_INTEGRITY_WORDS parameters by exh_params_verify(). It finds
+ * a changed byte within len_B / 8 ticks, or twice that if the check has just passed it. It finds a
+ * changed parameter within count / 2 ticks, or twice that while a value slews. Returns 1 after a
+ * difference. */
 int exh_integrity_step(struct exh_integrity *g);
 
-/* --- self-test: known answers, at set-up; what is reckoned depends on nothing --- */
+/* --- self-test: known answers, at set-up --- */
 
-/* What did not come out as it must. */
+/* The test that failed. */
 enum exh_selftest {
-    EXH_SELFTEST_OK,       /* all did */
+    EXH_SELFTEST_OK,       /* none */
     EXH_SELFTEST_SHIFT,    /* shifts, roundings, saturation */
     EXH_SELFTEST_PRODUCT,  /* 64-bit products */
-    EXH_SELFTEST_DIVISION, /* of set-up, and gains */
+    EXH_SELFTEST_DIVISION, /* division of set-up, and gains */
     EXH_SELFTEST_CRC,      /* CRC-32 of "123456789" */
-    EXH_SELFTEST_SINE,     /* one angle's sine and cosine, bit for bit */
-    EXH_SELFTEST_FILTER    /* a low-pass's first answers to a step, bit for bit */
+    EXH_SELFTEST_SINE,     /* sine and cosine of one angle, bit for bit */
+    EXH_SELFTEST_FILTER    /* first outputs of a low-pass step response, bit for bit */
 };
 
-/* enum exh_selftest: the first that failed, or 0. The second also tests what scenes with a glove
- * use, and links it. */
+/* The first failed test, enum exh_selftest, or 0. exh_selftest_glove() also tests, and links, what
+ * scenes with a glove use. */
 int exh_selftest(void);
 int exh_selftest_glove(void);
 

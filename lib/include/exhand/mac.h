@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Mac: a tag that only who has the key can make of bytes, 64 bits of SipHash-2-4.
+/* Mac: a message authentication code, 64 bits of SipHash-2-4. Only the owner of the key can make
+ * it.
  *
  * Source: J.-P. Aumasson, D. J. Bernstein, "SipHash: a fast short-input PRF", INDOCRYPT 2012. It
- * needs no table and no set-up of a key: additions, exclusive ors and turns of four words of 64
- * bits, two rounds for 8 bytes and six at the end. Its time depends on the length alone. Who lacks
- * the key guesses a tag once in 2^64. It is for short messages and short tags; a signature it is
- * not, since whoever checks a tag could have made it. */
+ * uses additions, exclusive ors and rotations of four 64-bit words: two rounds per 8 bytes and four
+ * at the end, without tables or key set-up. Its time depends on the length alone. Without the key,
+ * a guess is right once in 2^64. It suits short messages. It is no signature: whoever can check a
+ * tag can make it. */
 #ifndef EXHAND_MAC_H
 #define EXHAND_MAC_H
 
@@ -16,18 +17,18 @@
 extern "C" {
 #endif
 
-#define EXH_MAC_KEY_B 16u /* of a key */
-#define EXH_MAC_B     8u  /* of a tag */
+#define EXH_MAC_KEY_B 16u /* bytes of a key */
+#define EXH_MAC_B     8u  /* bytes of a tag */
 
-/* A key: its bytes 0..7 and 8..15, each least significant first. */
+/* A key: its bytes 0..7 and 8..15, little-endian. */
 struct exh_mac_key {
     uint64_t k[2]; /* k0, k1 of the paper */
 };
 
-/* Of 16 bytes, all of them random: a word for people is no key. */
+/* The key from 16 random bytes. Do not use a password. */
 struct exh_mac_key exh_mac_key(const uint8_t byte[EXH_MAC_KEY_B]);
 
-/* The tag of len_B bytes, 0 and more; sent least significant byte first. Reads len_B bytes. */
+/* The tag of buf[len_B], len_B >= 0. Sent little-endian. */
 uint64_t exh_mac(const struct exh_mac_key *key, const void *buf, size_t len_B);
 
 #ifdef __cplusplus

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Modbus: one request PDU in, one answer PDU out.
+/* Modbus: answers one request PDU with one response PDU.
  *
- * What a register means is in regs.h; modbus_rtu.h makes requests of the bytes of a serial line. A
- * port that has its own Modbus library needs regs.h alone.
- */
+ * regs.h defines the registers; modbus_rtu.h assembles requests from the bytes of a serial line.
+ * A port with its own Modbus library needs only regs.h. Source: Modbus Application Protocol
+ * V1.1b3. */
 #ifndef EXHAND_MODBUS_H
 #define EXHAND_MODBUS_H
 
@@ -16,11 +16,11 @@
 extern "C" {
 #endif
 
-#define EXH_MODBUS_PDU_B 253 /* the longest request or answer */
+#define EXH_MODBUS_PDU_B 253 /* longest request or response */
 
-/* Answers one request: functions 1 2 3 4 5 6 15 16 22 23 and 43/14 (device identification). Bytes
- * of the answer, an exception included; 0: no request at all (len_B 0); -EXH_E_SHORT: cap_B below
- * EXH_MODBUS_PDU_B, and nothing was done. req and resp must not overlap. */
+/* Answers one request: functions 1 2 3 4 5 6 15 16 22 23 and 43/14 (device identification). Returns
+ * the bytes of the response, which may be an exception, 0 if len_B is 0, or -EXH_E_SHORT if cap_B
+ * is below EXH_MODBUS_PDU_B; then it did nothing. req and resp must not overlap. */
 int exh_modbus_answer(
     struct exh_regs *r, const uint8_t *req, size_t len_B, uint8_t *resp, size_t cap_B);
 

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Modbus RTU: the bytes of a serial line into requests, and their answers into bytes. */
+/* Modbus RTU: assembles requests from the bytes of a serial line, and frames the responses.
+ *
+ *   exh_modbus_rtu_receive(&rtu, byte); // per byte
+ *   if (exh_modbus_rtu_poll(&rtu, us)) { n = exh_modbus_rtu_answer(&rtu, &regs, resp, cap_B); } */
 #ifndef EXHAND_MODBUS_RTU_H
 #define EXHAND_MODBUS_RTU_H
 
@@ -15,40 +18,40 @@ extern "C" {
 
 #define EXH_MODBUS_ADU_B 256 /* address, PDU, CRC */
 
-/* A slave on a serial line, one for a line. */
+/* A slave on one serial line. */
 struct exh_modbus_rtu {
     uint8_t address;     /* ours, 1 .. 247 */
-    uint8_t ready;       /* 1: a whole request for us waits in frame */
-    uint16_t len_B;      /* bytes of the frame so far; beyond ADU_B: too long */
-    uint32_t silence_us; /* that ends a frame: 3.5 characters, 1750 us above 19200 baud */
-    uint32_t quiet_us;   /* since the last byte */
-    uint32_t taken;      /* requests for us, since set-up */
-    uint32_t others;     /* undamaged frames for somebody else */
+    uint8_t ready;       /* 1: frame holds a whole request for us */
+    uint16_t len_B;      /* length of the frame so far; above ADU_B: too long */
+    uint32_t silence_us; /* silence that ends a frame: 3.5 characters, 1750 us above 19200 baud */
+    uint32_t quiet_us;   /* time since the last byte */
+    uint32_t taken;      /* requests for us since set-up */
+    uint32_t others;     /* undamaged frames for other slaves */
     uint32_t damaged;    /* frames too short, too long or with a wrong CRC */
-    uint8_t frame[EXH_MODBUS_ADU_B]; /* address, PDU, CRC as they came */
+    uint8_t frame[EXH_MODBUS_ADU_B]; /* address, PDU, CRC as received */
 };
 
-/* -EXH_E_RANGE: address not 1 .. 247, or baud not 300 .. 10^7. Divides. */
+/* Set-up (divides). -EXH_E_RANGE: address not 1 .. 247, or baud not 300 .. 10^7. */
 int exh_modbus_rtu_setup(struct exh_modbus_rtu *u, uint32_t address, uint32_t baud);
 
-/* A byte has come. While a request waits for its answer, bytes are lost. */
+/* Takes a received byte. Bytes are lost while a request waits for its answer. */
 void exh_modbus_rtu_receive(struct exh_modbus_rtu *u, uint8_t byte);
 
-/* A byte came damaged (parity, frame, overrun): the frame it is in is dropped. */
+/* Reports a byte with a parity, framing or overrun error. Its frame is dropped. */
 void exh_modbus_rtu_discard(struct exh_modbus_rtu *u);
 
-/* us have passed without a byte. 1: a request for us, or for all, is whole:
- * exh_modbus_rtu_answer(). */
+/* Reports us microseconds without a byte. Returns 1 if a whole request for us, or a broadcast, is
+ * ready: call exh_modbus_rtu_answer(). */
 int exh_modbus_rtu_poll(struct exh_modbus_rtu *u, uint32_t us);
 
-/* Carries it out. Bytes of the answer, address and CRC included; 0: it gets none, as it was for all
- * (of those, writes alone are carried out), or there is no request; -EXH_E_SHORT: cap_B below
- * EXH_MODBUS_ADU_B, and the request still waits. */
+/* Executes the request. Returns the bytes of the response including address and CRC. 0: no
+ * response, because there is no request or it is a broadcast, of which only writes are executed.
+ * -EXH_E_SHORT: cap_B is below EXH_MODBUS_ADU_B; the request still waits. */
 int exh_modbus_rtu_answer(
     struct exh_modbus_rtu *u, struct exh_regs *r, uint8_t *resp, size_t cap_B);
 
-/* CRC-16/MODBUS: reflected 0xA001, start 0xFFFF, no final; of "123456789" 0x4B37. On the line its
- * low byte comes first. */
+/* CRC-16/MODBUS: reflected 0xA001, initial 0xFFFF, no final XOR. The CRC of "123456789" is 0x4B37.
+ * The line carries its low byte first. */
 uint16_t exh_crc16(const uint8_t *p, size_t len_B);
 
 #ifdef __cplusplus

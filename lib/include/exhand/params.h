@@ -5,8 +5,7 @@
  * which the loop calls between two ticks, makes it active.
  *
  *   int err = exh_params_stage(&params, EXH_CONTACT_K_ID, EXH_INDEX, EXH_Q(1500, 1, EXH_Q_K));
- *   if (err == 0) { exh_params_apply(&params); }
- */
+ *   if (err == 0) { exh_params_apply(&params); } */
 #ifndef EXHAND_PARAMS_H
 #define EXHAND_PARAMS_H
 

@@ -9,8 +9,7 @@
  *   struct exh_quad_par par = {EXH_Q(100531, 2000 * INT64_C(1000000), EXH_Q_STEP),
  *                              EXH_Q(4, 1, EXH_Q_VEL)};
  *   int err = exh_quad_setup(&cfg, &par, (struct exh_period){1, 2000}, 16);
- *   int32_t pos_m_q30 = exh_quad_pos_m_q30(&par, exh_quad_step(&quad, &cfg, raw));
- */
+ *   int32_t pos_m_q30 = exh_quad_pos_m_q30(&par, exh_quad_step(&quad, &cfg, raw)); */
 #ifndef EXHAND_QUAD_H
 #define EXHAND_QUAD_H
 

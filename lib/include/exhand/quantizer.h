@@ -4,8 +4,7 @@
  *
  *   struct exh_quantizer_par par = {10, 2000}; // 10 bits of 32; noise of 2000 LSB
  *   int err = exh_quantizer_setup(&cfg, &par);
- *   int32_t stable = exh_quantizer_step(&channel, &cfg, x);
- */
+ *   int32_t stable = exh_quantizer_step(&channel, &cfg, x); */
 #ifndef EXHAND_QUANTIZER_H
 #define EXHAND_QUANTIZER_H
 

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Record: the log as a stream of records, enough to replay a run bit for bit.
+/* Record: the log as a stream of records, sufficient to replay a run bit for bit.
  *
- * Everything that crosses inward is in it: the header (scene, versions, period,
- * parameters), a frame per tick (raw inputs, outputs, signals), events at their
- * tick, and a keyframe (the scene's state) now and then, from which a replay
- * may start. Little-endian.
+ * The log contains all inputs: a header (scene, versions, period, parameters), a frame per tick
+ * (raw inputs, outputs, signals), and events at their tick. Periodic keyframes hold the scene's
+ * state; a replay may start at each. Little-endian:
  *
  *   0  u16 sync 0x5845   2  u8 type   3  u8 version   4  u16 payload length
- *   6  u32 sequence     10  u32 tick  14  payload…    then u32 CRC of all before
- */
+ *   6  u32 sequence     10  u32 tick  14  payload...  then u32 CRC of all bytes before */
 #ifndef EXHAND_RECORD_H
 #define EXHAND_RECORD_H
 
@@ -21,104 +19,103 @@
 extern "C" {
 #endif
 
-#define EXH_RECORD_VERSION  3       /* 2: no limit PERSON, no source of an event */
+#define EXH_RECORD_VERSION  3       /* version 2 lacks the limit PERSON and the source of events */
 #define EXH_RECORD_SYNC     0x5845u /* first bytes of every record, "EX" */
 #define EXH_RECORD_HEAD_B   14      /* bytes before a payload */
 #define EXH_RECORD_OVERHEAD 18      /* bytes around a payload */
 
-/* What a record's payload is. */
+/* The type of a record's payload. */
 enum exh_record_type {
-    EXH_RECORD_HEADER = 1,   /* struct exh_record_header, images */
+    EXH_RECORD_HEADER = 1,   /* struct exh_record_header, then images */
     EXH_RECORD_FRAME = 2,    /* a tick: raw inputs, outputs, signals */
     EXH_RECORD_EVENT = 3,    /* struct exh_event, at its tick */
-    EXH_RECORD_KEYFRAME = 4, /* the scene's state: a replay may start here */
+    EXH_RECORD_KEYFRAME = 4, /* state of the scene: a replay may start here */
     EXH_RECORD_DROPPED = 5,  /* u32: records lost before this one */
-    EXH_RECORD_END = 6,      /* u32: records lost in all */
-    EXH_RECORD_PACKET = 7    /* bytes: came over the link for the frame that follows */
+    EXH_RECORD_END = 6,      /* u32: total of records lost */
+    EXH_RECORD_PACKET = 7    /* bytes received over the link for the next frame */
 };
 
-/* What came in that is no input of every tick. */
+/* An input that does not occur in every tick. */
 enum exh_event_type {
     EXH_EVENT_PARAM = 1,   /* id, instance, value: staged and applied; source */
     EXH_EVENT_COMMAND = 2, /* value: enum exh_command */
     EXH_EVENT_MISSED = 3,  /* value: ticks missed before this tick */
     EXH_EVENT_MARK = 4,    /* value: the operator's own mark */
-    EXH_EVENT_FROZE = 5    /* the black box, at its end. value: enum exh_fault, what it froze for,
-                            * 0: the box was halted; instance: ticks since then; id: causes that
-                            * came later; both at most 65535 */
+    EXH_EVENT_FROZE = 5    /* end of a black box log. value: enum exh_fault that froze it, 0:
+                            * halted; instance: ticks since then; id: later causes; both at most
+                            * 65535 */
 };
 
-/* An event's payload, in this order; what a field is, is said of the type, 0 where nothing is. */
+/* Payload of an event, in this order. The type defines the fields; unused ones are 0. */
 struct exh_event {
     uint16_t type;     /* enum exh_event_type */
-    uint16_t id;       /* of a signal's row */
-    uint16_t instance; /* of it: finger */
+    uint16_t id;       /* id of a signal's row */
+    uint16_t instance; /* its instance: the finger */
     int32_t value;     /* raw */
-    uint16_t source;   /* bits, 1 << enum exh_source: who staged; more than one where more did in
-                        * the same tick */
+    uint16_t source;   /* bit 1 << enum exh_source for each source that staged in this tick */
 };
 
-/* The fixed part of the header's payload; the parameter image follows it, and behind that whole
- * calibration images of fingers (calibrate.h), none or one each. */
+/* The fixed part of the header's payload. The parameter image follows, then whole calibration
+ * images of fingers (calibrate.h), at most one each. */
 struct exh_record_header {
     char scene[16];       /* zero-padded */
-    char board[16];       /* exh_board_info.name, likewise */
+    char board[16];       /* exh_board_info.name, zero-padded */
     uint32_t lib_version; /* EXH_VERSION_NUMBER */
-    uint32_t signal_crc;  /* of the scene's output table */
-    struct exh_period T;  /* achieved */
-    uint16_t fingers;     /* codes of so many are in a frame */
+    uint32_t signal_crc;  /* CRC of the scene's output table */
+    struct exh_period T;  /* achieved period */
+    uint16_t fingers;     /* number of fingers whose codes a frame contains */
     uint16_t enc_bits;    /* width of the board's counters */
     uint16_t signals;     /* int32 values in a frame after the raw codes */
 };
 
-/* A record found in a buffer; payload points into it. */
+/* A decoded record. payload points into the buffer. */
 struct exh_record {
     uint8_t type, version;  /* enum exh_record_type; EXH_RECORD_VERSION */
-    uint16_t len_B;         /* of the payload */
-    uint32_t seq, tick;     /* of the record; of the loop; both modulo 2^32 */
+    uint16_t len_B;         /* length of the payload */
+    uint32_t seq, tick;     /* sequence number; tick of the loop; both modulo 2^32 */
     const uint8_t *payload; /* len_B bytes */
 };
 
-/* Starts a record in c; the payload follows through c. */
+/* Starts a record in c. Write the payload through c next. */
 void exh_record_begin(struct exh_bytes *c, uint8_t type, uint32_t seq, uint32_t tick);
 
-/* Ends it: length and CRC. The record's size in bytes, or 0 if it did not fit. */
+/* Ends the record with length and CRC. Returns its size in bytes, or 0 if it did not fit. */
 uint32_t exh_record_end(struct exh_bytes *c);
 
-/* The record at the start of buf. Bytes it takes, or -EXH_E_SHORT (more needed),
- * -EXH_E_UNKNOWN (no sync here), -EXH_E_CRC, -EXH_E_VERSION. To go on after
- * damage, retry one byte on. Reads len_B bytes at most, whatever they say. */
+/* Decodes the record at the start of buf; reads at most len_B bytes. Returns its length, or
+ * -EXH_E_SHORT (more bytes needed), -EXH_E_UNKNOWN (no sync), -EXH_E_CRC or -EXH_E_VERSION. After
+ * damage, try again one byte later. */
 int32_t exh_record_decode(const void *buf, uint32_t len_B, struct exh_record *r);
 
-/* Payloads through a cursor. Texts of the header need not end in a zero. */
+/* Payloads through a cursor. Texts of the header need no terminating zero. */
 void exh_record_header_serialize(struct exh_bytes *c, struct exh_record_header *h);
 void exh_event_serialize(struct exh_bytes *c, struct exh_event *e);
 
-/* --- a record a few bytes at a time, as bytes go out of a box that has a loop to keep --- */
+/* --- output of a record in small pieces, from a real-time loop --- */
 
-/* A record on its way out. */
+/* A record in output. */
 struct exh_record_out {
-    const uint8_t *mem;              /* the payload's, where it may wrap */
-    uint32_t cap_B, at;              /* the memory's; where the next byte lies */
-    uint32_t done_B;                 /* bytes out, of the head, payload and CRC together */
+    const uint8_t *mem;              /* memory of the payload, which may wrap */
+    uint32_t cap_B, at;              /* size of mem; index of the next byte */
+    uint32_t done_B;                 /* bytes output, of head, payload and CRC together */
     uint32_t crc;                    /* CRC-32 of head and payload so far */
-    uint16_t len_B;                  /* the payload's */
-    uint8_t head[EXH_RECORD_HEAD_B]; /* ready to go out */
+    uint16_t len_B;                  /* length of the payload */
+    uint8_t head[EXH_RECORD_HEAD_B]; /* encoded head */
 };
 
-/* The payload lies in mem from `at` on, and from its start behind its end: at < cap_B,
- * len_B <= cap_B. It has to stay as it is until it is out. */
+/* The place of a payload in mem: it starts at index at and wraps at the end, at < cap_B, len_B <=
+ * cap_B. It must not change until it has been output. */
 struct exh_record_place {
     const uint8_t *mem; /* the caller's */
-    uint32_t cap_B, at; /* bytes of it; where the payload begins */
-    uint16_t len_B;     /* the payload's */
+    uint32_t cap_B, at; /* size of mem; index of the payload */
+    uint16_t len_B;     /* length of the payload */
 };
 
-/* Makes ready a record of this type, sequence number and tick; nothing goes out yet. */
+/* Prepares a record of this type, sequence number and tick. Outputs nothing yet. */
 void exh_record_out_begin(struct exh_record_out *o, uint8_t type, uint32_t seq, uint32_t tick,
     struct exh_record_place payload);
 
-/* The next bytes, at most cap_B of them: how many; 0: all were taken. */
+/* Writes the next bytes to to[cap_B]. Returns their number; 0: the record is complete. */
 uint32_t exh_record_out(struct exh_record_out *o, uint8_t *to, uint32_t cap_B);
 
 #ifdef __cplusplus

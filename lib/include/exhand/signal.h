@@ -8,8 +8,7 @@
  *
  *   uint16_t finger;
  *   int32_t i = exh_signal_find(table, EXH_CONTACT_K_ID, EXH_INDEX);
- *   const struct exh_signal *row = exh_signal_at(table, (uint32_t)i, &finger);
- */
+ *   const struct exh_signal *row = exh_signal_at(table, (uint32_t)i, &finger); */
 #ifndef EXHAND_SIGNAL_H
 #define EXHAND_SIGNAL_H
 
@@ -49,8 +48,7 @@ enum exh_signal_when {
  *   09 glove  0A hand       0B material  0C precontact
  *   0D tracking (rows 01..10), supply (rows 11..)     0E motion       0F passivity
  *   12 gains  13 tune       14 chatter   80..8F scenes; 89 calibrations of the runtime
- *   (exhand/run)
- */
+ *   (exhand/run) */
 
 /* One row: the description of one value. Constant, in ROM. */
 struct exh_signal {

@@ -1,39 +1,34 @@
 /* SPDX-License-Identifier: MIT */
-/* Slots: an image of parameters or of a calibration in flash, that a power cut at any moment leaves
- * old or new.
+/* Slots: an image of parameters or of a calibration in flash. A power cut at any moment leaves the
+ * old or the new image.
  *
- * Two areas of memory that is erased as a whole, each with room for one image. The newest whole one
- * counts; what is saved goes to the other. So there is no moment in which none is whole. What
- * erases, programs and reads is the caller's; these are functions of bytes. In no slot an image has
- * a meaning: it has its own magic, version and CRC (exh_params_save, exh_calib_save,
- * exh_glove_cal_save), one kind a pair of slots.
+ * There are two areas that can be erased separately, each with room for one image. The newest whole
+ * image is valid, and saving writes to the other slot. So one slot is always whole. The caller
+ * erases, programs and reads; these functions process bytes. The image has its own magic, version
+ * and CRC (exh_params_save, exh_calib_save, exh_glove_cal_save). Use one pair of slots per kind.
  *
- * A slot: "EXHS", sequence u32, length u32, the image, CRC-32 of all before it, the sequence once
- * more; little-endian. Bytes behind it do not count. They are to be programmed in their order, so
- * the last word is the last:
- *   - cut off between any two of them, with ones, zeros or an older image of the same length
- * standing behind the cut: the last word is not the first sequence, or everything is there. For
- * certain, not by the CRC;
- *   - cut off within an erasure, or within a word that is programmed, bytes may be anything: the
- * CRC takes them for whole once in 2^32. It finds every 1, 2 or 3 bits that turn over in images up
- * to 11 kB, and every 32 in a row.
+ * A slot contains "EXHS", sequence u32, length u32, the image, CRC-32 of all bytes before, and the
+ * sequence again; little-endian. Later bytes are ignored. Program the bytes in order, the last word
+ * last. After a power cut
+ * - between two words, with ones, zeros or an older image of the same length after the cut: the
+ *   last word differs from the first sequence, or the slot is complete. This does not rely on the
+ *   CRC;
+ * - during an erasure, or within a word: bytes may be arbitrary. The CRC accepts them once in 2^32.
+ *   It detects all errors of 1, 2 or 3 bits in images up to 11 kB, and all bursts of 32 bits.
  *
- *     static uint8_t buf[EXH_SLOT_B(2048)];
- *     unsigned to;
- *     int32_t n = exh_params_save(&params, buf + EXH_SLOT_HEAD_B, sizeof buf - EXH_SLOT_B(0));
- *     if (n > 0) { n = exh_slots_encode(&to, slot[0], slot[1], SLOT_B, buf, sizeof buf, (size_t)n);
- * } if (n > 0) { board_erase(slot[to], SLOT_B); board_program(slot[to], buf, n); if
- * (exh_slots_find(&is, slot[0], slot[1], SLOT_B) != (int)to) { ... worn or protected: tell; the old
- * one counts ... }
- *     }
+ * Save (buf has EXH_SLOT_B(2048) bytes), then load at start:
  *
- *     at start: if (exh_slots_find(&is, slot[0], slot[1], SLOT_B) >= 0) { exh_params_load(&params,
- * is.image, is.len_B, NULL); }
+ *   int32_t n = exh_params_save(&params, buf + EXH_SLOT_HEAD_B, sizeof buf - EXH_SLOT_B(0));
+ *   if (n > 0) { n = exh_slots_encode(&to, slot[0], slot[1], SLOT_B, buf, sizeof buf, (size_t)n); }
+ *   if (n > 0) { board_erase(slot[to], SLOT_B); board_program(slot[to], buf, n); }
+ *   if (exh_slots_find(&is, slot[0], slot[1], SLOT_B) >= 0) {
+ *       err = exh_params_load(&params, is.image, is.len_B, NULL);
+ *   }
  *
- * An image that is whole may be of another version of the program: whoever wants what was before
- * reads the other slot. Erasing and programming take milliseconds and stop many processors: not
- * while a drive is on.
- */
+ * If exh_slots_find() does not return to after saving, the flash is worn or protected; report it,
+ * the old image remains valid. A whole image may be of another program version: the other slot
+ * holds the one before. Erasing and programming take milliseconds and stop many processors. Do not
+ * save while a drive is enabled. */
 #ifndef EXHAND_SLOTS_H
 #define EXHAND_SLOTS_H
 
@@ -46,35 +41,34 @@
 extern "C" {
 #endif
 
-#define EXH_SLOT_HEAD_B 12u /* before the image */
-#define EXH_SLOT_TAIL_B 8u  /* behind it */
-/* Bytes of a slot that holds an image of image_B bytes: a constant expression if that is one. */
+#define EXH_SLOT_HEAD_B 12u /* bytes before the image */
+#define EXH_SLOT_TAIL_B 8u  /* bytes after the image */
+/* Bytes of a slot with an image of image_B bytes. A constant expression if image_B is one. */
 #define EXH_SLOT_B(image_B) (EXH_SLOT_HEAD_B + (image_B) + EXH_SLOT_TAIL_B)
 
-/* What is in a slot. */
+/* The content of a slot. */
 struct exh_slot {
-    const uint8_t *image; /* in the slot itself */
-    uint32_t len_B;       /* of the image */
+    const uint8_t *image; /* points into the slot */
+    uint32_t len_B;       /* length of the image */
     uint32_t sequence;    /* 1 .. 2^32 - 2 */
 };
 
-/* What is in the slot_B bytes of a slot, blank, damaged or anything. 0; -EXH_E_UNKNOWN: nothing was
- * ever saved there
- * ("EXHS" is missing: as when it is blank); -EXH_E_SHORT: the slot is shorter than what it should
- * hold; -EXH_E_CRC: cut off or damaged; *is is untouched then. Reads no byte beyond. */
+/* Decodes a slot of slot_B bytes with any content; reads no byte beyond. -EXH_E_UNKNOWN: no "EXHS",
+ * as in a blank slot. -EXH_E_SHORT: the slot is shorter than its content. -EXH_E_CRC: cut off or
+ * damaged. After an error, *is is unchanged. */
 int exh_slot_decode(struct exh_slot *is, const void *slot, size_t slot_B);
 
-/* 0 or 1, the slot that counts, and what is in it; -EXH_E_ABSENT: none of both is whole, *newest is
- * untouched. Of two the one whose sequence is 1 .. 2^31 - 1 ahead of the other's, mod 2^32; slot 0
- * if neither is. */
+/* Returns the valid slot, 0 or 1, and decodes it to *newest. -EXH_E_ABSENT: neither is whole;
+ * *newest is unchanged. Of two whole slots, the one whose sequence is 1 .. 2^31 - 1 ahead modulo
+ * 2^32 is valid, else slot 0. */
 int exh_slots_find(struct exh_slot *newest, const void *slot0, const void *slot1, size_t slot_B);
 
-/* What is to be saved next: the caller has put an image of image_B bytes into buf +
- * EXH_SLOT_HEAD_B; this writes head and tail around it. Returns how many bytes of buf are to be
- * programmed, from the beginning of slot *to (erased before, where it has to be); 0: the slot that
- * counts, *to, holds this image, and nothing is to be done (it wears); -EXH_E_SHORT: more than
- * cap_B or slot_B, or those above 2^31 - 1: nothing is written, *to is untouched. The sequence is
- * the one behind that of the slot that counts, 1 behind 2^32 - 2; of none, slot 0 and 1. */
+/* Prepares the next save. The caller puts an image of image_B bytes at buf + EXH_SLOT_HEAD_B; this
+ * function writes head and tail around it. Returns the number of bytes of buf to program from the
+ * start of slot *to, which the caller erases before. 0: the valid slot *to already holds this
+ * image; do not wear the flash. -EXH_E_SHORT: the result exceeds cap_B, slot_B or 2^31 - 1; nothing
+ * changes. The new sequence follows that of the valid slot, and 1 follows 2^32 - 2. Without a valid
+ * slot, it is slot 0 with sequence 1. */
 int32_t exh_slots_encode(unsigned *to, const void *slot0, const void *slot1, size_t slot_B,
     void *buf, size_t cap_B, size_t image_B);
 

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* Trace: a few signals of every n-th tick, in memory of the caller's, until somebody fetches them.
+/* Trace: records a few signals of every n-th tick in the caller's memory until a client reads them.
  *
- * It reads what a tick has made and changes nothing. Modbus keeps one that is no part of a scene,
- * in no keyframe and no log; one whose frames go out over the wire is its scene's state. Each frame
- * has a number, one more than the frame before it; numbers go on when another trace is started, so
- * that whoever reads sees each frame that he did not get.
- */
+ * It reads the outputs of a tick and changes nothing. The trace of Modbus is outside the scene,
+ * keyframe and log; a trace that goes over the wire is part of the scene's state. Each frame has a
+ * number, one more than the frame before. Numbers continue across traces, so a reader detects lost
+ * frames.
+ *
+ *   err = exh_trace_start(&trace, &(struct exh_trace_request){.every = 4, .index = {0, 1, 2, 3}});
+ *   exh_trace_step(&trace, tick, signal); // after each tick */
 #ifndef EXHAND_TRACE_H
 #define EXHAND_TRACE_H
 
@@ -17,66 +19,69 @@
 extern "C" {
 #endif
 
-#define EXH_TRACE_SIGNALS 4    /* values in a frame, always; who wants fewer names one again */
-#define EXH_TRACE_FRAMES  128u /* in memory, at most */
+#define EXH_TRACE_SIGNALS 4    /* values per frame; for fewer signals, repeat one */
+#define EXH_TRACE_FRAMES  128u /* most frames in memory */
 
-/* What is kept of one tick. */
+/* The values kept of one tick. */
 struct exh_trace_frame {
     uint32_t number;                /* modulo 2^32 */
-    uint32_t tick;                  /* of the loop, as exh_trace_step() was told it */
-    int32_t raw[EXH_TRACE_SIGNALS]; /* the signals asked for, in their order and rows' formats */
+    uint32_t tick;                  /* argument of exh_trace_step() */
+    int32_t raw[EXH_TRACE_SIGNALS]; /* requested signals, in that order, in the formats of their
+                                     * rows */
 };
 
-/* What is to be traced. */
+/* The signals to trace. */
 struct exh_trace_request {
-    uint32_t every;                    /* ticks from frame to frame; 0: none */
-    uint32_t index[EXH_TRACE_SIGNALS]; /* of values in the scene's table of outputs */
+    uint32_t every;                    /* ticks between frames; 0: no trace */
+    uint32_t index[EXH_TRACE_SIGNALS]; /* indices into the scene's table of outputs */
 };
 
-/* A trace; all but frame, mask and signals is its state. */
+/* A trace. All members except frame, mask and signals are state. */
 struct exh_trace {
-    struct exh_trace_frame *frame; /* the caller's; number k is in frame[k & mask] */
+    struct exh_trace_frame *frame; /* array of length frames, the caller's; number k is frame[k &
+                                    * mask] */
     uint32_t mask;                 /* frames - 1 */
-    uint32_t signals;              /* values in the table */
-    struct exh_trace_request what; /* what is traced now */
-    uint32_t first;                /* number of this trace's first frame */
+    uint32_t signals;              /* number of values in the table */
+    struct exh_trace_request what; /* present request */
+    uint32_t first;                /* number of the first frame of this trace */
     uint32_t head;                 /* number of the next frame, modulo 2^32 */
     uint32_t run;                  /* traces started, modulo 2^32 */
-    uint32_t left;                 /* ticks without a frame until the next */
+    uint32_t left;                 /* ticks until the next frame */
 };
 
-/* Nothing is traced, nothing is held. -EXH_E_RANGE: frames is no power of two from 2 to
- * EXH_TRACE_FRAMES, or there are no signals. */
+/* Set-up of an idle, empty trace. -EXH_E_RANGE: frames is not a power of two from 2 to
+ * EXH_TRACE_FRAMES, or signals is 0. */
 int exh_trace_setup(
     struct exh_trace *t, struct exh_trace_frame *frame, uint32_t frames, uint32_t signals);
 
-/* Another trace, from the next tick on; frames of the one before are not held any more.
- * -EXH_E_RANGE: an index of none of the signals; nothing changes. */
+/* Starts another trace from the next tick; drops the frames of the last one. -EXH_E_RANGE: an index
+ * not below signals; nothing changes. */
 int exh_trace_start(struct exh_trace *t, const struct exh_trace_request *what);
 
-/* 1: the coming exh_trace_step() reads the values, in other ticks nobody has to make them. */
+/* 1 if the next exh_trace_step() reads the values. In other ticks the caller need not compute
+ * them. */
 static inline int exh_trace_reads(const struct exh_trace *t)
 {
     return t->what.every != 0 && t->left == 0;
 }
 
-/* Behind each tick, with the values of the table. */
+/* Call it after each tick, with the values of the table. */
 void exh_trace_step(struct exh_trace *t, uint32_t tick, const int32_t *signal);
 
-/* Number of the oldest frame held; `head` if there is none. */
+/* Number of the oldest frame held; head if there is none. */
 static inline uint32_t exh_trace_oldest(const struct exh_trace *t)
 {
     return t->head - t->first > t->mask ? t->head - t->mask - 1u : t->first;
 }
 
-/* Copies new frames to `shown`, a trace of the reader's with the same size. Call while the reader
- * is idle. A trace that was started on `shown` is started on `own`; else
- * the frames that `shown` has not yet are copied, at most all that `own` holds. */
+/* Copies new frames to shown, a trace of the same size that the reader owns. Call it while the
+ * reader is idle. If the reader started a trace on shown, it starts on own. Otherwise copies the
+ * frames that shown lacks. */
 void exh_trace_copy(struct exh_trace *own, struct exh_trace *shown);
 
-/* State through a cursor, the frames in memory with it; t is set up, for as many frames and
- * signals. What is read is brought back into range: an index of none of the signals is 0, no wait
- * is longer than the trace has. 36 bytes and 24 more a frame. */
+/* State through a cursor, including the frames; t must be set up for the same frames and signals.
+ * Restored values are brought into range: an unknown index becomes 0, the wait at most every. 36
+ * bytes plus 24 per frame. */
 void exh_trace_serialize(struct exh_bytes *c, struct exh_trace *t);
 
 #ifdef __cplusplus

@@ -27,8 +27,7 @@
  * turn on a pulley of 100.531 mm circumference:
  *
  *   int32_t k_Npm_q10 = EXH_Q(1500, 1, EXH_Q_K);
- *   int32_t step_m_q42 = EXH_Q(100531, 2000 * INT64_C(1000000), EXH_Q_STEP);
- */
+ *   int32_t step_m_q42 = EXH_Q(100531, 2000 * INT64_C(1000000), EXH_Q_STEP); */
 #ifndef EXHAND_UNITS_H
 #define EXHAND_UNITS_H
 

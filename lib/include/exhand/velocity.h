@@ -4,7 +4,7 @@
  * Each takes the extended count once per tick and returns m/s in q27, saturated at +-16 m/s. In the
  * table, y is the position, T the loop period, D the encoder step. Lag is the steady velocity error
  * divided by the acceleration. `make bench` measures noise, lag and instructions (docs/REPORT.md).
- * Source: Kikuuwe for FOAW after Janabi-Sharifi; the others are textbook methods.
+ * Source: Janabi-Sharifi et al. and Kikuuwe for FOAW; textbooks for the others.
  *
  *   difference  (y[k]-y[k-1])/T              error < D/T       lag T/2
  *   window      (y[k]-y[k-n])/(nT), n = 2^p  error < D/(nT)    lag nT/2
@@ -17,8 +17,7 @@
  *   struct exh_velocity_scale scale = {quad_par.step_m_q42, {1, 2000}};
  *   struct exh_velocity_par par = {2}; // window of 4 ticks
  *   int err = exh_velocity_window_setup(&cfg, scale, &par);
- *   int32_t vel_mps_q27 = exh_velocity_window_step(&window, &cfg, cnt);
- */
+ *   int32_t vel_mps_q27 = exh_velocity_window_step(&window, &cfg, cnt); */
 #ifndef EXHAND_VELOCITY_H
 #define EXHAND_VELOCITY_H
 

@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: MIT */
-/* Black box: the last seconds of a scene's records in memory, to be read out after a fault as a log
- * that `exhand replay` runs again. Hooks for the loop in the place of the log's, which they call: a
- * scene has one by being linked with this file and given memory.
+/* Black box: keeps the last seconds of a scene's records in memory. After a fault they can be read
+ * as a log that `exhand replay` replays. Its functions replace the hooks of the log and call them.
+ * To add it, link this file and give it memory.
  *
- * It records until a bit of the scene's signal `faults` sets, runs on for EXH_BLACKBOX_AFTER_MS so
- * that the release is in it, and freezes. Faults that come after the first are counted; nothing is
- * recorded over what led to the first. When it was read, or cleared, it begins anew. */
+ * It records until a bit of the scene's signal `faults` sets. Then it continues for
+ * EXH_BLACKBOX_AFTER_MS, to include the release, and freezes. Later faults are counted, but do not
+ * overwrite the records. After it has been read or cleared, it starts again. */
 #ifndef EXHAND_RUN_BLACKBOX_H
 #define EXHAND_RUN_BLACKBOX_H
 
 #include "exhand/run/log.h"
 
-#define EXH_BLACKBOX_AFTER_MS    50 /* and 8 ticks at least */
+#define EXH_BLACKBOX_AFTER_MS    50 /* at least 8 ticks */
 #define EXH_BLACKBOX_AFTER_TICKS 8
 
-/* Before the start: the memory, for header and records; NULL: no black box. alone: the board's log
- * gets no records, and in a frozen box a tick makes none. */
+/* Gives it memory for header and records, before the start; NULL: no black box. alone: the board's
+ * log gets no records, and a frozen black box costs no time. */
 void exh_blackbox_memory(void *mem, size_t len_B, int alone);
 
 void exh_blackbox_start(const struct exh_scene *sc, struct exh_scene_board board);
@@ -23,20 +23,19 @@ void exh_blackbox_before(uint32_t tick, struct exh_scene_in *in);
 void exh_blackbox_after(
     uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out);
 
-/* No tick comes any more. After a fault it freezes as it is; halted: so it does without one. */
+/* Call it after the last tick. It freezes after a fault, or if halted is 1. */
 void exh_blackbox_stop(int halted);
 
-/* The dump of a frozen box, any bytes a call, at any time between two ticks: header with the
- * parameters of the freeze, records, EXH_EVENT_FROZE, the end with the number of records that found
- * no room. 0: there is nothing, or nothing more. Then the box begins anew. */
+/* Reads the dump of a frozen box, any number of bytes per call, between any two ticks: header with
+ * the parameters of the freeze, records, EXH_EVENT_FROZE, and the end with the number of lost
+ * records. Returns 0 if there is nothing more; then the box starts again. */
 uint32_t exh_blackbox_read(uint8_t *to, uint32_t cap_B);
-/* Bytes to the end of the record that was last read from: where words may stand on the same line.
- */
+/* Bytes to the end of the record being read. After them, text may follow on the same line. */
 uint32_t exh_blackbox_rest(void);
 void exh_blackbox_clear(void);
 
 enum exh_blackbox_state {
-    EXH_BLACKBOX_OFF, /* no memory, too little to hold a fault, or a scene without keyframes */
+    EXH_BLACKBOX_OFF, /* no memory, too little memory, or a scene without keyframes */
     EXH_BLACKBOX_RECORDS,
     EXH_BLACKBOX_RUNS_ON,
     EXH_BLACKBOX_FROZEN
@@ -44,9 +43,9 @@ enum exh_blackbox_state {
 struct exh_blackbox_is {
     enum exh_blackbox_state state;
     uint32_t cause;  /* enum exh_fault; 0: halted */
-    uint32_t tick;   /* of the fault, or the last */
-    uint32_t later;  /* causes since */
-    uint32_t held_B; /* what a dump has to say, about */
+    uint32_t tick;   /* of the fault, or the last tick */
+    uint32_t later;  /* causes after the first */
+    uint32_t held_B; /* approximate size of a dump */
 };
 struct exh_blackbox_is exh_blackbox_is(void);
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* A scene's calibrations of fingers: images that `calibrate` made (exhand/calibrate.h), checked at
- * set-up against device, day and scales, into the tables that forces go by. A good one vouches for
- * two steps of arming: CALIBRATION, and POLARITY, since no image comes to be before a small pull
- * was seen to move the slack string in. */
+/* The calibrations of a scene's fingers (exhand/calibrate.h). Set-up checks the images that
+ * `calibrate` made against device, day and scales, and makes the force tables from them. A valid
+ * image confirms two steps of arming: CALIBRATION, and POLARITY, since every image was made after a
+ * small pull that moved the slack string in. */
 #ifndef EXHAND_RUN_CALIB_SET_H
 #define EXHAND_RUN_CALIB_SET_H
 
@@ -13,15 +13,15 @@
 #include "exhand/signal.h"
 
 struct exh_calib_set_par {
-    int32_t device_id;    /* of this box: images are made for one */
-    int32_t day;          /* today, days since 1970-01-01; 0, not known: no image of a day holds */
-    int32_t uncalibrated; /* 1: fingers without an image arm without */
-    int32_t far_allowed;  /* 1: force over current may be far from kf and from other fingers' */
+    int32_t device_id;    /* id of this device; an image is for one device */
+    int32_t day;          /* today, days since 1970-01-01; 0: unknown, every image is refused */
+    int32_t uncalibrated; /* 1: fingers without an image may arm */
+    int32_t far_allowed;  /* 1: force per current may be far from kf and from the other fingers */
 };
 #define EXH_CALIB_SET_ROWS 4
 extern const struct exh_signal exh_calib_set_rows[EXH_CALIB_SET_ROWS];
 
-/* Of one finger. */
+/* Tables of one finger. */
 struct exh_calib_tables {
     struct exh_knot force_to_cur[EXH_CALIB_POINTS_MAX + 2];
     struct exh_knot cur_to_force[2 * EXH_CALIB_POINTS_MAX + 3];
@@ -29,18 +29,18 @@ struct exh_calib_tables {
     uint8_t vouches; /* enum exh_arm: CALIBRATION and POLARITY, or none */
 };
 
-/* First thing of a set-up: every image must be sound, of one of these fingers (bits), of no other
- * one's finger, of this device and good today. Of three or more, each must have a force over
- * current within half of their median (exh_calib_near()), unless `far_calibration`. Then the zero
- * of each finger's monitor becomes the parameter, which a log's header has, as DRIVE parameters of
- * instance `finger`. 0, or -EXH_E_… with *k saying of which image and what, and nothing taken. */
+/* First call of a set-up: checks every image. Each must be undamaged, of a different finger of the
+ * mask, of this device and valid today. With three or more, force per current must be within half
+ * of their median (exh_calib_near()), unless far_calibration is set. Then sets the monitor zero of
+ * each finger as DRIVE parameter of instance `finger`; a log's header contains it. Returns 0, or
+ * -EXH_E_... with image and reason in *k, and takes nothing. */
 int exh_calib_set_load(struct exh_scene_calib *k, struct exh_params *params,
     const struct exh_calib_set_par *par, uint32_t fingers);
 
-/* Then tables of a finger: those of its image, made with the scales in use (else -EXH_E_STALE, and
- * *k says so) and within half of kf (else -EXH_E_RANGE, unless `far_calibration`); or, of a finger
- * without one, straight lines by kf, N/A, to the peak current, vouched for only where
- * `uncalibrated` waives it. k may be NULL: there are no images. 0 or -EXH_E_…. Divides. */
+/* Makes the tables of one finger. With an image: its tables, if its scales are those in use (else
+ * -EXH_E_STALE with the reason in *k) and it is within half of kf (else -EXH_E_RANGE, unless
+ * far_calibration). Without: straight lines by kf, N/A, to the peak current, confirmed only if
+ * `uncalibrated` allows it. k may be NULL: no images. Returns 0 or -EXH_E_.... Divides. */
 struct exh_calib_finger {
     unsigned f;
     const struct exh_drive_par *drive;

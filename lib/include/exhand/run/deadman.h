@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Who runs a firmware image: the dead-man switch. Taking hold of it gives one command: in FAULT it
- * clears, in OFF it runs; so after a fault it is let go and taken a second time. Letting go stops.
- * A switch that is closed at power-on, and so may be stuck, has to be let go first. Hooks for the
- * loop. */
+/* Dead-man switch of a firmware image. Closing it gives one command: clear in FAULT, run in OFF. So
+ * after a fault, release it and close it twice. Opening it stops. A switch that is closed at
+ * power-on may be stuck; it must be opened first. Its functions are hooks of the loop. */
 #ifndef EXHAND_RUN_DEADMAN_H
 #define EXHAND_RUN_DEADMAN_H
 

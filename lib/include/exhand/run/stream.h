@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* The log as datagrams, pieces of a stream of bytes: whoever listens sees what is missing by its
- * place. Nothing is sent again; the log itself has its header again now and then (log.h).
+/* The log as datagrams that carry pieces of a byte stream. A listener detects lost pieces by their
+ * position. Nothing is sent again, but the log repeats its header (log.h). Little-endian:
  *
  *   0  u32 "EXL2"    4  u32 session    8  u32 number of the piece, from 0
- *  12  u32 place of its first byte in the stream, modulo 2^32
- *  16  u32 1: the last one            20  bytes, then u32 CRC-32 of all before
+ * 12 u32 position of its first byte in the stream, modulo 2^32 16 u32 1: the last one 20 bytes,
+ * then u32 CRC-32 of all bytes before
  *
- * With a key the first word is "EXL3", and behind the CRC a u64 tag of all before (mac.h). There is
- * no way back, so no proof that it is said now: a log recorded under the same key can be played to
- * who waits for one to begin, and no byte of it can be changed.
- * Little-endian. Portable: the host's `exhand listen` reads them by the same file. */
+ * With a key the first word is "EXL3", and a u64 tag of all bytes before (mac.h) follows the CRC.
+ * There is no return path, so nothing proves that a packet is new. A log recorded under the same
+ * key can be replayed to a listener who waits for a start; no byte of it can be changed. The host's
+ * `exhand listen` uses the same file. */
 #ifndef EXHAND_RUN_STREAM_H
 #define EXHAND_RUN_STREAM_H
 
@@ -28,9 +28,9 @@
 
 /* --- out: one stream --- */
 void stream_open(uint32_t session);
-/* All pieces from now on have its tag; NULL: none. It is copied. */
+/* Adds a tag to all later pieces; NULL: none. The key is copied. */
 void stream_key(const struct exh_mac_key *key);
-/* The next piece with these n <= STREAM_DATA_B bytes: its length. It is the next until
+/* Makes the next piece from n <= STREAM_DATA_B bytes; returns its length. It remains the next until
  * stream_sent(). */
 size_t stream_piece(uint8_t to[STREAM_PIECE_B], const uint8_t *byte, unsigned n, int last);
 void stream_sent(unsigned n);
@@ -42,17 +42,17 @@ struct stream_piece {
     const uint8_t *byte;
     size_t n;
 };
-/* What a datagram is. */
+/* The kind of a datagram. */
 enum stream_is {
     STREAM_NONE,
     STREAM_PIECE,
     STREAM_DAMAGED,
     STREAM_OLD,
-    STREAM_KEYED,    /* has a tag, and we have no key */
-    STREAM_NO_KEY,   /* has none, and we have one */
-    STREAM_OTHER_KEY /* a tag that is wrong, of a piece that is whole */
+    STREAM_KEYED,    /* has a tag, but we have no key */
+    STREAM_NO_KEY,   /* has no tag, but we have a key */
+    STREAM_OTHER_KEY /* undamaged, but with a wrong tag */
 };
-/* key NULL: none. */
+/* Decodes a datagram. key NULL: none. */
 enum stream_is stream_read(
     struct stream_piece *p, const uint8_t *datagram, size_t len_B, const struct exh_mac_key *key);
 
