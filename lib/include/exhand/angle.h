@@ -17,9 +17,9 @@ extern "C" {
 #endif
 
 /* Binary angles for initialisers: EXH_DEG takes num/den degrees, EXH_URAD takes millionths of a
- * radian. Both are integer constant expressions, truncated towards zero, with an error of at most 1
- * LSB. EXH_DEG requires -180 <= num/den < 180 and |num| < 2^31. EXH_URAD requires |num| <= 3141592.
- * 1 urad is 683.565275576 LSB. */
+ * radian. Both are integer constant expressions, truncated towards zero, with an error of at most
+ * 1 LSB. EXH_DEG requires -180 <= num/den < 180 and |num| < 2^31. EXH_URAD requires
+ * |num| <= 3141592. */
 #define EXH_DEG(num, den) ((int32_t)((num) * (INT64_C(1) << 32) / (INT64_C(360) * (den))))
 #define EXH_URAD(num)     ((int32_t)((num)*INT64_C(683565275576) / INT64_C(1000000000)))
 
@@ -32,8 +32,7 @@ struct exh_sincos {
  * all 2^32 angles. Results are exactly 0 or +-2^30 at multiples of a quarter turn, and never beyond
  * +-2^30. sin(-x) = -sin(x) and cos(-x) = cos(x) hold to the last bit, except at the four odd
  * eighths of a turn: there the two magnitudes differ by 2 LSB and swap. A quarter turn more gives
- * exactly cos(x), -sin(x) at every angle. The run time does not depend on the angle: nine products,
- * no table, no branch. */
+ * exactly cos(x), -sin(x) at every angle. Constant time: nine products, no table, no branch. */
 void exh_sincos(int32_t x_turn_q32, struct exh_sincos *y);
 
 #ifdef __cplusplus

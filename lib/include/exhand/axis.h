@@ -63,8 +63,8 @@ struct exh_axis_now {
 
 /* --- set-up --- */
 
-/* Arguments of exh_axis_setup(). A NULL set-up omits that part. Pointers marked "kept" must outlive
- * the set-ups. */
+/* Arguments of exh_axis_setup(). NULL omits a part. Pointers marked "kept" must outlive the
+ * set-ups. */
 struct exh_axis_setup {
     struct exh_quad_cfg *quad;                   /* filled */
     const struct exh_quad_par *quad_par;         /* kept */
@@ -81,8 +81,7 @@ struct exh_axis_setup {
 };
 
 /* Sets up all parts in the order of the tick; divides. T is the period and enc_bits the counter
- * width of the board; the tables are as for exh_drive_setup(). Returns 0, or the error of the first
- * part that fails. */
+ * width of the board; the tables are as for exh_drive_setup(). Returns 0 or the first error. */
 static inline int exh_axis_setup(const struct exh_axis_setup *of, struct exh_period T,
     unsigned enc_bits, struct exh_table force_to_cur, struct exh_table cur_to_force)
 {

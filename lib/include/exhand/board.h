@@ -34,8 +34,7 @@ extern const struct exh_board_info exh_board_info;
  * -EXH_E_IO. Called once, before the others. */
 int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved);
 
-/* Waits for the next tick. Returns the ticks missed since the last (0 = on time), or < 0 to
- * stop. */
+/* Waits for the next tick. Returns the ticks missed before it (0 = on time); < 0 stops. */
 int exh_board_wait(void);
 
 /* Latches all axes at once and reads them. Returns 0 or -EXH_E_IO. */

@@ -34,8 +34,7 @@ struct exh_mean {
 /* Adds one value. Ignores all values after 2^31-1. */
 void exh_mean_add(struct exh_mean *m, int32_t v);
 
-/* floor(sum / n + 1/2) in the unit of the values, error <= 1/2 LSB; 0 if empty. Divides: 64
- * steps. */
+/* floor(sum / n + 1/2) in the unit of the values, error <= 1/2 LSB; 0 if empty. Divides. */
 int32_t exh_mean_value(const struct exh_mean *m);
 
 /* --- points --- */
@@ -81,19 +80,15 @@ struct exh_calib {
     uint32_t device_id;    /* id of the device, assigned by the person who calibrates */
     uint32_t finger;       /* 0 .. EXH_FINGERS - 1 */
     uint32_t day;          /* date: days since 1970-01-01, or any growing serial number */
-    uint32_t valid_days;   /* valid on days day .. day + valid_days, 0 ..
-                            * EXH_CALIB_VALID_MAX_DAYS */
-    int32_t dac_rawpA_q16; /* codes per ampere; this and the next three are the scales and zeros
-                            * used for the measurement (exh_drive_par): with others, the calibration
-                            * is invalid */
+    uint32_t valid_days;   /* valid until day + this, 0 .. EXH_CALIB_VALID_MAX_DAYS */
+    int32_t dac_rawpA_q16; /* codes per ampere. This and the next three must equal the drive's
+                            * (exh_drive_par), else the calibration is invalid */
     int32_t dac_zero_raw;  /* code of 0 A, 0 .. 65535 */
     int32_t mon_A_q40;     /* ampere per monitor code */
-    int32_t mon_zero_raw;  /* measured monitor code at 0 A, -32768 .. 32767. The points are
-                            * corrected by it, so copy it to mon_zero_raw of the drive when you use
-                            * the monitor table */
+    int32_t mon_zero_raw;  /* measured monitor code at 0 A, -32768 .. 32767. Copy it to the drive's
+                            * mon_zero_raw to use the monitor table */
     int32_t f0_A_q26;      /* current that winds in the slack string, A, 0 .. 6.6 */
-    int32_t end_A_q26;     /* tables extend straight to here, A, 0 .. 6.6; they end at the last
-                            * point if it is higher */
+    int32_t end_A_q26;     /* tables extend to here, or to the last point if higher, A, 0 .. 6.6 */
     struct exh_calib_point *point; /* the caller's array of length cap, by rising force */
     uint8_t points;                /* points in use */
     uint8_t cap;                   /* length of the array */
@@ -105,15 +100,13 @@ enum exh_calib_error_kind {
     EXH_CALIB_DEVICE,        /* made for another device */
     EXH_CALIB_FINGER,        /* made for another finger */
     EXH_CALIB_AGE,           /* older than valid_days, or from the future */
-    EXH_CALIB_SCALE,         /* scales or zeros of D/A or monitor differ from those of the
-                              * measurement */
+    EXH_CALIB_SCALE,         /* scales or zeros of D/A or monitor have changed */
     EXH_CALIB_VALUE,         /* zero, F0, end or number of points */
     EXH_CALIB_FORCE_TABLE,   /* force -> current; at: the point */
     EXH_CALIB_MONITOR_TABLE, /* monitor -> force; at: the point */
     EXH_CALIB_VALIDITY,      /* valid_days above EXH_CALIB_VALID_MAX_DAYS */
-    EXH_CALIB_FAR_CURRENT,   /* force per coded current is far from the expected ratio; at: the
-                              * point */
-    EXH_CALIB_FAR_MONITOR,   /* force per monitor current is far from it; at: the point */
+    EXH_CALIB_FAR_CURRENT,   /* force per coded current is implausible; at: the point */
+    EXH_CALIB_FAR_MONITOR,   /* force per monitor current is implausible; at: the point */
     EXH_CALIB_FAR_FINGERS,   /* either ratio is far from the median of the fingers; at: the point */
     EXH_CALIB_ERRORS         /* number of kinds */
 };
@@ -128,10 +121,11 @@ const char *exh_calib_error_text(unsigned what);
 
 /* Makes the knots for exh_drive_setup(), exact at every point. The force table runs through the
  * origin and all points. If end_A lies beyond them, it continues to end_A with the slope of the
- * fitted line. The monitor table continues likewise to the monitor current of the last point +
- * (end_A - its current), <= 16.6 A. It is odd: it also covers negative currents. Returns the number
- * of knots, or -EXH_E_MONOTONE, -EXH_E_RANGE (reason in *bad, which may be NULL) or -EXH_E_SHORT
- * (cap too small; points + 2 and 2 points + 3 always suffice). Set-up only (divides). */
+ * fitted line. The monitor table continues likewise to the monitor current of the last
+ * point + (end_A - its current), <= 16.6 A. It is odd: it also covers negative currents. Returns
+ * the number of knots, or -EXH_E_MONOTONE, -EXH_E_RANGE (reason in *bad, which may be NULL) or
+ * -EXH_E_SHORT (cap too small; points + 2 and 2 points + 3 always suffice). Set-up only
+ * (divides). */
 int exh_calib_force_table(
     const struct exh_calib *c, struct exh_knot *knot, unsigned cap, struct exh_calib_error *bad);
 int exh_calib_monitor_table(

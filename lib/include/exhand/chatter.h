@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Chatter: detects a limit cycle of a contact, in which the current oscillates and drives the
- * string.
+/* Chatter: detects a limit cycle of a contact, in which the current drives the string.
  *
  * A cycle runs from one minimum of the coded current to the next; swings below 0.25 A do not count.
  * Its energy output is exact, as in passivity.h: held current times counts moved. The last point of
@@ -10,8 +9,7 @@
  *
  * Taps and bounces take in more than they give out. D/A noise causes no swing. A limit cycle of one
  * count gives out less than power: it is felt, but harmless. The fault comes no sooner than energy
- * / output power. It comes no later than 2 * energy / (output power - power), if every cycle
- * counts. */
+ * / output power. If every cycle counts, it comes by 2 * energy / (output power - power). */
 #ifndef EXHAND_CHATTER_H
 #define EXHAND_CHATTER_H
 
@@ -61,7 +59,7 @@ int exh_chatter_setup(struct exh_chatter_cfg *cfg, const struct exh_chatter_par 
 uint32_t exh_chatter_step(const struct exh_chatter *s, const struct exh_chatter_cfg *cfg);
 
 /* Call it after the gate, with the count and the coded current of this tick. Missed ticks do not
- * reduce the sum. */
+ * decay. */
 void exh_chatter_update(
     struct exh_chatter *s, const struct exh_chatter_cfg *cfg, int32_t cnt, int32_t coded_A_q26);
 

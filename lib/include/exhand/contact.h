@@ -3,9 +3,9 @@
  *
  * q is the length of string pulled out. Closing the finger increases q and makes qd positive. F is
  * the tension that pulls the string back; drive.h keeps it from becoming negative. F0 winds in the
- * slack string: it is 0 while the string runs out, f0 while it runs in. The paper switches F0 at qd
- * = 0, where a quantised velocity chatters. Here F0 has two states and a dead band in position, so
- * noise within the band switches it at most once per reversal.
+ * slack string: it is 0 while the string runs out, f0 while it runs in. The paper switches F0 at
+ * qd = 0, where a quantised velocity chatters. Here F0 has two states and a dead band in position,
+ * so noise within the band switches it at most once per reversal.
  *
  * exh_contact_step() is the law with hysteresis and band, exh_contact_law() the law as printed.
  * Both fill a ledger that drive.h completes. Without drive.h, call exh_contact_force():
@@ -27,8 +27,7 @@
 extern "C" {
 #endif
 
-/* Parameters of one finger's law; rows in exh_contact_rows[]. They may change between any two
- * ticks. */
+/* Parameters of one finger's law; rows in exh_contact_rows[]. Changeable between any two ticks. */
 struct exh_contact_par {
     int32_t k_Npm_q10;     /* stiffness, N/m, 0 .. 10^6 */
     int32_t b_Nspm_q20;    /* damping, Ns/m, 0 .. 1000 */
@@ -41,8 +40,7 @@ struct exh_contact_par {
 #define EXH_CONTACT_B_ID 0x0402 /* id of the row of b */
 extern const struct exh_signal exh_contact_rows[EXH_CONTACT_ROWS];
 
-/* State of one finger's law. All zeros: no sample yet. The first position becomes the first
- * reversal point. */
+/* State of one finger's law. All zeros: no sample yet. The first one is a reversal point. */
 struct exh_contact {
     int32_t turn_m_q30; /* farthest position since the last reversal */
     uint8_t inward;     /* 1: string runs in, F0 is active */
@@ -57,10 +55,10 @@ struct exh_contact_in {
     int32_t lim_m_q30;   /* virtual contact q_lim, any int32_t */
 };
 
-/* The force ledger: the sum of reasons for the force, in N, q20. Always and exactly, force = spring
- * + damper + pullback + passivity + clamp + slew + release. The law sets the first four and leaves
- * the others, force_N_q20 too, unchanged; drive.h sets those. The first three are int64_t so that
- * they never saturate. */
+/* The force ledger: the sum of reasons for the force, in N, q20. Always and exactly,
+ * force = spring + damper + pullback + passivity + clamp + slew + release. The law sets the first
+ * four and leaves the others, force_N_q20 too, unchanged; drive.h sets those. The first three are
+ * int64_t so that they never saturate. */
 struct exh_force_ledger {
     int64_t spring_N_q20;    /* k (q - q_lim) in contact, negative within hyst; else 0 */
     int64_t damper_N_q20;    /* b qd in contact, negative while the string runs in; else 0 */
@@ -79,7 +77,7 @@ int32_t exh_contact_wall(struct exh_contact *s, int32_t pos_m_q30, int32_t lim_m
 
 /* The pull-back force F0 at this position, N, q20. In each of two states the reversal point follows
  * the farthest position. A return from it by more than the band switches the state. Distances fit
- * uint32_t in both directions. */
+ * uint32_t. */
 static inline int32_t exh_contact_pullback(
     struct exh_contact *s, const struct exh_contact_par *par, int32_t pos)
 {
@@ -108,8 +106,7 @@ static inline int32_t exh_contact_pullback(
 /* One tick of the law: sets spring, damper, pullback, and passivity to 0. Call
  * exh_drive_force_step() for the rest. Each term is rounded once; their sum is within 1 LSB (0.95
  * uN) of exact for every input. The penetration q - q_lim saturates at +-2 m. Returns touching,
- * which sets at q >= q_lim and clears at q < q_lim - hyst. Inline, since a call would cost half as
- * much again. */
+ * which sets at q >= q_lim and clears at q < q_lim - hyst. Inline: a call would cost half more. */
 static inline int exh_contact_step(struct exh_contact *s, const struct exh_contact_par *par,
     struct exh_contact_in in, struct exh_force_ledger *out)
 {
@@ -121,8 +118,8 @@ static inline int exh_contact_step(struct exh_contact *s, const struct exh_conta
     int32_t pen, on;
     if (beyond || !s->started) { in.lim_m_q30 = exh_contact_wall(s, in.pos_m_q30, in.lim_m_q30); }
     pen = exh_wrap_diff(in.pos_m_q30, in.lim_m_q30);
-    /* All bits set unless pen is below 0 and below -hyst. A negative hysteresis, from damaged
-     * memory, acts as none. */
+    /* All bits set unless pen is below 0 and below -hyst. A damaged, negative hysteresis acts as
+     * none. */
     on = ~((pen & (exh_wrap_add(pen, hyst) | hyst)) >> 31);
     s->touching = (uint8_t)-on;
 

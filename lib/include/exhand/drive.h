@@ -38,8 +38,7 @@ enum exh_limit {
     EXH_LIMIT_RELEASE = 1u << 8,    /* the release law sets the force */
     EXH_LIMIT_SPEED = 1u << 9,      /* velocity limited before the law (motion.h) */
     EXH_LIMIT_PASSIVITY = 1u << 10, /* the contact returned more than it received (passivity.h) */
-    EXH_LIMIT_PERSON = 1u << 11     /* above person_f or person_i; replaces FORCE and PEAK if these
-                                     * are lower */
+    EXH_LIMIT_PERSON = 1u << 11     /* above person_f or person_i; replaces FORCE and PEAK */
 };
 #define EXH_LIMITS 12 /* number of bits of enum exh_limit, from bit 0 */
 
@@ -122,8 +121,7 @@ struct exh_current_ledger {
 int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, struct exh_period T,
     struct exh_table force_to_cur, struct exh_table cur_to_force);
 
-/* Force limits that a scene may lower between any two ticks; they replace those of
- * exh_drive_par. */
+/* Force limits for one tick, which replace those of exh_drive_par. A scene may lower them. */
 struct exh_drive_most {
     int32_t f_max_N_q20; /* force limit, N, 0 .. 100 */
     int32_t slew_up_Nps; /* rise of force, N/s, 1 .. 10^7 */

@@ -43,8 +43,7 @@ const char *exh_error_text(int code);
  * program includes this header before it defines the function, to get C linkage. */
 void exh_assert_failed(const char *file, int line);
 
-/* Stops the program if cond is 0, in release builds too: near a human finger, a violated contract
- * is a reason to stop. */
+/* Stops the program if cond is 0, in release builds too: a human finger is near. */
 #define EXH_ASSERT(cond) \
     do { \
         if (!(cond)) { exh_assert_failed(__FILE__, __LINE__); } \

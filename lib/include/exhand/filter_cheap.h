@@ -4,11 +4,8 @@
  * It is the same Butterworth filter by the same bilinear transform. Up to 0.0685 of the sample rate
  * the recursion uses position and speed, above that a direct form 1. Each product is 32 by 32 bits,
  * and the remainder of each rounding enters the next tick. So the gain at 0 Hz is 1, and the output
- * reaches its input. Compared with filter.h, fc is less accurate and overshoot beyond full scale is
- * clipped.
- *
- * A scene chooses by the functions it calls; it may link either filter or both. Call it as
- * filter.h. */
+ * reaches its input. Compared with filter.h, fc is less accurate and overshoot is clipped at full
+ * scale. Call it as filter.h. */
 #ifndef EXHAND_FILTER_CHEAP_H
 #define EXHAND_FILTER_CHEAP_H
 
@@ -45,7 +42,7 @@ int exh_filter_cheap_setup(
     struct exh_filter_cheap_cfg *cfg, const struct exh_filter_par *par, struct exh_period T);
 
 /* Settles n channels at x: the next outputs are x while the inputs stay x. New coefficients need a
- * reset; there is no retuning. */
+ * reset. */
 void exh_filter_cheap_reset(struct exh_filter_cheap *s, const struct exh_filter_cheap_cfg *cfg,
     const int32_t *x, unsigned n);
 

@@ -27,8 +27,7 @@ void exh_fix_saturated(const char *file, int line);
 /* C99 leaves >> of a negative number to the compiler. This library needs the floor. */
 EXH_STATIC_ASSERT(needs_arithmetic_shift, ((-3) >> 1) == -2);
 
-/* int may have 16 bits. A constant or product that needs more gets a type: INT32_C(1) << 30, or a
- * cast of one factor. */
+/* int may have 16 bits. Larger constants and products get a type: INT32_C(1) << 30, or a cast. */
 
 /* The value of a 32-bit pattern read as two's complement. Portable: uses arithmetic alone. */
 static inline int32_t exh_from_u32(uint32_t u)
@@ -104,8 +103,7 @@ static inline int64_t exh_from_u64(uint64_t u)
     return u <= INT64_MAX ? (int64_t)u : -(int64_t)(UINT64_MAX - u) - 1;
 }
 
-/* now - before, modulo 2^32: the distance between two readings of a 32-bit counter that may
- * wrap. */
+/* now - before, modulo 2^32: the distance of two readings of a 32-bit counter that wraps. */
 static inline int32_t exh_wrap_diff(int32_t now, int32_t before)
 {
     return exh_from_u32((uint32_t)now - (uint32_t)before);
@@ -152,8 +150,8 @@ struct exh_gain {
 static inline int64_t exh_gain_mul(struct exh_gain g, int32_t x)
 {
     const int64_t v = (int64_t)x * g.mant;
-    /* Shifts 2v, so that rounding needs one variable 64-bit shift instead of two. Wraps only if the
-     * gain is corrupt. */
+    /* Shifts 2v, so that rounding needs one variable 64-bit shift instead of two. A corrupt gain
+     * wraps. */
     return exh_wrap_add64(exh_wrap_add64(v, v) >> (g.shift & 63u), 1) >> 1;
 }
 
@@ -165,8 +163,7 @@ static inline int64_t exh_gain_floor(struct exh_gain g, int32_t x)
 
 /* 1/x without a division, for x within 1/8 .. 8; argument and result are q24. The error is at most
  * 2^-25 + 2^-28/x. Method: three Newton steps y += y (1 - m y), started on the straight line
- * nearest to 1/m within 1/2 .. 1. The steps use z = y - 1, which is below 1, so that 32-bit
- * products suffice. */
+ * nearest to 1/m within 1/2 .. 1. The steps use z = y - 1 < 1: 32-bit products suffice. */
 static inline int32_t exh_recip_q24(int32_t x)
 {
     int32_t m_q31 = x * 8; /* normalised to 2^30 .. 2^31-1 */
@@ -203,8 +200,8 @@ uint64_t exh_udiv64(uint64_t num, uint64_t den, uint64_t *rem);
  * may miss the period. Every set-up, the loop and a replay check T with this function. */
 int exh_period_ok(struct exh_period T);
 
-/* The number of whole ticks in ms >= 0; requires exh_period_ok(T). Set-up only. The result holds
- * more than a day at 20 kHz. */
+/* The number of whole ticks in ms >= 0; requires exh_period_ok(T). Set-up only. Holds a day at 20
+ * kHz. */
 uint32_t exh_ticks_in(int32_t ms, struct exh_period T);
 
 #ifdef __cplusplus

@@ -22,8 +22,7 @@ enum exh_din {
 
 /* The inputs that a board latches together in a tick. */
 struct exh_drive_in {
-    uint32_t enc_raw[EXH_FINGERS]; /* counter values; the low bits count, the board gives their
-                                    * number */
+    uint32_t enc_raw[EXH_FINGERS]; /* counter values; the low enc_bits count */
     int16_t mon_raw[EXH_FINGERS];  /* current monitor, two's complement */
     int16_t supply_raw;            /* supply monitor */
     uint32_t din;                  /* enum exh_din */

@@ -4,8 +4,8 @@
  * The (k, b) region that the loop keeps stable depends on the sample rate and on the device.
  * `exhand advise gains --rule` finds it by simulation and prints a rule inside it: the largest k as
  * a piecewise linear function of b, at one rate. This module checks a pair against the rule with
- * two exact products per segment. It needs no division, rounding or float. A rule is valid only for
- * its rate, device and finger.
+ * two exact products per segment. It needs no division, rounding or float. A rule holds for its
+ * rate, device and finger only.
  *
  *   int err = exh_gains_setup(&rule, (struct exh_period){1, 2000});
  *   if (err == 0 && !exh_gains_ok(&rule, k_Npm_q10, b_Nspm_q20)) { err = -EXH_E_GAINS; } */
@@ -24,8 +24,7 @@ extern "C" {
 
 #define EXH_GAINS_KNOTS 8 /* most knots of a rule */
 
-/* The rule; rows in exh_gains_rows[], all set-up values. Array elements from knots on are
- * ignored. */
+/* The rule; rows in exh_gains_rows[], all set-up values. Ignored from element knots on. */
 struct exh_gains_par {
     int32_t rate_Hz_q8;                  /* loop rate of the rule, Hz, 1 .. 20000 */
     int32_t knots;                       /* number of knots, 2 .. EXH_GAINS_KNOTS */
@@ -63,8 +62,7 @@ int exh_gains_ok(const struct exh_gains_par *rule, int32_t k_Npm_q10, int32_t b_
 int exh_gains_stage(struct exh_params *p, const struct exh_gains_par *rule, uint16_t id,
     uint16_t instance, int32_t raw);
 
-/* The same by index of the value, for a source that authority.h may refuse
- * (exh_params_stage_by()). */
+/* The same by index of the value, for any source (exh_params_stage_by()). */
 int exh_gains_stage_by(struct exh_params *p, const struct exh_gains_par *rule,
     struct exh_authority who, uint32_t i, int32_t raw);
 

@@ -73,9 +73,8 @@ struct exh_glove_par {
     int32_t order;           /* order of the low-pass, 1 or 2; 0 = none */
     int32_t fc_Hz_q16;       /* its cut-off, Hz, below half the frame rate of the glove */
     int32_t bits;            /* stable bits of the card's range, 1 .. 24 */
-    int32_t hyst_raw_q16;    /* hysteresis, codes q16, at most a step of 2^(16-bits) codes; choose
-                              * the noise after the filter, peak to peak, or more: an angle then
-                              * does not jitter */
+    int32_t hyst_raw_q16;    /* hysteresis, codes q16, 0 .. 2^(16-bits) codes; against jitter, at
+                              * least the peak-to-peak noise after the filter */
     int32_t low_raw;         /* at or below this code, the amplifier is at its lower rail */
     int32_t high_raw;        /* at or above this code, at its upper rail */
     int32_t open_high;       /* 1: an open wire reads high, a short reads low; 0: the reverse */
@@ -109,8 +108,7 @@ struct exh_glove_cal {
 };
 
 /* A default for running without a user's calibration, of no real hand. It uses the end points of
- * one published calibration file (normalised 0 .. 1) at -9 .. 9 V. No cross terms; both ids are
- * 0. */
+ * one published calibration file (normalised 0 .. 1) at -9 .. 9 V. No cross terms; ids are 0. */
 extern const struct exh_glove_cal exh_glove_cal_default;
 
 /* The subject of an error. */
@@ -148,15 +146,15 @@ unsigned exh_glove_sensor_validate(const struct exh_glove_cal *cal, unsigned sen
 /* Checks all ranges. Returns 0, or -EXH_E_RANGE and the reason in *bad; bad may be NULL. */
 int exh_glove_cal_validate(const struct exh_glove_cal *cal, struct exh_glove_error *bad);
 
-/* Checks whether the calibration is for this user, glove and day. Returns 0, -EXH_E_RANGE (empty or
- * refused before), -EXH_E_VERSION (another user or glove) or -EXH_E_STALE (age); *bad gives the
+/* Checks whether the calibration is for this user, glove and day. Returns 0, -EXH_E_RANGE (empty
+ * or refused before), -EXH_E_VERSION (another user or glove) or -EXH_E_STALE (age); *bad: the
  * reason. */
 int exh_glove_cal_check(const struct exh_glove_cal *cal, uint32_t user_id, uint32_t glove_id,
     uint32_t day, struct exh_glove_error *bad);
 
-/* Image: "EXHG", version u16, sensors u16, and five u32 in the order above. For each sensor: zero,
- * gain, cross 0, cross 1 (i32), low, high (i16), of 0, of 1 (u8). Last the CRC-32 of all bytes
- * before. Little-endian. */
+/* Image: "EXHG", version u16, sensors u16, and five u32 in the order above. For each sensor:
+ * zero, gain, cross 0, cross 1 (i32), low, high (i16), of 0, of 1 (u8). Last the CRC-32.
+ * Little-endian. */
 #define EXH_GLOVE_CAL_VERSION 1
 #define EXH_GLOVE_CAL_IMAGE_B (8u + 20u + 22u * EXH_GLOVE_SENSORS + 4u)
 
@@ -210,16 +208,14 @@ struct exh_glove {
 /* Set-up (divides); cal must outlive cfg. T is the time between frames of the glove, which may be
  * several ticks of the loop. -EXH_E_CUTOFF: fc at or above half the frame rate. -EXH_E_RATE: no
  * period. -EXH_E_RANGE: a parameter outside its row, more hysteresis than a step, low_raw not below
- * high_raw, a calibration that exh_glove_cal_validate() refuses, or a calibrated span that touches
- * a rail. */
+ * high_raw, an invalid calibration, or a calibrated span that touches a rail. */
 int exh_glove_setup(struct exh_glove_cfg *cfg, const struct exh_glove_par *par,
     const struct exh_glove_cal *cal, struct exh_period T);
 
 /* Processes one new frame; *s is all zeros before the first. Call it once per frame, not per tick;
  * between frames, keep the angles. angle_turn_q32[22] are saturated to +-1/2 turn, since a joint
  * does not wrap. Returns bit i for a faulty sensor i; s->cause[i] gives the cause. A fault only
- * sets this bit. All other channels continue, and cross terms use the angle that the faulty channel
- * holds.
+ * sets this bit. All other channels continue; cross terms use the held angle.
  *
  * A code at a rail or beyond the span's margin is rejected. The last accepted code replaces it at
  * the filter's input, so a spike has no effect. After debounce_frames consecutive rejected codes
@@ -278,15 +274,13 @@ struct exh_glove_fit {
 
 /* Fits a calibration by least squares to n poses: gain and zero of each present sensor, and the
  * cross terms of sensors with of[]. Cross terms use the fitted angles of the other sensors. Two
- * poses determine gain and zero. Each cross term needs one more pose, in which the other sensor
- * moves.
+ * poses determine gain and zero. Each cross term needs one more, in which the other sensor moves.
  *
  * On entry *cal holds ids, day, present and of[]; on return also the rest. Missing sensors keep
  * their cross terms. low and high become the extreme means of all poses. fit[22] receives one
  * result per sensor. Returns 0, or -EXH_E_RANGE with the first bad sensor in *bad (may be NULL),
  * and sets present to 0. n outside 2 .. EXH_GLOVE_POSES_MAX is the error EXH_GLOVE_POSES. The
- * deviation from exact least squares is below 2^-12 of the span, even for nearly dependent poses.
- * Set-up only (divides). */
+ * deviation from exact least squares is below 2^-12 of the span. Set-up only (divides). */
 int exh_glove_cal_fit(struct exh_glove_cal *cal, struct exh_glove_fit *fit,
     const struct exh_glove_pose *pose, unsigned n, const struct exh_glove_fit_par *par,
     struct exh_glove_error *bad);

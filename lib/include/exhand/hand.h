@@ -2,8 +2,8 @@
 /* Hand: from the glove's 22 angles to the joints of a robot hand, to its fingertips.
  *
  * Data describe the hand: a map from sensors to joints, and bones, which are the lengths and base
- * frames of the fingers. hand_hit2.c holds those of the right DLR/HIT Hand II. Every call processes
- * one finger.
+ * frames of the fingers. hand_hit2.c holds those of the right DLR/HIT Hand II. A call processes one
+ * finger.
  *
  * A finger has four joints. q0 turns it sideways about the z axis of its base. q1, q2 and q3 bend
  * it; q3 follows q2. q0, q1 and q2 are driven. At angle 0 the finger points along x of its base;
@@ -42,10 +42,8 @@ struct exh_hand_joint {
 /* How all joints of a hand follow the sensors; in ROM or owned by the caller. */
 struct exh_hand_map {
     struct exh_hand_joint joint[EXH_FINGERS][EXH_HAND_JOINTS]; /* q0, q1, q2 of each finger */
-    /* Sensors of the wearer's joints that the string bends: the joint of arm1 and the two beyond
-     * it. */
-    uint8_t bent[EXH_FINGERS][3]; /* below EXH_GLOVE_SENSORS; a thumb repeats its one joint
-                                   * beyond */
+    /* Sensors of the wearer's joints that the string bends: of arm1, arm2 and arm3. */
+    uint8_t bent[EXH_FINGERS][3]; /* below EXH_GLOVE_SENSORS; a thumb repeats its last */
 };
 extern const struct exh_hand_map exh_hit2_map; /* of the DLR/HIT Hand II, right */
 
@@ -64,16 +62,15 @@ uint32_t exh_hand_joints(const struct exh_hand_map *map, unsigned finger,
 /* The geometry of one finger in the frame of the palm. */
 struct exh_hand_bones {
     int32_t len_m_q34[3];  /* q1 to q2, q2 to q3, q3 to the pad's centre; each > 0, sum <= 0.12 m */
-    int32_t rot_q30[3][3]; /* rows x, y, z of the palm; the columns are the axes of the base
-                            * frame */
+    int32_t rot_q30[3][3]; /* rows x, y, z of the palm; columns: axes of the base frame */
     int32_t base_m_q32[3]; /* position of q0 and q1; within +-0.125 m */
 };
 extern const struct exh_hand_bones exh_hit2_bones[EXH_FINGERS];
 
 /* Parameters of one finger; rows in exh_hand_rows[]. */
 struct exh_hand_par {
-    int32_t arm1_m_q30; /* string per radian of the wearer's knuckle, m, 0 .. 50 mm; our estimate,
-                         * not measured. After exh_hand_setup() alone, q1 is that knuckle */
+    int32_t arm1_m_q30; /* string per radian of the wearer's knuckle, q1, m, 0 .. 50 mm; default:
+                         * estimated */
     int32_t arm2_m_q30; /* the same of the next joint, q2 */
     int32_t arm3_m_q30; /* the same of the last joint, q3 */
     int32_t pad_m_q30;  /* radius of the pad, m, 0 .. 25 mm: distance from P_F to the skin */
@@ -97,7 +94,7 @@ int exh_hand_setup(
 /* Set-up, after exh_hand_setup(). The string bends the wearer's joints. The robot's joints follow
  * by the gains of the map. A joint at its limit does not turn; the caller then sets its
  * pull_radpm_q20 to 0. Adds an error of at most 1/2 LSB and that of the gains. -EXH_E_RANGE: above
- * 250 rad/m; f stays unchanged. */
+ * 250 rad/m; f is unchanged. */
 int exh_hand_couple(struct exh_hand_finger *f, const struct exh_hand_map *map, unsigned finger);
 
 /* The centre of the pad, P_F, in the palm's frame, m, q30, from the joints q0, q1, q2 (q3 = q2) at

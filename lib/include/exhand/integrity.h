@@ -38,7 +38,7 @@ void exh_integrity_seal(
 /* Once per tick, at constant cost. Checks the next EXH_INTEGRITY_B bytes of the area, the CRC at
  * the end of a round, and the next EXH_INTEGRITY_WORDS parameters by exh_params_verify(). It finds
  * a changed byte within len_B / 8 ticks, or twice that if the check has just passed it. It finds a
- * changed parameter within count / 2 ticks, or twice that while a value slews. Returns 1 after a
+ * changed parameter within count / 2 ticks, or twice that while it slews. Returns 1 after a
  * difference. */
 int exh_integrity_step(struct exh_integrity *g);
 
@@ -55,8 +55,7 @@ enum exh_selftest {
     EXH_SELFTEST_FILTER    /* first outputs of a low-pass step response, bit for bit */
 };
 
-/* The first failed test, enum exh_selftest, or 0. exh_selftest_glove() also tests, and links, what
- * scenes with a glove use. */
+/* The first failed test, enum exh_selftest, or 0. exh_selftest_glove() adds the glove's code. */
 int exh_selftest(void);
 int exh_selftest_glove(void);
 

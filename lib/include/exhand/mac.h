@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Mac: a message authentication code, 64 bits of SipHash-2-4. Only the owner of the key can make
- * it.
+/* Mac: a message authentication code, 64 bits of SipHash-2-4. Making it requires the key.
  *
  * Source: J.-P. Aumasson, D. J. Bernstein, "SipHash: a fast short-input PRF", INDOCRYPT 2012. It
  * uses additions, exclusive ors and rotations of four 64-bit words: two rounds per 8 bytes and four
  * at the end, without tables or key set-up. Its time depends on the length alone. Without the key,
- * a guess is right once in 2^64. It suits short messages. It is no signature: whoever can check a
- * tag can make it. */
+ * a guess is right once in 2^64. It is no signature: a receiver can make tags, too. */
 #ifndef EXHAND_MAC_H
 #define EXHAND_MAC_H
 

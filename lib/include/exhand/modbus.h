@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Modbus: answers one request PDU with one response PDU.
  *
- * regs.h defines the registers; modbus_rtu.h assembles requests from the bytes of a serial line.
- * A port with its own Modbus library needs only regs.h. Source: Modbus Application Protocol
- * V1.1b3. */
+ * regs.h defines the registers; modbus_rtu.h assembles requests from the bytes of a serial line. A
+ * port with its own Modbus library needs only regs.h. Source: Modbus protocol V1.1b3. */
 #ifndef EXHAND_MODBUS_H
 #define EXHAND_MODBUS_H
 

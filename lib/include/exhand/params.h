@@ -23,8 +23,8 @@ extern "C" {
 
 /* The parameters of a scene. The caller owns both arrays, each exh_signal_count() long. The active
  * array is the scene's parameter struct, the staged array holds the requested values. The struct is
- * all zeros or set by exh_params_setup(). After exh_params_seal(), only the functions below may
- * write the arrays. */
+ * all zeros or set by exh_params_setup(). After exh_params_seal(), only functions below may write
+ * them. */
 struct exh_params {
     const struct exh_signal_table *table; /* describes the values */
     int32_t *active;                      /* raw values in effect */
@@ -32,10 +32,8 @@ struct exh_params {
     uint8_t locked;                       /* 1: set-up values are refused */
     uint8_t pending;                      /* something was staged since the last apply */
     uint8_t moving;                       /* 1: a slewed value has not reached its staged value */
-    uint8_t shift;                        /* per tick a slewed value moves by 2^-shift of the
-                                           * remaining distance */
-    uint8_t by;               /* bit 1 << enum exh_source for each source that staged since the last
-                               * apply */
+    uint8_t shift;                        /* slew per tick: 2^-shift of the distance */
+    uint8_t by;               /* 1 << enum exh_source of all that staged since the last apply */
     uint16_t led[2];          /* ids of slewed rows that gains.h moves while locked; 0: none */
     uint32_t count;           /* exh_signal_count() */
     uint32_t sum, passed, at; /* of exh_params_verify(): sum of all, sum so far, next index */
@@ -55,10 +53,10 @@ extern const struct exh_signal exh_tune_rows[EXH_TUNE_ROWS];
 void exh_params_setup(
     struct exh_params *p, const struct exh_signal_table *table, int32_t *active, int32_t *staged);
 
-/* Sets the slew rate; call it at the end of set-up. shift becomes the smallest with 2^shift * T >=
- * par->time_ms, at most EXH_TUNE_SHIFT_MAX. Per tick, a value then moves by at most T/time of the
- * remaining distance plus 1 LSB. It covers 63 % of the distance within time to 2 * time. Without
- * this call, values change in one step. */
+/* Sets the slew rate; call it at the end of set-up. shift becomes the smallest with
+ * 2^shift * T >= par->time_ms, at most EXH_TUNE_SHIFT_MAX. Per tick, a value then moves by at most
+ * T/time of the remaining distance plus 1 LSB. It covers 63 % of the distance within time to
+ * 2 * time. Without this call, values change in one step. */
 void exh_params_slew_setup(
     struct exh_params *p, const struct exh_tune_par *par, struct exh_period T);
 
@@ -67,21 +65,19 @@ void exh_params_slew_setup(
  * changed set-up value while locked. A set-up value equal to the present one is accepted. */
 int exh_params_stage(struct exh_params *p, uint16_t id, uint16_t instance, int32_t raw);
 
-/* exh_params_stage() by the index of the value. exh_params_validate() returns the same result
- * without staging. */
+/* exh_params_stage() by the index of the value. Validate returns the result without staging. */
 int exh_params_stage_at(struct exh_params *p, uint32_t i, int32_t raw);
 int exh_params_validate(const struct exh_params *p, uint32_t i, int32_t raw);
 
-/* The same for any source. who.locked is taken from p. Also returns -EXH_E_STATE if authority.h
- * denies the change. */
+/* The same for any source. who.locked is taken from p. Also -EXH_E_STATE: authority.h denies it. */
 int exh_params_stage_by(struct exh_params *p, struct exh_authority who, uint32_t i, int32_t raw);
 int exh_params_validate_by(
     const struct exh_params *p, struct exh_authority who, uint32_t i, int32_t raw);
 
 /* The value after one step from now towards goal: a step of 2^-shift of the distance, rounded up to
  * whole LSB; shift 0..31. It never overshoots. From d LSB away, d > 2^shift, it arrives within
- * 2^shift * (1 + ln(d / 2^shift)) + 1 steps. From anywhere, it arrives within 2^shift * (1 + 0.7 *
- * (32 - shift)) + 1 steps. */
+ * 2^shift * (1 + ln(d / 2^shift)) + 1 steps. From anywhere, it arrives within
+ * 2^shift * (1 + 0.7 * (32 - shift)) + 1 steps. */
 int32_t exh_params_slew_step(int32_t now, int32_t goal, unsigned shift);
 
 /* Makes the staged values active; call it once, between ticks. While locked, slewed values move one
@@ -122,8 +118,7 @@ int32_t exh_params_save(const struct exh_params *p, void *buf, size_t cap_B);
  * two, *bad is the index of the refused value; bad may be NULL. */
 int exh_params_load(struct exh_params *p, const void *buf, size_t len_B, uint32_t *bad);
 
-/* exh_params_load() including values of EXH_WHEN_PERSON: for a replay, which loads the image in the
- * header of its log. */
+/* exh_params_load() including values of EXH_WHEN_PERSON: for a replay, from the log's header. */
 int exh_params_restore(struct exh_params *p, const void *buf, size_t len_B, uint32_t *bad);
 
 #ifdef __cplusplus

@@ -21,8 +21,7 @@
  * the bound, and below the bound itself if the outputs act in time.
  *
  * Two parts are not counted: the pull-back force, which is meant to wind the string in, and
- * movement within one count. The latter adds at most half a count times the sum of all force
- * changes.
+ * movement within one count. The latter adds at most half a count times all force changes.
  *
  * Related: time-domain passivity control (Hannaford and Ryu, 2002). Order of the calls: law,
  * exh_passivity_step(), exh_drive_force_step(), exh_drive_current_step(), exh_gate_step(),
@@ -91,8 +90,7 @@ uint32_t exh_passivity_step(struct exh_passivity *s, const struct exh_passivity_
 void exh_passivity_update(struct exh_passivity *s, const struct exh_passivity_cfg *cfg,
     const struct exh_force_ledger *f, int32_t coded_A_q26);
 
-/* Energy that the present contact has received, J, q24 (LSB 60 nJ). Within 1/2 LSB; saturates at
- * +-128 J. */
+/* Energy that the present contact has received, J, q24 (LSB 60 nJ). Error 1/2 LSB; +-128 J. */
 int32_t exh_passivity_J_q24(const struct exh_passivity *s, const struct exh_passivity_cfg *cfg);
 
 /* State through a cursor. All zeros: not in contact. */

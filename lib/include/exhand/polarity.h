@@ -58,8 +58,7 @@ struct exh_polarity {
     uint8_t result;   /* enum exh_polarity_result */
 };
 
-/* Set-up (divides). -EXH_E_RANGE: a parameter outside its range, or a step not above 0.
- * -EXH_E_RATE: T. */
+/* Set-up (divides). -EXH_E_RANGE: a parameter outside its range, or a step <= 0. -EXH_E_RATE: T. */
 int exh_polarity_setup(struct exh_polarity_cfg *cfg, const struct exh_polarity_par *par,
     int32_t step_m_q42, struct exh_period T);
 

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-/* Pre-contact: predicts the string position at contact and freezes it before the contact (eq. 2 and
- * 3 of the paper).
+/* Pre-contact: predicts the string position at contact and freezes it before (eq. 2 and 3).
  *
- * The world sends one plane per finger, late and irregularly. Every tick computes the distance d =
- * (P_C - P_F).n + t, negative before contact and 0 at touch. While d < d_lim, the virtual contact
- * moves along: q_lim = q - s*d. From the first tick with d >= d_lim, q_lim, plane and material are
- * frozen: later messages do not change them. The freeze ends when the contact law no longer
- * touches, and d < d_lim - hyst or the string is back by |d_lim| from its position at the freeze.
+ * The world sends one plane per finger, late and irregularly. Every tick computes the distance
+ * d = (P_C - P_F).n + t, negative before contact and 0 at touch. While d < d_lim, the virtual
+ * contact moves along: q_lim = q - s*d. From the first tick with d >= d_lim, q_lim, plane and
+ * material are frozen: later messages do not change them. The freeze ends when the contact law no
+ * longer touches, and d < d_lim - hyst or the string is back by |d_lim| from its position at the
+ * freeze.
  *
  * Doubt: the contact law depends on the string alone, whose zero may slip. So this module compares
- * it with the glove. A frozen contact is in doubt while the law touches and d < d_lim - hyst -
- * doubt, and while the fingertip is unknown. After more than doubt_ms in doubt it is let go: the
- * contact ends, and the force falls as fast as the drive allows. d uses the frozen plane, so the
- * link has no influence.
+ * it with the glove. A frozen contact is in doubt while the law touches and
+ * d < d_lim - hyst - doubt, and while the fingertip is unknown. After more than doubt_ms in doubt
+ * it is let go: the contact ends, and the force falls as fast as the drive allows. d uses the
+ * frozen plane, so the link has no influence.
  *
  * If exh_precontact_none() returns 1, no contact is possible; call exh_contact_step_free() instead
  * of the law. The reasons are:
@@ -67,8 +67,8 @@ enum exh_plane_kind {
 
 /* The plane of one finger in the frame of the palm, {R} of the paper. Preferably, point is the
  * point of the plane nearest the origin, computed once per object. All messages about one plane
- * then have the same bits, and so has the force. Any other point of the plane adds an error of at
- * most 1 LSB of d. */
+ * then have the same bits, and so has the force. Any other point adds an error of at most 1 LSB of
+ * d. */
 struct exh_plane {
     uint8_t kind;                /* enum exh_plane_kind */
     uint8_t material;            /* index of the material */
@@ -79,8 +79,7 @@ struct exh_plane {
 
 /* --- parameters --- */
 
-/* One material; rows in exh_material_rows[]. The freeze copies it, so a change never affects a
- * present contact. */
+/* One material; rows in exh_material_rows[]. The freeze copies it: changes act later. */
 struct exh_material_par {
     int32_t k_Npm_q10;   /* stiffness, N/m, 0 .. 10^6 */
     int32_t b_Nspm_q20;  /* damping, Ns/m, 0 .. 1000 */
@@ -136,8 +135,7 @@ enum exh_precontact_phase {
     EXH_PRECONTACT_FROZEN  /* q_lim is frozen */
 };
 
-/* State of one finger. All zeros: no message yet. The first four members are the results of
- * exh_precontact_step(). */
+/* State of one finger. All zeros: no message yet. The first four members are results. */
 struct exh_precontact {
     int32_t d_m_q30;                          /* distance; INT32_MIN: no plane */
     int32_t lim_m_q30;                        /* q_lim */
@@ -158,8 +156,7 @@ struct exh_precontact {
     uint8_t met;                              /* 1: the world has reported on the free finger */
     uint8_t near;                             /* 1: 0 replaces d_lim */
     uint8_t late;                             /* 1: the caller limits the rise of force */
-    uint8_t told;                             /* messages about the newest object: 1, or 2 for
-                                               * more */
+    uint8_t told;                             /* messages about the newest object, at most 2 */
     uint8_t resumed;                          /* 1: restored, no step yet; not serialized */
 };
 
@@ -182,12 +179,10 @@ enum exh_precontact_bit {
     EXH_PRECONTACT_STALE = 1u << 3,   /* phase IDLE: newest plane is too old */
     EXH_PRECONTACT_BENT = 1u << 4,    /* s was limited: string and approach disagree */
     EXH_PRECONTACT_FREEZE = 1u << 5,  /* frozen in this tick: taken is new */
-    EXH_PRECONTACT_RELEASE = 1u << 6, /* released in this tick; newest counts again as just
-                                       * received */
+    EXH_PRECONTACT_RELEASE = 1u << 6, /* released in this tick; newest counts as new */
     EXH_PRECONTACT_BLIND = 1u << 7,   /* fingertip unknown or too old */
     EXH_PRECONTACT_DOUBT = 1u << 8,   /* the frozen contact is in doubt */
-    EXH_PRECONTACT_LETGO = 1u << 9,   /* let go in this tick, with RELEASE: no contact now; newest
-                                       * counts again in the next tick */
+    EXH_PRECONTACT_LETGO = 1u << 9,   /* let go in this tick, with RELEASE: no contact */
     EXH_PRECONTACT_LATE = 1u << 10    /* late contact; with FREEZE in its first tick */
 };
 
@@ -199,8 +194,8 @@ int exh_precontact_setup(struct exh_precontact_cfg *cfg, const struct exh_precon
     struct exh_period T);
 
 /* Takes a message about this finger, age_ticks old; call it before the step of the tick. It does
- * not affect q_lim, material, distance and release of a frozen finger. Returns 0, or -EXH_E_RANGE
- * if the plane is refused. */
+ * not affect q_lim, material, distance and release of a frozen finger. Returns 0, or -EXH_E_RANGE:
+ * refused. */
 int exh_precontact_update(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
     const struct exh_plane *plane, uint32_t age_ticks);
 
@@ -213,8 +208,7 @@ static inline int exh_precontact_none(const struct exh_precontact *s)
 /* Call it when the peer changes or restarts: its first plane then does not count as late. */
 static inline void exh_precontact_forget(struct exh_precontact *s) { s->met = 0; }
 
-/* Call it when a late contact's force has reached the law's force: its rise was not limited in this
- * tick. */
+/* Call it when the force of a late contact has reached the law's force. */
 static inline void exh_precontact_arrived(struct exh_precontact *s) { s->late = 0; }
 
 /* Accounts for missed ticks; call it before update and step of the next tick. It adds them to the
@@ -252,11 +246,10 @@ struct exh_precontact_advice {
     int32_t speed_mps_q27; /* fastest approach that the given d_lim allows */
 };
 
-/* Set-up or host (divides). d_lim_m_q30 < 0 is the value to judge: it gives ray and speed, and
- * is too small in magnitude if it exceeds advice->d_lim_m_q30. All results are rounded to the
- * safe side, the first within 2 LSB and 1 ns of motion. -EXH_E_RATE: T. -EXH_E_RANGE: a need
- * below 0, lag or age above 2 s, d_lim not below 0, or a result beyond 2 m. The speed saturates
- * at 16 m/s. */
+/* Set-up or host (divides). d_lim_m_q30 < 0 is the value to judge: it gives ray and speed, and is
+ * too small in magnitude if it exceeds advice->d_lim_m_q30. All results are rounded to the safe
+ * side, the first within 2 LSB and 1 ns of motion. -EXH_E_RATE: T. -EXH_E_RANGE: a need below 0,
+ * lag or age above 2 s, d_lim not below 0, or a result beyond 2 m. Speed saturates. */
 int exh_precontact_advise(struct exh_precontact_advice *advice,
     const struct exh_precontact_need *need, struct exh_period T, int32_t d_lim_m_q30);
 

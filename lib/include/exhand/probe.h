@@ -11,8 +11,7 @@
  * A motion requests a current and reads counts; the current passes drive and gate as any other.
  * Counts grow when the string is pulled out; a current > 0 pulls it in. Each motion has a set-up, a
  * start, and a step per tick, which returns its result. From the first result other than BUSY, it
- * keeps the result and requests no current. Exception: the caller chooses the current after a probe
- * is DONE.
+ * keeps the result and requests no current. After a DONE probe, the caller chooses the current.
  *
  *   exh_weigh_start(&weigh, &cfg, cnt);
  *   while (exh_weigh_step(&weigh, &cfg, cnt, coded_A_q26, mon_A_q26) == EXH_PROBE_BUSY) { tick(); }
@@ -33,8 +32,7 @@ extern "C" {
 enum exh_probe_result {
     EXH_PROBE_BUSY,      /* in progress */
     EXH_PROBE_DONE,      /* reached its goal */
-    EXH_PROBE_WRONG_WAY, /* the string moves out although the motor pulls: motor or encoder
-                          * reversed, or a person pulls */
+    EXH_PROBE_WRONG_WAY, /* moves out although the motor pulls: reversed, or a person pulls */
     EXH_PROBE_STILL,     /* no movement at the last current */
     EXH_PROBE_TRAVEL,    /* moved farther from the start than allowed */
     EXH_PROBE_TIME,      /* took too long */
@@ -64,8 +62,7 @@ struct exh_probe_par {
     int32_t end_A_q26;    /* last current, A, 0 .. 3.3 */
     int32_t dwell_ms;     /* time at each current, ms, 1 .. 10^4; at least 2 ticks */
     int32_t time_ms;      /* limit of the whole motion, ms, 1 .. 10^6 */
-    int32_t move_m_q30;   /* smallest movement within a dwell, m, > 0 .. 1; at least 2 counts, since
-                           * one may be noise */
+    int32_t move_m_q30;   /* smallest movement within a dwell, m, > 0 .. 1; at least 2 counts */
     int32_t travel_m_q30; /* largest distance from the start, m, > move .. 1; at most 2^30 counts */
 };
 /* Set-up of a probe. */
@@ -79,8 +76,7 @@ struct exh_probe {
     int32_t cur_A_q26;            /* current requested now */
     int32_t start_cnt, dwell_cnt; /* count at the start; at the start of this dwell */
     uint32_t dwell, tick;         /* ticks of this dwell; of the motion */
-    uint8_t settled;              /* 1 after a dwell without movement: currents change from then
-                                   * on */
+    uint8_t settled;              /* 1 after a dwell without movement */
     uint8_t result;               /* enum exh_probe_result */
 };
 
@@ -111,8 +107,7 @@ struct exh_home_par {
 struct exh_home_cfg {
     int32_t cur_A_q26;                     /* the parameter */
     uint32_t dwell_ticks, ticks;           /* as for a probe */
-    int32_t move_cnt, least_cnt, most_cnt; /* counts, rounded down; move at least 2, most at least
-                                            * 1 */
+    int32_t move_cnt, least_cnt, most_cnt; /* counts, rounded down; move >= 2, most >= 1 */
 };
 /* State of homing. */
 struct exh_home {
@@ -169,13 +164,12 @@ int exh_weigh_setup(
 void exh_weigh_start(struct exh_weigh *s, const struct exh_weigh_cfg *cfg, int32_t cnt);
 
 /* One tick. coded is the current coded in the last tick, mon the measured one, A. The time limit
- * also applies to each of the three phases: a mass that does not settle between lift and sink ends
- * so. */
+ * also applies to each of the three phases, such as a mass that never settles. */
 uint8_t exh_weigh_step(struct exh_weigh *s, const struct exh_weigh_cfg *cfg, int32_t cnt,
     int32_t coded_A_q26, int32_t mon_A_q26);
 
-/* The point of a mass after DONE. Its currents are means (error <= 1/2 LSB), its friction is (lift
- * - sink) / 2. */
+/* The point of a mass after DONE. Its currents are means (error <= 1/2 LSB), its friction is
+ * (lift - sink) / 2. */
 struct exh_calib_point exh_weigh_point(const struct exh_weigh *s, int32_t force_N_q20);
 
 #ifdef __cplusplus

@@ -89,16 +89,15 @@ void exh_quad_index_step(struct exh_quad_index *s, int32_t cnt, unsigned level);
  * set-up, struct exh_quad the state of one encoder. */
 struct exh_quad_cfg {
     const struct exh_quad_par *par; /* the caller's */
-    int32_t jump_cnt;               /* counts at speed_max in one tick, rounded, plus 1; smaller
-                                     * encoder errors are not detected */
+    int32_t jump_cnt;               /* counts per tick at speed_max, rounded, plus 1 */
     uint8_t unused;                 /* 32 minus the counter's width */
 };
 struct exh_quad {
     uint32_t raw;    /* last counter value as given; the low bits count */
     int32_t cnt;     /* counts since the first sample; wraps modulo 2^32 */
     uint8_t started; /* 1 after the first sample, which is count 0 */
-    uint8_t lost;    /* 1: a sample moved faster than speed_max. cnt ignores that sample and is
-                      * unreliable until the next set-up: a fault */
+    uint8_t lost;    /* 1: a sample moved faster than speed_max: cnt is wrong until the next
+                      * set-up */
 };
 
 /* Set-up (divides); par must outlive cfg. bits is the counter's width, which the board states.
@@ -109,8 +108,8 @@ int exh_quad_setup(
     struct exh_quad_cfg *cfg, const struct exh_quad_par *par, struct exh_period T, unsigned bits);
 
 /* The extended count after reading raw. Correct while the counter moves by less than half its range
- * between two calls. Bits of raw above the width are ignored. A movement of more than jump_cnt is
- * not counted and sets lost. */
+ * between two calls. Bits of raw above the width are ignored. A movement above jump_cnt is ignored
+ * and sets lost. */
 int32_t exh_quad_step(struct exh_quad *s, const struct exh_quad_cfg *cfg, uint32_t raw);
 
 /* The position of a count, m, q30; rounded half up. Saturates at +-2 m and keeps the sign. The

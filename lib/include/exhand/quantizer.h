@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Quantizer: a code of N bits with hysteresis, so that it does not change while its input is only
- * noisy.
+/* Quantizer: a code of N bits with hysteresis, which suppresses noise of the input.
  *
  *   struct exh_quantizer_par par = {10, 2000}; // 10 bits of 32; noise of 2000 LSB
  *   int err = exh_quantizer_setup(&cfg, &par);
@@ -20,8 +19,8 @@ extern "C" {
 /* Parameters; rows in exh_quantizer_rows[]. */
 struct exh_quantizer_par {
     int32_t bits;         /* stable bits of the full int32_t range, 1 .. 24 */
-    int32_t hyst_raw_q16; /* hysteresis, LSB of the input, 0 .. 2^(32-bits): the peak-to-peak noise
-                           * to suppress */
+    int32_t hyst_raw_q16; /* hysteresis, 0 .. 2^(32-bits): peak-to-peak noise to suppress, LSB of
+                           * x */
 };
 #define EXH_QUANTIZER_ROWS 2
 extern const struct exh_signal exh_quantizer_rows[EXH_QUANTIZER_ROWS];

@@ -42,8 +42,7 @@ enum exh_event_type {
     EXH_EVENT_MISSED = 3,  /* value: ticks missed before this tick */
     EXH_EVENT_MARK = 4,    /* value: the operator's own mark */
     EXH_EVENT_FROZE = 5    /* end of a black box log. value: enum exh_fault that froze it, 0:
-                            * halted; instance: ticks since then; id: later causes; both at most
-                            * 65535 */
+                            * halted; instance: ticks since then; id: later causes */
 };
 
 /* Payload of an event, in this order. The type defines the fields; unused ones are 0. */
@@ -103,8 +102,8 @@ struct exh_record_out {
     uint8_t head[EXH_RECORD_HEAD_B]; /* encoded head */
 };
 
-/* The place of a payload in mem: it starts at index at and wraps at the end, at < cap_B, len_B <=
- * cap_B. It must not change until it has been output. */
+/* The place of a payload in mem: it starts at index at and wraps at the end, at < cap_B,
+ * len_B <= cap_B. It must not change until it has been output. */
 struct exh_record_place {
     const uint8_t *mem; /* the caller's */
     uint32_t cap_B, at; /* size of mem; index of the payload */

@@ -76,8 +76,7 @@ enum exh_regs_head {
     EXH_HEAD_NAME_1,      /* the next four */
     EXH_HEAD_NAME_2,      /* the next four */
     EXH_HEAD_NAME_3,      /* the last four, zero-padded */
-    EXH_HEAD_REFUSED,     /* writes and APPLY refused since set-up, modulo 2^32; since map version
-                           * 1.1 */
+    EXH_HEAD_REFUSED,     /* writes and APPLY refused since set-up, modulo 2^32; new in 1.1 */
     EXH_HEADS             /* number of values */
 };
 

@@ -25,11 +25,9 @@ extern "C" {
 /* The state of the device. Wire and registers use these numbers. */
 enum exh_state {
     EXH_STATE_OFF,     /* closed: no current, drives disabled */
-    EXH_STATE_ARM,     /* gate closed while the law must request little force; then open, and the
-                        * force limit rises */
+    EXH_STATE_ARM,     /* gate closed until the law requests little; then the limit rises */
     EXH_STATE_RUN,     /* gate open */
-    EXH_STATE_LIMIT,   /* RUN, and in the last tick a limit acted (except PULL: a string cannot
-                        * push) */
+    EXH_STATE_LIMIT,   /* RUN, and in the last tick a limit other than PULL acted */
     EXH_STATE_RELEASE, /* gate open: the held force falls in equal steps */
     EXH_STATE_FAULT,   /* gate closed, until cleared */
     EXH_STATES         /* number of states */
@@ -40,8 +38,7 @@ enum exh_command {
     EXH_CMD_NONE, /* nothing */
     EXH_CMD_RUN,  /* OFF -> ARM, if every step of arming is satisfied */
     EXH_CMD_OFF,  /* to OFF, through RELEASE if there may be a force */
-    EXH_CMD_CLEAR /* FAULT -> OFF, if no cause is present and the dead-man switch was released
-                   * since */
+    EXH_CMD_CLEAR /* FAULT -> OFF, if no cause is present and the dead-man was released */
 };
 
 /* Causes of faults, as bits. exh_fault_name() gives their names. */
@@ -86,8 +83,7 @@ enum exh_arm {
     EXH_ARM_RAMP = 1u << 6         /* the force limit rises to f_max within ramp_time */
 };
 #define EXH_ARMS 7 /* number of bits of enum exh_arm, from bit 0 */
-/* The scene confirms the first four steps. A scene without such a check says so by one of these
- * names. */
+/* The scene confirms the first four steps. A scene without a check uses one of these names. */
 #define EXH_UNTESTED     EXH_ARM_SELFTEST
 #define EXH_UNCALIBRATED EXH_ARM_CALIBRATION
 #define EXH_UNPOLARISED  EXH_ARM_POLARITY
@@ -120,8 +116,7 @@ extern const uint8_t exh_safety_next[EXH_STATES][EXH_TRIGGERS];
 /* Parameters of the device; rows in exh_safety_rows[]. */
 struct exh_safety_par {
     /* Tolerated missed ticks, 0 or 1 in EXH_LATE_TICKS. A late tick assumes a wrong time: velocity
-     * over n ticks reads up to (n+1)/n too high, and I2t counts one tick in EXH_LATE_TICKS too
-     * little. */
+     * over n ticks reads up to (n+1)/n too high, and I2t counts one tick too little. */
     int32_t missed_max;
     int32_t arm_force_N_q20; /* small force, N, 0.1 .. 10 */
     int32_t arm_ms;          /* duration of it, ms, 1 .. 1000, at least 2 ticks */
@@ -165,8 +160,7 @@ struct exh_safety {
     uint8_t opened;                /* 1: dead-man was open since another cause was present */
     uint8_t trigger;               /* enum exh_trigger of the last tick */
     uint16_t off_raw[EXH_FINGERS]; /* last |code - dac_zero|; may not grow in RELEASE */
-    uint8_t fingers;               /* fingers whose drives are ready in this tick; the gate opens no
-                                    * other */
+    uint8_t fingers;               /* fingers with a ready drive: the gate opens no other */
 };
 
 /* Inputs of a tick. */
@@ -179,8 +173,8 @@ struct exh_safety_in {
     uint8_t ready;   /* enum exh_arm: steps that the scene confirms */
 };
 
-/* First call of a tick. Returns the permit for exh_drive_force_step(). An impossible state becomes
- * FAULT with cause LOGIC. */
+/* First call of a tick. Returns the permit for exh_drive_force_step(). Impossible state: FAULT,
+ * LOGIC. */
 struct exh_permit exh_safety_step(
     struct exh_safety *s, const struct exh_safety_cfg *cfg, struct exh_safety_in in);
 
@@ -221,8 +215,7 @@ void exh_gate_step(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsign
 /* The gate of a scene without drives: closed, every finger gets dac_zero_raw. */
 void exh_gate_shut(struct exh_safety *s, uint16_t dac_zero_raw, struct exh_drive_out *out);
 
-/* State through a cursor, with a CRC. A state with a wrong CRC is restored as FAULT, cause
- * LOGIC. */
+/* State through a cursor, with a CRC. A wrong CRC restores FAULT, cause LOGIC. */
 void exh_safety_serialize(struct exh_bytes *c, struct exh_safety *s);
 
 /* Names for people and files (safety_names.c), [a-z0-9_]+; "" beyond the last. k is the bit number

@@ -25,24 +25,23 @@ extern "C" {
 /* When a value may change, and in which direction it may add force. authority.h lists who may
  * change it. */
 enum exh_signal_when {
-    EXH_WHEN_OUTPUT,   /* not a parameter: read only */
-    EXH_WHEN_SETUP,    /* before the loop starts; refused once locked */
-    EXH_WHEN_ANY,      /* between any two ticks, in one step */
-    EXH_WHEN_SLEWED,   /* between any two ticks, but gradually: the value affects the force */
-    EXH_WHEN_LIMIT,    /* a limit of force: rises gradually, falls in one step */
-    EXH_WHEN_PERSON,   /* before the loop starts, and only by the person at the box: by command line
-                        * or boot option. No register, packet or image may set it */
-    EXH_WHEN_BOUND,    /* in one step; a larger value may mean more force */
-    EXH_WHEN_WALL,     /* gradually; a smaller value means more force */
-    EXH_WHEN_REST,     /* in one step; sets where or when contact occurs, so neither direction is
-                        * safer */
+    EXH_WHEN_OUTPUT, /* not a parameter: read only */
+    EXH_WHEN_SETUP,  /* before the loop starts; refused once locked */
+    EXH_WHEN_ANY,    /* between any two ticks, in one step */
+    EXH_WHEN_SLEWED, /* between any two ticks, but gradually: the value affects the force */
+    EXH_WHEN_LIMIT,  /* a limit of force: rises gradually, falls in one step */
+    EXH_WHEN_PERSON, /* before the loop starts, and only by the person at the box: by command line
+                      * or boot option. No register, packet or image may set it */
+    EXH_WHEN_BOUND,  /* in one step; a larger value may mean more force */
+    EXH_WHEN_WALL,   /* gradually; a smaller value means more force */
+    EXH_WHEN_REST,   /* in one step; of the place or time of contact: neither direction is safer */
     EXH_WHEN_MATERIAL, /* as BOUND, but of the virtual world; takes effect at the next freeze */
     EXH_WHEN_WORD,     /* any time, only by the person: permission for a motion to begin */
     EXH_WHENS          /* number of entries */
 };
 
 /* The register of ids, 0xMMNN: MM is the module, NN the row. test/module/unit/rows_test.c lists
- * each.
+ * all.
  *
  *   02 quad   03 velocity   04 contact   05 drive     06 safety       07 filter     08 quantizer
  *   09 glove  0A hand       0B material  0C precontact
@@ -91,21 +90,19 @@ struct exh_signal_table {
 /* The number of values that the table describes. */
 uint32_t exh_signal_count(const struct exh_signal_table *t);
 
-/* The row of value i. Stores the instance in *instance unless it is NULL. Returns NULL if i is not
- * below exh_signal_count(). */
+/* The row of value i. Stores the instance in *instance unless it is NULL. NULL if i is too
+ * large. */
 const struct exh_signal *exh_signal_at(
     const struct exh_signal_table *t, uint32_t i, uint16_t *instance);
 
 /* The index of the value with this id and instance, or -EXH_E_UNKNOWN. */
 int32_t exh_signal_find(const struct exh_signal_table *t, uint16_t id, uint16_t instance);
 
-/* CRC-32 over ids, formats, ranges and counts. Two tables with the same CRC give the same meaning
- * to the same value array. */
+/* CRC-32 over ids, formats, ranges and counts. Tables with the same CRC have the same meaning. */
 uint32_t exh_signal_crc(const struct exh_signal_table *t);
 
 /* 1 if each of n values lies within its row. The values form a struct of int32_t, as module
- * parameters do. Use it for parameters that no other function has checked, such as constants in
- * ROM. */
+ * parameters do. Use it for unchecked parameters, such as constants in ROM. */
 int exh_rows_validate(const struct exh_signal *row, unsigned n, const void *values);
 
 #ifdef __cplusplus

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Slots: an image of parameters or of a calibration in flash. A power cut at any moment leaves the
- * old or the new image.
+/* Slots: an image of parameters or a calibration in flash. A power cut leaves the old or the new.
  *
  * There are two areas that can be erased separately, each with room for one image. The newest whole
  * image is valid, and saving writes to the other slot. So one slot is always whole. The caller
@@ -27,7 +26,7 @@
  *
  * If exh_slots_find() does not return to after saving, the flash is worn or protected; report it,
  * the old image remains valid. A whole image may be of another program version: the other slot
- * holds the one before. Erasing and programming take milliseconds and stop many processors. Do not
+ * holds the one before. Erasing and programming take milliseconds and stop many processors. Never
  * save while a drive is enabled. */
 #ifndef EXHAND_SLOTS_H
 #define EXHAND_SLOTS_H

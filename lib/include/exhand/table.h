@@ -31,9 +31,9 @@ struct exh_table {
  * strictly. */
 int exh_table_setup(struct exh_knot *knot, unsigned n);
 
-/* Writes the inverse of table src[n] to dst[n]; dst may be src. If all slopes are >= 1, or all <=
- * 1, a conversion and back, the steeper table first, is within 1 LSB, or 2 LSB for spans from 2^30.
- * Errors as exh_table_setup(). */
+/* Writes the inverse of table src[n] to dst[n]; dst may be src. If all slopes are >= 1, or
+ * all <= 1, a conversion and back, the steeper table first, is within 1 LSB, or 2 LSB for spans
+ * from 2^30. Errors as exh_table_setup(). */
 int exh_table_invert(struct exh_knot *dst, const struct exh_knot *src, unsigned n);
 
 /* y at x: monotone and exact at every knot; outside the knots, the value at the end. Between them

@@ -26,8 +26,7 @@ extern "C" {
 struct exh_trace_frame {
     uint32_t number;                /* modulo 2^32 */
     uint32_t tick;                  /* argument of exh_trace_step() */
-    int32_t raw[EXH_TRACE_SIGNALS]; /* requested signals, in that order, in the formats of their
-                                     * rows */
+    int32_t raw[EXH_TRACE_SIGNALS]; /* the signals requested, in the formats of their rows */
 };
 
 /* The signals to trace. */
@@ -38,8 +37,7 @@ struct exh_trace_request {
 
 /* A trace. All members except frame, mask and signals are state. */
 struct exh_trace {
-    struct exh_trace_frame *frame; /* array of length frames, the caller's; number k is frame[k &
-                                    * mask] */
+    struct exh_trace_frame *frame; /* the caller's array; number k is frame[k & mask] */
     uint32_t mask;                 /* frames - 1 */
     uint32_t signals;              /* number of values in the table */
     struct exh_trace_request what; /* present request */
@@ -58,8 +56,7 @@ int exh_trace_setup(
  * not below signals; nothing changes. */
 int exh_trace_start(struct exh_trace *t, const struct exh_trace_request *what);
 
-/* 1 if the next exh_trace_step() reads the values. In other ticks the caller need not compute
- * them. */
+/* 1 if the next exh_trace_step() reads the values. Otherwise they are not needed. */
 static inline int exh_trace_reads(const struct exh_trace *t)
 {
     return t->what.every != 0 && t->left == 0;

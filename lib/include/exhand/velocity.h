@@ -114,9 +114,9 @@ int32_t exh_velocity_foaw_step(
     struct exh_velocity_foaw *s, const struct exh_velocity_foaw_cfg *cfg, int32_t cnt);
 void exh_velocity_foaw_serialize(struct exh_bytes *c, struct exh_velocity_foaw *s);
 
-/* --- track: alpha-beta observer with a double pole theta = T_f/(T_f + T): alpha = 1-theta^2, beta
- * = (1-theta)^2. At rest the velocity ends within (T_f/T + 1) * 2^-32 counts a tick of 0. Movements
- * beyond 2^28 counts a tick saturate. --- */
+/* --- track: alpha-beta observer with a double pole theta = T_f/(T_f + T): alpha = 1-theta^2,
+ * beta = (1-theta)^2. At rest the velocity ends within (T_f/T + 1) * 2^-32 counts a tick of 0.
+ * Movements beyond 2^28 counts a tick saturate. --- */
 /* Set-up of the observer, shared as the window's. */
 struct exh_velocity_track_cfg {
     struct exh_gain gain; /* m/s q27 per count and tick */

@@ -166,8 +166,8 @@ struct exh_wire_packet {
 
 /* State of a sender. */
 struct exh_wire_tx {
-    uint32_t session; /* not 0; must differ at every start: from a clock, or a counter that
-                       * survives. If it repeats, the peer accepts HELLO only after a silence */
+    uint32_t session; /* not 0; must differ at every start (a clock or stored counter), or the peer
+                       * accepts HELLO only after a silence */
     uint32_t seq;     /* sequence number of the next packet, modulo 2^32 */
 };
 

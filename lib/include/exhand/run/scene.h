@@ -2,8 +2,7 @@
 /* Scene: the descriptor that the loop, the log and the replay use.
  *
  * A scene is a pure tick function over the library's modules. The descriptor points to its one
- * static instance, so no allocation is needed. Optional parts are NULL; a scene without parameters
- * links no parameter code. */
+ * static instance, so no allocation is needed. Optional parts are NULL and then not linked. */
 #ifndef EXHAND_RUN_SCENE_H
 #define EXHAND_RUN_SCENE_H
 
@@ -25,8 +24,7 @@ struct exh_scene_in {
     struct exh_glove_in glove; /* its age counts from its conversion */
 };
 
-/* Packets of one tick, in or out. More packets wait for the next tick: at 90 Hz the limit is 720
- * per second. */
+/* Packets of one tick, in or out. More wait for the next tick: 720 per second at 90 Hz. */
 #define EXH_SCENE_PACKETS  8
 #define EXH_SCENE_PACKET_B 256
 struct exh_scene_mail {
@@ -51,8 +49,7 @@ struct exh_scene_board {
 };
 
 /* Calibrations of fingers as images (exhand/calibrate.h), at most one per finger, in any order. The
- * caller provides them before set-up. The bytes must not move or change, since a log's header
- * contains them. */
+ * caller provides them before set-up. The bytes must not change: a log's header has them. */
 struct exh_scene_calib {
     struct {
         const uint8_t *byte;
@@ -76,8 +73,7 @@ struct exh_scene {
     uint8_t fingers;
     struct exh_params *params;              /* NULL: constants in ROM */
     const struct exh_signal_table *signals; /* outputs per tick, or NULL */
-    int32_t *values;                        /* array of the signals' values, or NULL; read it
-                                             * through exh_scene_signals() */
+    int32_t *values;                        /* their values, or NULL; use exh_scene_signals() */
     /* exh_board_read_glove, or NULL. Only a scene that names it links it. */
     int (*read_glove)(struct exh_glove_in *in);
     const int32_t *glove_every;        /* ticks between requests for a frame; NULL: every tick */
@@ -90,8 +86,7 @@ struct exh_scene {
     int (*setup)(struct exh_scene_board board);
     /* One tick. */
     void (*tick)(const struct exh_scene_in *in, struct exh_drive_out *out);
-    /* Computes signals that depend only on the state after a tick. So unread signals cost nothing.
-     * NULL: the tick computes all. */
+    /* Computes signals that depend only on the state after a tick. NULL: the tick computes all. */
     void (*show)(void);
     /* Writes text through exh_board_log after the outputs, so that it does not delay them; or
      * NULL. */
