@@ -64,11 +64,11 @@ void exh_filter_reset(struct exh_filter *s, const int32_t *x, unsigned n);
 /* Filters one sample of each of n channels: any int32_t in x[n], result in y[n]; y may be x. The
  * output reaches a constant input exactly and keeps it.
  *
- * Error against the ideal filter while the signal moves, even from rail to rail:
- * - low kinds: at most 6 LSB, rms 0.3 to 1 LSB;
- * - high kinds up to 0.45 of the sample rate: at most 16 LSB, rms up to 2.3 LSB at 0.37 of full
- *   scale;
- * - towards half the rate it grows. Above 0.489 a large input that alternates at half the rate
+ * Error against the ideal filter while the signal moves:
+ * - Low kinds: at most 6 LSB, rms 0.3 to 1 LSB.
+ * - High kinds up to 0.45 of the sample rate: at most 16 LSB, rms up to 2.3 LSB at 0.37 of full
+ *   scale.
+ * - Towards half the rate it grows. Above 0.489 a large input that alternates at half the rate
  *   wraps the states; the output is undefined until that input ends. No other input wraps a state.
  *
  * y saturates with the right sign and recovers; a step overshoots by 4.3 %. It recovers from a

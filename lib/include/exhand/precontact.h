@@ -16,10 +16,10 @@
  *
  * If exh_precontact_none() returns 1, no contact is possible; call exh_contact_step_free() instead
  * of the law. The reasons are:
- * - no plane has come yet, or the world reported that the ray hit nothing;
- * - the plane is older than age_max and not frozen; a frozen plane does not age;
- * - nothing is frozen, and the fingertip is unknown or older than tip_age_max;
- * - the finger was inside the object when the plane was born, and the plane was not late.
+ * - No plane has come yet, or the world reported that the ray hit nothing.
+ * - The plane is older than age_max and not frozen. A frozen plane does not age.
+ * - Nothing is frozen, and the fingertip is unknown or older than tip_age_max.
+ * - The finger was inside the object when the plane was born, and the plane was not late.
  *
  * A plane is born when it is new: the first one, of another object, or received while the finger
  * was frozen. If it is born at d_lim <= d < 0, q_lim moves along and freezes at the touch: 0

@@ -216,9 +216,9 @@ int exh_regs_read(
 /* Stages n holding registers from from[2 n], all or none. Returns 0 or enum exh_modbus_exception.
  * Writing one register of a value keeps the other; for a binary32 it is refused.
  *
- * Exception 3: outside the range of the row, a binary32 that is not a number, a changed set-up
- * value while locked, a change that authority.h denies, a trace of an unknown signal, or no APPLY
- * in may. Exception 6: APPLY is pending, so staged values are frozen.
+ * Exception 3: outside the range of the row, not a number, or a trace of an unknown signal. Also a
+ * changed set-up value while locked, a change that authority.h denies, or no APPLY in may.
+ * Exception 6: APPLY is pending, so staged values are frozen.
  *
  * A binary32 is rounded to the nearest raw value, half to even. A binary32 equal to the present,
  * the minimum or the maximum value gives exactly that raw value. A value equal to the wanted one

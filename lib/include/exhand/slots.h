@@ -8,11 +8,12 @@
  *
  * A slot contains "EXHS", sequence u32, length u32, the image, CRC-32 of all bytes before, and the
  * sequence again; little-endian. Later bytes are ignored. Program the bytes in order, the last word
- * last. After a power cut
- * - between two words, with ones, zeros or an older image of the same length after the cut: the
+ * last. After a power cut, there are two cases:
+ *
+ * - Between two words, with ones, zeros or an older image of the same length after the cut: the
  *   last word differs from the first sequence, or the slot is complete. This does not rely on the
- *   CRC;
- * - during an erasure, or within a word: bytes may be arbitrary. The CRC accepts them once in 2^32.
+ *   CRC.
+ * - During an erasure, or within a word: bytes may be arbitrary. The CRC accepts them once in 2^32.
  *   It detects all errors of 1, 2 or 3 bits in images up to 11 kB, and all bursts of 32 bits.
  *
  * Save (buf has EXH_SLOT_B(2048) bytes), then load at start:

@@ -26,9 +26,9 @@ void exh_blackbox_after(
 /* Call it after the last tick. It freezes after a fault, or if halted is 1. */
 void exh_blackbox_stop(int halted);
 
-/* Reads the dump of a frozen box, any number of bytes per call, between any two ticks: header with
- * the parameters of the freeze, records, EXH_EVENT_FROZE, and the end with the number of lost
- * records. Returns 0 if there is nothing more; then the box starts again. */
+/* Reads the dump of a frozen box, any number of bytes per call, between any two ticks. The dump
+ * contains the header with the parameters of the freeze, records, EXH_EVENT_FROZE, and the number
+ * of lost records. Returns 0 if there is nothing more; then the box starts again. */
 uint32_t exh_blackbox_read(uint8_t *to, uint32_t cap_B);
 /* Bytes to the end of the record being read. After them, text may follow on the same line. */
 uint32_t exh_blackbox_rest(void);
