@@ -29,7 +29,7 @@ struct exh_authority {
 };
 
 /* Checks a change from was, the staged value, to raw. when is enum exh_signal_when. Returns 0 if
- * the source may make it, else -EXH_E_STATE. Unknown sources and classes are refused; ranges are
+ * the source may make it, else -EXH_E_STATE. Unknown sources and classes are refused. Ranges are
  * not checked. */
 int exh_authority_check(struct exh_authority who, unsigned when, int32_t was, int32_t raw);
 

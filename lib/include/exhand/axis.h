@@ -63,8 +63,7 @@ struct exh_axis_now {
 
 /* --- set-up --- */
 
-/* Arguments of exh_axis_setup(). NULL omits a part. Pointers marked "kept" must outlive the
- * set-ups. */
+/* Arguments of exh_axis_setup(). NULL omits a part. "Kept" pointers must outlive the set-ups. */
 struct exh_axis_setup {
     struct exh_quad_cfg *quad;                   /* filled */
     const struct exh_quad_par *quad_par;         /* kept */

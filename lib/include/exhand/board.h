@@ -61,8 +61,8 @@ uint32_t exh_board_cycles(void);
 /* Takes a whole record or nothing, without blocking. Returns the bytes taken; 0: full. */
 int exh_board_log(const void *rec, size_t len_B);
 
-/* Sends or receives a whole packet or nothing, without blocking. Returns its bytes, 0 if there was
- * none, or -EXH_E_IO. */
+/* Sends or receives a whole packet or nothing, without blocking. Returns its bytes, 0: none, or
+ * -EXH_E_IO. */
 int exh_board_link_send(const void *buf, size_t len_B);
 int exh_board_link_recv(void *buf, size_t cap_B);
 

@@ -124,8 +124,7 @@ const char *exh_calib_error_text(unsigned what);
  * fitted line. The monitor table continues likewise to the monitor current of the last
  * point + (end_A - its current), <= 16.6 A. It is odd: it also covers negative currents. Returns
  * the number of knots, or -EXH_E_MONOTONE, -EXH_E_RANGE (reason in *bad, which may be NULL) or
- * -EXH_E_SHORT (cap too small; points + 2 and 2 points + 3 always suffice). Set-up only
- * (divides). */
+ * -EXH_E_SHORT (cap too small; points + 2 and 2 points + 3 suffice). Set-up only (divides). */
 int exh_calib_force_table(
     const struct exh_calib *c, struct exh_knot *knot, unsigned cap, struct exh_calib_error *bad);
 int exh_calib_monitor_table(

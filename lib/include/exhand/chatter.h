@@ -58,8 +58,7 @@ int exh_chatter_setup(struct exh_chatter_cfg *cfg, const struct exh_chatter_par 
 /* First call of a tick. Returns EXH_FAULT_CHATTER while the fault is due, else 0. */
 uint32_t exh_chatter_step(const struct exh_chatter *s, const struct exh_chatter_cfg *cfg);
 
-/* Call it after the gate, with the count and the coded current of this tick. Missed ticks do not
- * decay. */
+/* Call it after the gate, with count and coded current of this tick. Missed ticks do not decay. */
 void exh_chatter_update(
     struct exh_chatter *s, const struct exh_chatter_cfg *cfg, int32_t cnt, int32_t coded_A_q26);
 

@@ -75,8 +75,8 @@ struct exh_force_ledger {
  * bits: q_lim moved to at most 2 m from the position. */
 int32_t exh_contact_wall(struct exh_contact *s, int32_t pos_m_q30, int32_t lim_m_q30);
 
-/* The pull-back force F0 at this position, N, q20. In each of two states the reversal point follows
- * the farthest position. A return from it by more than the band switches the state. Distances fit
+/* The pull-back force F0 at this position, N, q20. In each of two states the reversal point
+ * follows the farthest position. A return by more than the band switches the state. Distances fit
  * uint32_t. */
 static inline int32_t exh_contact_pullback(
     struct exh_contact *s, const struct exh_contact_par *par, int32_t pos)
@@ -118,8 +118,7 @@ static inline int exh_contact_step(struct exh_contact *s, const struct exh_conta
     int32_t pen, on;
     if (beyond || !s->started) { in.lim_m_q30 = exh_contact_wall(s, in.pos_m_q30, in.lim_m_q30); }
     pen = exh_wrap_diff(in.pos_m_q30, in.lim_m_q30);
-    /* All bits set unless pen is below 0 and below -hyst. A damaged, negative hysteresis acts as
-     * none. */
+    /* All bits set unless pen is below 0 and below -hyst. A negative hysteresis acts as none. */
     on = ~((pen & (exh_wrap_add(pen, hyst) | hyst)) >> 31);
     s->touching = (uint8_t)-on;
 

@@ -71,8 +71,8 @@ void exh_filter_reset(struct exh_filter *s, const int32_t *x, unsigned n);
  * - Towards half the rate it grows. Above 0.489 a large input that alternates at half the rate
  *   wraps the states; the output is undefined until that input ends. No other input wraps a state.
  *
- * y saturates with the right sign and recovers; a step overshoots by 4.3 %. It recovers from a
- * corrupted state. */
+ * y saturates with the right sign; a step overshoots by 4.3 %. It recovers from corrupted
+ * states. */
 void exh_filter_step(struct exh_filter *s, const struct exh_filter_cfg *cfg, const int32_t *x,
     int32_t *y, unsigned n);
 

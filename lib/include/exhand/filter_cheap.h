@@ -41,8 +41,7 @@ struct exh_filter_cheap {
 int exh_filter_cheap_setup(
     struct exh_filter_cheap_cfg *cfg, const struct exh_filter_par *par, struct exh_period T);
 
-/* Settles n channels at x: the next outputs are x while the inputs stay x. New coefficients need a
- * reset. */
+/* Settles n channels at x: the next outputs are x while the inputs stay x. Reset after set-up. */
 void exh_filter_cheap_reset(struct exh_filter_cheap *s, const struct exh_filter_cheap_cfg *cfg,
     const int32_t *x, unsigned n);
 

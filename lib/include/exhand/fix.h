@@ -150,8 +150,8 @@ struct exh_gain {
 static inline int64_t exh_gain_mul(struct exh_gain g, int32_t x)
 {
     const int64_t v = (int64_t)x * g.mant;
-    /* Shifts 2v, so that rounding needs one variable 64-bit shift instead of two. A corrupt gain
-     * wraps. */
+    /* Shifts 2v, so that rounding needs one variable 64-bit shift instead of two. Corrupt gains
+     * wrap. */
     return exh_wrap_add64(exh_wrap_add64(v, v) >> (g.shift & 63u), 1) >> 1;
 }
 
@@ -200,8 +200,7 @@ uint64_t exh_udiv64(uint64_t num, uint64_t den, uint64_t *rem);
  * may miss the period. Every set-up, the loop and a replay check T with this function. */
 int exh_period_ok(struct exh_period T);
 
-/* The number of whole ticks in ms >= 0; requires exh_period_ok(T). Set-up only. Holds a day at 20
- * kHz. */
+/* The number of whole ticks in ms >= 0; requires exh_period_ok(T). Set-up only. Holds a day. */
 uint32_t exh_ticks_in(int32_t ms, struct exh_period T);
 
 #ifdef __cplusplus

@@ -78,8 +78,7 @@ int exh_gains_validate(
 void exh_gains_enable(struct exh_params *p, int on);
 
 /* Moves k and b of every instance one step of 2^-shift towards the staged pair; call it after
- * exh_params_apply() and before the tick. The active pair obeys the rule in every tick, whenever a
- * new pair is staged.
+ * exh_params_apply() and before the tick. The active pair always obeys the rule.
  *
  * The pair moves on the straight line if the rule allows all of it. Otherwise k falls to the lowest
  * knot in between, then b moves, then k rises. Each phase takes at most the steps of

@@ -146,9 +146,8 @@ unsigned exh_glove_sensor_validate(const struct exh_glove_cal *cal, unsigned sen
 /* Checks all ranges. Returns 0, or -EXH_E_RANGE and the reason in *bad; bad may be NULL. */
 int exh_glove_cal_validate(const struct exh_glove_cal *cal, struct exh_glove_error *bad);
 
-/* Checks whether the calibration is for this user, glove and day. Returns 0, -EXH_E_RANGE (empty
- * or refused before), -EXH_E_VERSION (another user or glove) or -EXH_E_STALE (age); *bad: the
- * reason. */
+/* Checks whether the calibration is for this user, glove and day. Returns 0, -EXH_E_RANGE (empty or
+ * refused before), -EXH_E_VERSION (another user or glove) or -EXH_E_STALE (age), as in *bad. */
 int exh_glove_cal_check(const struct exh_glove_cal *cal, uint32_t user_id, uint32_t glove_id,
     uint32_t day, struct exh_glove_error *bad);
 

@@ -2,7 +2,7 @@
 /* Hand: from the glove's 22 angles to the joints of a robot hand, to its fingertips.
  *
  * Data describe the hand: a map from sensors to joints, and bones, which are the lengths and base
- * frames of the fingers. hand_hit2.c holds those of the right DLR/HIT Hand II. A call processes one
+ * frames of the fingers. hand_hit2.c holds those of the right DLR/HIT Hand II. Calls are per
  * finger.
  *
  * A finger has four joints. q0 turns it sideways about the z axis of its base. q1, q2 and q3 bend
@@ -69,8 +69,7 @@ extern const struct exh_hand_bones exh_hit2_bones[EXH_FINGERS];
 
 /* Parameters of one finger; rows in exh_hand_rows[]. */
 struct exh_hand_par {
-    int32_t arm1_m_q30; /* string per radian of the wearer's knuckle, q1, m, 0 .. 50 mm; default:
-                         * estimated */
+    int32_t arm1_m_q30; /* string per radian of the wearer's knuckle, m, 0 .. 50 mm; estimated */
     int32_t arm2_m_q30; /* the same of the next joint, q2 */
     int32_t arm3_m_q30; /* the same of the last joint, q3 */
     int32_t pad_m_q30;  /* radius of the pad, m, 0 .. 25 mm: distance from P_F to the skin */

@@ -44,8 +44,7 @@ struct exh_keyed {
     uint32_t damaged;       /* all others */
 };
 
-/* start is a number not yet used under this key: 63 random bits, or a battery-backed clock. Sets
- * counters to 0. */
+/* start is a number not yet used under this key: 63 random bits, or a battery-backed clock. */
 void exh_keyed_setup(
     struct exh_keyed *s, const struct exh_mac_key *key, enum exh_wire_role ours, uint64_t start);
 

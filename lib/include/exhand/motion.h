@@ -46,8 +46,7 @@ int exh_motion_setup(
     struct exh_motion_cfg *cfg, const struct exh_motion_par *par, struct exh_period T);
 
 /* First call of a tick, with the measured velocity. Limits *vel_mps_q27, and adds EXH_LIMIT_SPEED
- * to *limits if that changed it. Returns the faults due, SPEED or STUCK. Missed ticks do not
- * count. */
+ * to *limits if that changed it. Returns faults: SPEED, STUCK. Missed ticks do not count. */
 uint32_t exh_motion_step(
     struct exh_motion *s, const struct exh_motion_cfg *cfg, int32_t *vel_mps_q27, uint32_t *limits);
 

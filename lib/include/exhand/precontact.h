@@ -5,8 +5,7 @@
  * d = (P_C - P_F).n + t, negative before contact and 0 at touch. While d < d_lim, the virtual
  * contact moves along: q_lim = q - s*d. From the first tick with d >= d_lim, q_lim, plane and
  * material are frozen: later messages do not change them. The freeze ends when the contact law no
- * longer touches, and d < d_lim - hyst or the string is back by |d_lim| from its position at the
- * freeze.
+ * longer touches, and d < d_lim - hyst or the string is back by |d_lim| since the freeze.
  *
  * Doubt: the contact law depends on the string alone, whose zero may slip. So this module compares
  * it with the glove. A frozen contact is in doubt while the law touches and
@@ -67,8 +66,7 @@ enum exh_plane_kind {
 
 /* The plane of one finger in the frame of the palm, {R} of the paper. Preferably, point is the
  * point of the plane nearest the origin, computed once per object. All messages about one plane
- * then have the same bits, and so has the force. Any other point adds an error of at most 1 LSB of
- * d. */
+ * then have the same bits, and so has the force. Any other point adds an error of 1 LSB of d. */
 struct exh_plane {
     uint8_t kind;                /* enum exh_plane_kind */
     uint8_t material;            /* index of the material */

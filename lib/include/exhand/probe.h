@@ -168,8 +168,8 @@ void exh_weigh_start(struct exh_weigh *s, const struct exh_weigh_cfg *cfg, int32
 uint8_t exh_weigh_step(struct exh_weigh *s, const struct exh_weigh_cfg *cfg, int32_t cnt,
     int32_t coded_A_q26, int32_t mon_A_q26);
 
-/* The point of a mass after DONE. Its currents are means (error <= 1/2 LSB), its friction is
- * (lift - sink) / 2. */
+/* The point of a mass after DONE. Currents are means (error <= 1/2 LSB), friction is (lift - sink)
+ * / 2. */
 struct exh_calib_point exh_weigh_point(const struct exh_weigh *s, int32_t force_N_q20);
 
 #ifdef __cplusplus

@@ -96,8 +96,7 @@ struct exh_quad {
     uint32_t raw;    /* last counter value as given; the low bits count */
     int32_t cnt;     /* counts since the first sample; wraps modulo 2^32 */
     uint8_t started; /* 1 after the first sample, which is count 0 */
-    uint8_t lost;    /* 1: a sample moved faster than speed_max: cnt is wrong until the next
-                      * set-up */
+    uint8_t lost;    /* 1: a sample moved too fast: cnt is wrong until the next set-up */
 };
 
 /* Set-up (divides); par must outlive cfg. bits is the counter's width, which the board states.
@@ -107,9 +106,9 @@ struct exh_quad {
 int exh_quad_setup(
     struct exh_quad_cfg *cfg, const struct exh_quad_par *par, struct exh_period T, unsigned bits);
 
-/* The extended count after reading raw. Correct while the counter moves by less than half its range
- * between two calls. Bits of raw above the width are ignored. A movement above jump_cnt is ignored
- * and sets lost. */
+/* The extended count after reading raw. Correct while the counter moves by less than half its
+ * range between two calls. Bits of raw above the width are ignored. A step above jump_cnt only
+ * sets lost. */
 int32_t exh_quad_step(struct exh_quad *s, const struct exh_quad_cfg *cfg, uint32_t raw);
 
 /* The position of a count, m, q30; rounded half up. Saturates at +-2 m and keeps the sign. The

@@ -19,8 +19,7 @@ extern "C" {
 /* Parameters; rows in exh_quantizer_rows[]. */
 struct exh_quantizer_par {
     int32_t bits;         /* stable bits of the full int32_t range, 1 .. 24 */
-    int32_t hyst_raw_q16; /* hysteresis, 0 .. 2^(32-bits): peak-to-peak noise to suppress, LSB of
-                           * x */
+    int32_t hyst_raw_q16; /* hysteresis, LSB of x, 0 .. 2^(32-bits): peak-to-peak noise */
 };
 #define EXH_QUANTIZER_ROWS 2
 extern const struct exh_signal exh_quantizer_rows[EXH_QUANTIZER_ROWS];

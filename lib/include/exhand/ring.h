@@ -45,8 +45,7 @@ int exh_ring_due(const struct exh_ring *r);
 
 /* Copies a record's payload into the ring. Returns 1, or 0 if it is lost: there is no keyframe
  * before it, or it exceeds 65535 bytes or the memory. If the call is interrupted at any
- * instruction, the ring keeps its content, perhaps without the oldest parts. It is readable after a
- * halt. */
+ * instruction, the ring keeps its content, perhaps without the oldest parts. */
 int exh_ring_put(
     struct exh_ring *r, uint8_t type, uint32_t tick, const void *payload, uint32_t len_B);
 

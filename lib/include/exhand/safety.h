@@ -173,8 +173,8 @@ struct exh_safety_in {
     uint8_t ready;   /* enum exh_arm: steps that the scene confirms */
 };
 
-/* First call of a tick. Returns the permit for exh_drive_force_step(). Impossible state: FAULT,
- * LOGIC. */
+/* First call of a tick. Returns the permit for exh_drive_force_step(). An impossible state becomes
+ * FAULT with cause LOGIC. */
 struct exh_permit exh_safety_step(
     struct exh_safety *s, const struct exh_safety_cfg *cfg, struct exh_safety_in in);
 

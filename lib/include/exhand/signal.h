@@ -3,8 +3,7 @@
  *
  * Each module defines the rows of its own parameter struct. All fields of that struct are int32_t,
  * in the order of the rows. A scene lists the rows of its modules, in the order of its own struct.
- * CSV headers, command-line options, --help, the parameter image and tables in docs/ all come from
- * this table.
+ * CSV headers, command-line options, --help, the parameter image and tables in docs/ come from it.
  *
  *   uint16_t finger;
  *   int32_t i = exh_signal_find(table, EXH_CONTACT_K_ID, EXH_INDEX);
@@ -22,8 +21,8 @@
 extern "C" {
 #endif
 
-/* When a value may change, and in which direction it may add force. authority.h lists who may
- * change it. */
+/* When a value may change, and in which direction it may add force. authority.h says who may change
+ * it. */
 enum exh_signal_when {
     EXH_WHEN_OUTPUT, /* not a parameter: read only */
     EXH_WHEN_SETUP,  /* before the loop starts; refused once locked */
@@ -40,7 +39,7 @@ enum exh_signal_when {
     EXH_WHENS          /* number of entries */
 };
 
-/* The register of ids, 0xMMNN: MM is the module, NN the row. test/module/unit/rows_test.c lists
+/* The register of ids, 0xMMNN: MM is the module, NN the row. test/module/unit/rows_test.c has them
  * all.
  *
  *   02 quad   03 velocity   04 contact   05 drive     06 safety       07 filter     08 quantizer
@@ -90,8 +89,7 @@ struct exh_signal_table {
 /* The number of values that the table describes. */
 uint32_t exh_signal_count(const struct exh_signal_table *t);
 
-/* The row of value i. Stores the instance in *instance unless it is NULL. NULL if i is too
- * large. */
+/* The row of value i. Stores the instance in *instance unless it is NULL. NULL: no such i. */
 const struct exh_signal *exh_signal_at(
     const struct exh_signal_table *t, uint32_t i, uint16_t *instance);
 

@@ -27,8 +27,7 @@ struct exh_table {
 };
 
 /* Checks knot[n] and computes the slopes. -EXH_E_RANGE: n not 2 .. 255, x or y spans more than
- * 2^31-1, or a slope is 2^31 or more or below 2^-32. -EXH_E_MONOTONE: x or y does not rise
- * strictly. */
+ * 2^31-1, or a slope is 2^31 or more or below 2^-32. -EXH_E_MONOTONE: x or y repeats or falls. */
 int exh_table_setup(struct exh_knot *knot, unsigned n);
 
 /* Writes the inverse of table src[n] to dst[n]; dst may be src. If all slopes are >= 1, or

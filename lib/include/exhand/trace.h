@@ -3,8 +3,8 @@
  *
  * It reads the outputs of a tick and changes nothing. The trace of Modbus is outside the scene,
  * keyframe and log; a trace that goes over the wire is part of the scene's state. Each frame has a
- * number, one more than the frame before. Numbers continue across traces, so a reader detects lost
- * frames.
+ * number, one more than the frame before. Numbers continue across traces, so a reader detects
+ * losses.
  *
  *   err = exh_trace_start(&trace, &(struct exh_trace_request){.every = 4, .index = {0, 1, 2, 3}});
  *   exh_trace_step(&trace, tick, signal); // after each tick */

@@ -50,9 +50,9 @@ struct exh_tracking {
 int exh_tracking_setup(
     struct exh_tracking_cfg *cfg, const struct exh_tracking_par *par, struct exh_period T);
 
-/* First call of a tick, with the current of exh_drive_monitor_A_q26(). Returns 1 while the current
- * has not followed for cfg->ticks ticks including this one, else 0. Raise EXH_FAULT_TRACKING then,
- * in every state. */
+/* First call of a tick, with the current of exh_drive_monitor_A_q26(). Returns 1 while the
+ * current has not followed for cfg->ticks ticks including this one, else 0. Raise
+ * EXH_FAULT_TRACKING then. */
 int exh_tracking_step(
     struct exh_tracking *s, const struct exh_tracking_cfg *cfg, int32_t mon_A_q26);
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Units and fixed-point formats: the table of docs/NUMERICS.md as constants. A test compares the
- * two.
+/* Units and fixed-point formats: the table of docs/NUMERICS.md as constants. A test compares them.
  *
  * A value in format qN is an int32_t that holds the quantity times 2^N. The range below is that of
  * the format. The range of a parameter is narrower; its row (signal.h) gives it.

@@ -7,14 +7,14 @@
 
 #include <stddef.h>
 
-/* What a parameter may be, whether it comes from a table or from ROM. */
+/* Ranges of the parameters, from a signal table or from ROM. */
 #define SLEW_MAX_NPS      10000000
 #define SLEW_DOWN_MIN_NPS 1000
 #define I_PEAK_MIN_A_Q26  EXH_Q(1, 10, EXH_Q_CUR)
 #define I_PEAK_MAX_A_Q26  EXH_Q(66, 10, EXH_Q_CUR)
 #define I_CONT_MAX_A_Q26  EXH_Q(33, 10, EXH_Q_CUR)
 #define PEAK_MAX_MS       2700
-/* A ceiling of no force at all would be another way to say f_max = 0. */
+/* A person's limit of 0 N would duplicate f_max = 0. */
 #define PERSON_MIN_N_Q20 EXH_Q(1, 8, EXH_Q_FORCE)
 
 const struct exh_signal exh_drive_rows[EXH_DRIVE_ROWS] = {
@@ -22,10 +22,10 @@ const struct exh_signal exh_drive_rows[EXH_DRIVE_ROWS] = {
         "f_max", "n", "force limit"},
     {0x0502, 0, EXH_WHEN_BOUND, 1, SLEW_MAX_NPS, 200000, "slew_up", "n_per_s",
         "fastest rise of force"},
-    /* At 1 kN/s the 22 N of a CyberGrasp motor are gone in 22 ms: letting go is never slow. */
+    /* At 1 kN/s the 22 N of a CyberGrasp motor fall to 0 in 22 ms, so release is never slow. */
     {0x0503, 0, EXH_WHEN_BOUND, SLEW_DOWN_MIN_NPS, SLEW_MAX_NPS, 200000, "slew_down", "n_per_s",
         "fastest fall of force"},
-    /* Elmo Castanet: 6.6 A peak for about 2.7 s, 3.3 A for ever (hardware facts). */
+    /* Elmo Castanet data sheet: 6.6 A peak for about 2.7 s, 3.3 A continuous. */
     {0x0504, EXH_Q_CUR, EXH_WHEN_SETUP, I_PEAK_MIN_A_Q26, I_PEAK_MAX_A_Q26, I_PEAK_MAX_A_Q26,
         "i_peak", "a", "peak current of the drive"},
     {0x0505, EXH_Q_CUR, EXH_WHEN_SETUP, 0, I_CONT_MAX_A_Q26, I_CONT_MAX_A_Q26, "i_cont", "a",
@@ -50,13 +50,13 @@ const struct exh_signal exh_drive_rows[EXH_DRIVE_ROWS] = {
 
 /* --- set-up --- */
 
-/* Ticks of the longest peak at the highest rate, which a timer may exceed by 1000 ppm. */
+/* Ticks of the longest peak at the highest rate; a timer may exceed the rate by 1000 ppm. */
 #define PEAK_TICKS_MAX ((int64_t)PEAK_MAX_MS * 20020 / 1000 + 1)
 EXH_STATIC_ASSERT(i2t_has_room,
     ((int64_t)I_PEAK_MAX_A_Q26 >> 10) * (I_PEAK_MAX_A_Q26 >> 10) < INT64_MAX / 2 / PEAK_TICKS_MAX);
 
-/* I2t: heat above i_cont^2, in A^2 ticks with 32 fraction bits, so that no
- * multiplication by the period is needed in the tick. */
+/* I2t: heat above i_cont^2, in A^2 ticks with 32 fraction bits. The tick does not multiply by the
+ * period. */
 static int setup_i2t(
     struct exh_drive_cfg *cfg, const struct exh_drive_par *par, struct exh_period T)
 {
@@ -73,12 +73,12 @@ static int setup_i2t(
     if (excess_q32 == 0) { return 0; }
     cfg->i2t_budget_q32 = (int64_t)(excess_q32 * ticks);
     while (cfg->i2t_budget_q32 >> cfg->i2t_shift > INT32_MAX) { cfg->i2t_shift++; }
-    /* Never 0: one LSB of peak above i_cont, i_peak 0.1 A, is 2^13 already. */
+    /* Never 0: one LSB of peak above i_cont at i_peak = 0.1 A gives 2^13. */
     knee = (uint64_t)cfg->i2t_budget_q32 >> cfg->i2t_shift >> 2;
     return exh_gain_set(&cfg->i2t_fold, (uint64_t)(par->i_peak_A_q26 - par->i_cont_A_q26), knee);
 }
 
-/* exh_table_setup() was here: slopes are filled, so knots rise. */
+/* Checks that exh_table_setup() has filled the slopes; then the knots rise. */
 static int table_ok(struct exh_table t)
 {
     for (unsigned i = 0; i + 1 < t.n; i++) {
@@ -87,8 +87,8 @@ static int table_ok(struct exh_table t)
     return t.n != 1;
 }
 
-/* Parameters in ROM never passed their rows, and a negative span would open the
- * gate. The rows are not linked for this: they are names and help besides. */
+/* Parameters in ROM have passed no row check, and a negative span would open the gate. Does not use
+ * the rows, since they would link names and help texts. */
 static int par_ok(const struct exh_drive_par *par, int monitor)
 {
     return exh_inside(par->f_max_N_q20, 0, EXH_FORCE_MAX_N_Q20) &&
@@ -105,22 +105,22 @@ static int par_ok(const struct exh_drive_par *par, int monitor)
            exh_inside(par->mon_zero_raw, INT16_MIN, INT16_MAX) && (!monitor || par->mon_A_q40 > 0);
 }
 
-/* The largest whole number of D/A codes within a limit: a current of at most that is rounded to no
- * code beyond the limit. */
+/* The largest whole number of D/A codes within a limit. The gate rounds no current up to it beyond
+ * the limit. */
 static int32_t whole_codes(const struct exh_drive_cfg *cfg, int32_t limit_A_q26)
 {
     const int64_t codes = (int64_t)limit_A_q26 * cfg->par->dac_rawpA_q16 >> (EXH_Q_CUR + EXH_Q_DAC);
     return exh_clamp(exh_gain_floor(cfg->dac_A_q26, (int32_t)codes), 0, limit_A_q26);
 }
 
-/* The person's ceiling, made once: it costs no tick anything. */
+/* The person's limit, computed once, so that it costs no time in the tick. */
 static void setup_top(struct exh_drive_cfg *cfg, const struct exh_drive_par *par)
 {
     const int32_t end_N_q20 = cfg->force_to_cur.knot[cfg->force_to_cur.n - 1].x;
     const int cut = par->person_N_q20 < end_N_q20;
     cfg->f_top_N_q20 = cut ? par->person_N_q20 : end_N_q20;
     cfg->top_limit = cut ? EXH_LIMIT_PERSON : EXH_LIMIT_FORCE;
-    /* Of the same codes it is i_peak that holds back. */
+    /* If both give the same code, report i_peak as the limit. */
     cfg->i_top_A_q26 = whole_codes(cfg, par->person_A_q26);
     cfg->i_whole_A_q26 = whole_codes(cfg, par->i_peak_A_q26);
     if (cfg->i_top_A_q26 >= cfg->i_whole_A_q26) { cfg->i_top_A_q26 = par->i_peak_A_q26; }
@@ -153,11 +153,11 @@ int exh_drive_setup(struct exh_drive_cfg *cfg, const struct exh_drive_par *par, 
 
 /* --- the tick --- */
 
-/* Closed: nothing is left for the slew limit to remember. */
+/* Gate closed: the slew limit has no force to remember. */
 static uint32_t no_force(
     struct exh_drive *s, int64_t asked_N_q20, int32_t small_N_q20, struct exh_force_ledger *f)
 {
-    /* What passivity takes for a while is no proof that the finger stands free. */
+    /* A force reduced by passivity does not prove that the finger is free. */
     const int64_t law_N_q20 = exh_wrap_diff64(asked_N_q20, f->passivity_N_q20);
     s->force_N_q20 = 0;
     s->fall_N_q20 = 0;
@@ -166,8 +166,8 @@ static uint32_t no_force(
            (law_N_q20 > small_N_q20 ? EXH_LIMIT_FORCE : 0u);
 }
 
-/* Nothing that is asked for counts any more, only what is held: a law that lost its inputs must
- * not speak. The step rounded up, so that the last one is none too small. */
+/* Uses the held force only, not the request: a law that lost its inputs must not act. The step is
+ * rounded up, so that the last step is not too small. */
 static uint32_t release(struct exh_drive *s, int64_t asked_N_q20, const struct exh_permit *permit,
     struct exh_force_ledger *f)
 {
@@ -182,7 +182,7 @@ static uint32_t release(struct exh_drive *s, int64_t asked_N_q20, const struct e
     return EXH_LIMIT_RELEASE;
 }
 
-/* More than any force: a longer step ends where this one does, and 32 bits are enough. */
+/* Above any force: a longer step has the same end, and 32 bits suffice. */
 #define STEP_MAX_N_Q20 (INT32_C(1) << 30)
 EXH_STATIC_ASSERT(no_force_is_beyond_a_step, EXH_FORCE_MAX_N_Q20 < STEP_MAX_N_Q20);
 
@@ -199,7 +199,7 @@ uint32_t exh_drive_force_within(struct exh_drive *s, const struct exh_drive_cfg 
         exh_gain_mul(cfg->tick_N_q20, rises ? own.slew_up_Nps : cfg->par->slew_down_Nps);
     const int32_t step = exh_clamp(rate, 1, STEP_MAX_N_Q20);
     const int32_t end = exh_wrap_add(s->force_N_q20, rises ? step : -step);
-    const int32_t slewed = (held > end) == rises ? end : held; /* the nearer */
+    const int32_t slewed = (held > end) == rises ? end : held; /* the nearer one */
     uint32_t limits = 0;
 
     f->clamp_N_q20 = f->slew_N_q20 = f->release_N_q20 = 0;
@@ -214,14 +214,14 @@ uint32_t exh_drive_force_within(struct exh_drive *s, const struct exh_drive_cfg 
     if (slewed != held) { limits |= EXH_LIMIT_SLEW; }
     f->clamp_N_q20 = exh_wrap_diff64(held, asked);
     f->slew_N_q20 = (int64_t)slewed - held;
-    f->force_N_q20 = slewed; /* between held and the last force */
+    f->force_N_q20 = slewed; /* between held and the previous force */
     s->force_N_q20 = f->force_N_q20;
     s->fall_N_q20 = 0;
     return limits;
 }
 
-/* What I2t allows now: i_cont, plus a share of the peak while there is budget. Behind the knee, at
- * a quarter of it, that is all of the peak: with half of it left there is nothing to compute. */
+/* The present limit of I2t: i_cont, plus a share of the peak while budget remains. Above the knee,
+ * at a quarter of the budget, it is the whole peak. With half left, skip the computation. */
 static int32_t i2t_limit(const struct exh_drive *s, const struct exh_drive_cfg *cfg)
 {
     if (s->i2t_q32 < cfg->i2t_budget_q32 >> 1) { return cfg->par->i_peak_A_q26; }
@@ -231,7 +231,7 @@ static int32_t i2t_limit(const struct exh_drive *s, const struct exh_drive_cfg *
     return cfg->par->i_cont_A_q26 + exh_clamp(extra, 0, span);
 }
 
-/* What the code of a current stands for, as the gate makes it. */
+/* The current of the code that the gate makes. */
 static int32_t coded(const struct exh_drive_cfg *cfg, int32_t cur_A_q26)
 {
     const int32_t code =
@@ -246,7 +246,7 @@ uint32_t exh_drive_current_step(struct exh_drive *s, const struct exh_drive_cfg 
     const int32_t allowed = i2t_limit(s, cfg);
     const int warm = allowed < cfg->par->i_peak_A_q26;
     const int32_t hot = warm ? whole_codes(cfg, allowed) : cfg->i_whole_A_q26;
-    /* Without heat the two limits are one, and it is the peak's. */
+    /* Without heat both limits are equal; report PEAK. */
     const int32_t drive = warm ? cfg->par->i_peak_A_q26 : hot;
     const int person = cfg->i_top_A_q26 < drive;
     const int32_t top = person ? cfg->i_top_A_q26 : drive;
@@ -258,7 +258,7 @@ uint32_t exh_drive_current_step(struct exh_drive *s, const struct exh_drive_cfg 
         s->i2t_q32 + (int64_t)now_A_q16 * now_A_q16 - (int64_t)cont_A_q16 * cont_A_q16;
     const int64_t most = exh_wrap_add64(cfg->i2t_budget_q32, cfg->i2t_budget_q32);
 
-    /* One tick may overshoot the budget, by no more than that again; it is not forgotten. */
+    /* One tick may exceed the budget, by at most one tick's heat. The excess counts later. */
     s->i2t_q32 = heat < 0 ? 0 : heat > most ? most : heat;
     i->table_A_q26 = table;
     i->peak_A_q26 = (int64_t)peak - table;
@@ -288,7 +288,7 @@ void exh_drive_serialize(struct exh_bytes *c, struct exh_drive *s)
     exh_bytes_i32(c, &s->force_N_q20);
     exh_bytes_i32(c, &s->fall_N_q20);
     exh_bytes_i64(c, &s->i2t_q32);
-    /* From damaged bytes: no force out of range, and no heat that a sum with it overflows. */
+    /* Damaged bytes: keep the force in range and the heat low enough for sums. */
     s->force_N_q20 = exh_clamp(s->force_N_q20, 0, EXH_FORCE_MAX_N_Q20);
     s->fall_N_q20 = exh_clamp(s->fall_N_q20, 0, EXH_FORCE_MAX_N_Q20 + 1);
     if (s->i2t_q32 < 0 || s->i2t_q32 > INT64_MAX / 2) { s->i2t_q32 = INT64_MAX / 2; }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A frame of the device as bytes. */
+/* A frame of the device through a cursor. */
 #include "exhand/frame.h"
 
 void exh_drive_in_serialize(struct exh_bytes *c, struct exh_drive_in *in, unsigned n)

@@ -5,8 +5,8 @@
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
-/* The code for one current: within the span, the peak current and the person's ceiling of zero, no
- * further from it than `most`, and of 16 bits. */
+/* The code for one current: within the span, the peak current and the person's limit, at most
+ * most_raw from zero, and within 16 bits. */
 static uint16_t code_of(
     const struct exh_drive_par *par, int32_t cur_A_q26, uint16_t most_raw, uint32_t *limits)
 {
@@ -38,14 +38,14 @@ void exh_gate_step(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsign
     }
     for (unsigned k = 0; k < n; k++) {
         const struct exh_drive_par *par = cfg[k].par;
-        /* Whatever the ledger holds: no sum of it may be undefined here. */
+        /* Wraps by definition: no content of the ledger may cause undefined behaviour. */
         const int64_t held_back = exh_wrap_add64(i[k].peak_A_q26, i[k].i2t_A_q26);
         const int64_t asked = exh_wrap_add64(i[k].table_A_q26, held_back);
         const int32_t passed = open ? exh_sat32(asked) : 0;
         int32_t off;
 
         if (passed != asked) { limits[k] |= EXH_LIMIT_GATE; }
-        /* What falls never rises, whatever became of table, scale and limits since. */
+        /* A falling current never rises, even if table, scale or limits have changed. */
         out->dac_raw[k] = code_of(par, passed, falls ? s->off_raw[k] : UINT16_MAX, &limits[k]);
         off = (int32_t)out->dac_raw[k] - par->dac_zero_raw;
         s->off_raw[k] = (uint16_t)(off < 0 ? -off : off);

@@ -8,8 +8,8 @@
 #define V_MAX_Q20   EXH_Q(100, 1, EXH_Q_SUPPLY)
 #define TIME_MAX_MS 1000
 
-/* Default scale: 24 V through 1:4 onto 305.2 uV per code. Whether there is a monitor, and its
- * divider, nobody can tell but who built the box: not judged until supply_min is given. */
+/* Default scale: 24 V through a divider of 1:4, 305.2 uV per code. Only the builder knows whether a
+ * monitor exists and its divider. So there is no check until supply_min is set. */
 const struct exh_signal exh_supply_rows[EXH_SUPPLY_ROWS] = {
     {0x0D11, EXH_Q_SUPPLY, EXH_WHEN_SETUP, 0, V_MAX_Q20, 0, "supply_min", "v",
         "lowest voltage of the drives' supply; 0: it is not judged"},
@@ -38,7 +38,7 @@ int exh_supply_setup(
     least = exh_udiv64((uint64_t)(uint32_t)par->min_V_q20 << up, (uint32_t)par->scale_V_q30, &rest);
     least += rest != 0;
     most = exh_udiv64((uint64_t)(uint32_t)par->max_V_q20 << up, (uint32_t)par->scale_V_q30, NULL);
-    /* A voltage that the monitor cannot show is no limit. */
+    /* Refuse a limit that the monitor cannot represent. */
     if (most >= INT16_MAX || least > most) { return -EXH_E_RANGE; }
     cfg->min_raw = (int16_t)least;
     cfg->max_raw = (int16_t)most;

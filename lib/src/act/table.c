@@ -33,11 +33,11 @@ int exh_table_invert(struct exh_knot *dst, const struct exh_knot *src, unsigned 
 
 int32_t exh_table_at(struct exh_table t, int32_t x)
 {
-    const unsigned n = (uint8_t)(t.n - 1u) + 1u; /* an n of damaged memory ends somewhere */
+    const unsigned n = (uint8_t)(t.n - 1u) + 1u; /* stays in range for a damaged n */
     const struct exh_knot *const last = t.knot + n - 1u;
     const struct exh_knot *k = t.knot;
     const int32_t in = exh_clamp32(x, k->x, last->x);
-    /* By halves, as often for every x: the cost must not depend on the force. */
+    /* Bisection with a fixed number of steps: the cost must not depend on the force. */
     for (unsigned left = n; left > 1;) {
         const unsigned half = left / 2;
         k += half & (0u - (unsigned)(in >= k[half].x));

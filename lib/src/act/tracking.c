@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Monitor that compares the measured current with the coded one. */
+/* Compares the measured current with the coded one. */
 #include "exhand/tracking.h"
 
 #include "exhand/error.h"
@@ -10,13 +10,13 @@
 #define TOL_MIN_A_Q26 EXH_Q(1, 10, EXH_Q_CUR)
 #define TOL_MAX_A_Q26 EXH_Q(1, 1, EXH_Q_CUR)
 #define TIME_MAX_MS   100
-/* An output may take three ticks, and the monitor be converted in the tick before. */
+/* An output may take three ticks, and the monitor may be converted one tick before. */
 #define LATE_TICKS 4
 
-/* Default tolerance: the paper's monitor noise is 47.2 mA peak to peak, D/A and monitor steps
- * 0.5 mA each, 3 % of difference in scale 0.2 A at the peak. Default time: an output 10 ms late,
- * 0.25 ms to the drive's next 4 kHz sample, 2.5 ms of current loop and monitor (0.11 and 0.57 ms)
- * until 0.2 A are left of 13.2 A; rounded up to 20 ms for slower ones. */
+/* Default tolerance: the monitor noise of the paper is 47.2 mA peak to peak. D/A and monitor steps
+ * are 0.5 mA each. A scale difference of 3 % gives 0.2 A at the peak. Default time: an output is up
+ * to 10 ms late, and the drive samples at 4 kHz (0.25 ms). Current loop and monitor (0.11 and 0.57
+ * ms) need 2.5 ms from 13.2 A to 0.2 A. Rounded up to 20 ms for slower drives. */
 const struct exh_signal exh_tracking_rows[EXH_TRACKING_ROWS] = {
     {0x0D01, EXH_Q_CUR, EXH_WHEN_SETUP, TOL_MIN_A_Q26, TOL_MAX_A_Q26, EXH_Q(1, 4, EXH_Q_CUR),
         "track_tol", "a", "current monitored differs from what is coded by no more"},

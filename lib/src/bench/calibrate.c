@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A finger's calibration: fit of its points, the tables made of them, and its image. */
+/* Calibration of a finger: fit of its points, the tables made from them, and its image. */
 #include "exhand/calibrate.h"
 
 #include "exhand/bytes.h"
@@ -10,7 +10,7 @@
 #define IMAGE_CRC_B   4u
 #define CUR_MAX_A_Q26 EXH_Q(66, 10, EXH_Q_CUR)
 #define MON_MAX_A_Q26 EXH_Q(10, 1, EXH_Q_CUR)
-#define RATIO_MAX_NPA 2047 /* the least is 0.1 */
+#define RATIO_MAX_NPA 2047 /* the minimum is 0.1 */
 
 /* --- mean --- */
 
@@ -23,7 +23,7 @@ void exh_mean_add(struct exh_mean *m, int32_t v)
 
 int32_t exh_mean_value(const struct exh_mean *m)
 {
-    /* Shifted by n 2^31 the sum is never negative, and the quotient is off by 2^31. */
+    /* Adding n 2^31 makes the sum non-negative and the quotient larger by 2^31. */
     const int64_t lift = (int64_t)m->n << 31;
     uint64_t quot, rem;
     if (m->n == 0) { return 0; }
@@ -39,8 +39,8 @@ static int32_t current_of(const struct exh_calib_point *p, enum exh_calib_column
     return which == EXH_CALIB_MONITOR ? p->mon_A_q26 : p->cur_A_q26;
 }
 
-/* Force over current, which is above 0 where the force is; raw force q20 per raw current q26 is
- * 2^-6 N/A. */
+/* Force per current; a force above 0 requires a current above 0. Force q20 per current q26 is 2^-6
+ * N/A. */
 static int ratio_ok(int64_t force, int64_t cur)
 {
     const int64_t force_q26 = force * (1 << (EXH_Q_CUR - EXH_Q_FORCE)); /* < 2^33 */
@@ -81,7 +81,7 @@ int32_t exh_calib_residual_N_q20(
     return exh_sat32(p->force_N_q20 - exh_gain_mul(fit->gain, current_of(p, which)));
 }
 
-/* --- what may be wrong --- */
+/* --- names of errors --- */
 
 const char *exh_calib_error_text(unsigned what)
 {
@@ -118,8 +118,8 @@ static int values_ok(const struct exh_calib *c)
 
 /* --- tables --- */
 
-/* All points, each in its range and above the one before it: on the bench, a mass hung
- * on twice or in another order, or a monitor that is not connected. */
+/* Checks that all points are in range and rise. Typical errors on the bench: a mass hung on twice
+ * or in another order, or a monitor that is not connected. */
 static int rises(const struct exh_calib *c, enum exh_calib_column which,
     enum exh_calib_error_kind what, struct exh_calib_error *bad)
 {
@@ -137,8 +137,8 @@ static int rises(const struct exh_calib *c, enum exh_calib_column which,
     return 0;
 }
 
-/* The point at which the tables end when they go on straight; 0 where they don't. A
- * slope below the monitor's or the table's own resolution is no table either. */
+/* Computes the end of a table beyond its last point; 0 if the table ends at that point. Refuses a
+ * slope below the resolution of monitor or table. */
 static int straight_on(
     const struct exh_calib *c, enum exh_calib_column which, struct exh_knot *knot)
 {
@@ -223,7 +223,7 @@ int32_t exh_calib_ratio_NpA_q20(const struct exh_calib_point *p, enum exh_calib_
     return ratio < INT32_MAX ? (int32_t)ratio : INT32_MAX;
 }
 
-/* Points are in range and kf is at most 512 N/A, 2^29: wanted < 2^59. */
+/* Points are in range and kf is at most 512 N/A = 2^29, so wanted < 2^59. */
 static int is_near(int64_t force, int64_t cur, int64_t kf)
 {
     const int64_t twice = force * (2 << EXH_Q_CUR), wanted = kf * cur;
@@ -276,7 +276,7 @@ static void head_bytes(struct exh_bytes *b, struct head *h)
     exh_bytes_u16(b, &h->points);
 }
 
-/* All behind the head but the CRC. */
+/* All fields after the head except the CRC. */
 static void body_bytes(struct exh_bytes *b, struct exh_calib *c)
 {
     uint32_t *const id[] = {&c->device_id, &c->finger, &c->day, &c->valid_days};
@@ -297,7 +297,7 @@ int32_t exh_calib_save(
 {
     struct head h = {IMAGE_MAGIC, EXH_CALIB_VERSION, c->points};
     struct exh_bytes b = exh_bytes_writer(buf, cap_B);
-    struct exh_calib copy = *c; /* the cursor's functions go both ways */
+    struct exh_calib copy = *c; /* the cursor's functions also read */
     uint32_t crc;
     const int err = exh_calib_validate(c, bad);
     if (err < 0) { return err; }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Bench motions: the probe that shows a drive's polarity, and homing. */
+/* Bench motions: the probe, which checks the polarity of a drive, and homing. */
 #include "exhand/probe.h"
 
 #include "exhand/error.h"
@@ -11,7 +11,7 @@
 #define DWELL_MAX_MS   10000
 #define TIME_MAX_MS    1000000
 #define MOVE_MIN_CNT   2
-#define FAR_CNT        (INT32_C(1) << 30) /* a limit beyond it would wrap */
+#define FAR_CNT        (INT32_C(1) << 30) /* a higher limit would wrap */
 #define MAX_M_Q30      EXH_Q(1, 1, EXH_Q_POS)
 
 const char *exh_probe_result_text(unsigned result)
@@ -36,7 +36,7 @@ uint32_t exh_probe_ticks(int32_t ms, struct exh_period T)
     return n < 1 ? 1 : n; /* 10^6 ms at 20 kHz are 2*10^7 */
 }
 
-/* Two at least: in one alone nothing can have moved. */
+/* At least 2 ticks, since one tick shows no movement. */
 static uint32_t dwell_of(int32_t ms, struct exh_period T)
 {
     const uint32_t n = exh_probe_ticks(ms, T);
@@ -86,7 +86,7 @@ void exh_probe_start(struct exh_probe *s, int32_t cnt, int32_t cur_A_q26)
         .result = EXH_PROBE_BUSY};
 }
 
-/* What the counts say; BUSY: nothing yet. out: counts moved outwards in this dwell. */
+/* The result from the counts; BUSY: none yet. out: counts moved outwards in this dwell. */
 static uint8_t judge(
     const struct exh_probe *s, const struct exh_probe_cfg *cfg, int32_t cnt, int64_t out)
 {
@@ -99,7 +99,7 @@ static uint8_t judge(
     return s->tick >= cfg->ticks ? EXH_PROBE_TIME : EXH_PROBE_BUSY;
 }
 
-/* A dwell is over: the next current, if the last dwell was one to step from. */
+/* Ends a dwell: sets the next current, if the string was quiet in the last dwell. */
 static void next_dwell(
     struct exh_probe *s, const struct exh_probe_cfg *cfg, int32_t cnt, int64_t out)
 {

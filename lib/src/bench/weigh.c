@@ -34,8 +34,8 @@ void exh_weigh_start(struct exh_weigh *s, const struct exh_weigh_cfg *cfg, int32
     s->cur_A_q26 = s->probe.cur_A_q26;
 }
 
-/* Between lift and sink friction holds the mass: wait for it, then take the means. A
- * movement meanwhile and it waits again. */
+/* Friction holds the mass between lift and sink. Waits for rest, then averages. Movement restarts
+ * it. */
 static uint8_t hold(struct exh_weigh *s, const struct exh_weigh_cfg *cfg, int32_t cnt,
     int32_t coded_A_q26, int32_t mon_A_q26)
 {
@@ -58,7 +58,7 @@ static uint8_t hold(struct exh_weigh *s, const struct exh_weigh_cfg *cfg, int32_
     return EXH_PROBE_BUSY;
 }
 
-/* The probe up or down; at its end the next phase begins. */
+/* Runs the probe up or down; its end starts the next phase. */
 static uint8_t lift_or_sink(struct exh_weigh *s, const struct exh_weigh_cfg *cfg, int32_t cnt)
 {
     const int up = s->phase == UP;
@@ -75,7 +75,7 @@ static uint8_t lift_or_sink(struct exh_weigh *s, const struct exh_weigh_cfg *cfg
     }
     s->phase = up ? DOWN : REST;
     exh_probe_start(&s->probe, cnt, s->cur_A_q26);
-    s->probe.start_cnt = start_cnt; /* the travel limit is of all phases together */
+    s->probe.start_cnt = start_cnt; /* one travel limit for all phases */
     return EXH_PROBE_BUSY;
 }
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Set-up of precontact by figures: apart from it, so that an image that asks nobody links
- * nothing of it. */
+/* Design values for precontact. A separate file, so that other images do not link it. */
 #include "exhand/precontact.h"
 
 #include "exhand/error.h"
@@ -16,7 +15,7 @@ static uint64_t div_up(uint64_t num, uint64_t den)
     return quot + (rem > 0);
 }
 
-/* How far at v (q27) in so long, m q30; v < 2^31, t < 2^32. q30 = q27 * 8. */
+/* Distance at speed v (q27) in time t, m q30, for v < 2^31, t < 2^32. q30 = q27 * 8. */
 static uint64_t way_m_q30(int32_t v_mps_q27, uint64_t t_ns)
 {
     return div_up((uint64_t)v_mps_q27 * t_ns, NS / 8);
@@ -43,7 +42,7 @@ int exh_precontact_advise(struct exh_precontact_advice *advice,
     tick_ns = div_up(NS * T.num, T.den);
     late_ns = tick_ns + UINT64_C(1000) * (uint64_t)need->lag_us;
     d = way_m_q30(need->speed_mps_q27, late_ns) + noise;
-    /* The message is used in the next tick, and d < d_lim has to be seen with it. */
+    /* The next tick uses the message and must find d < d_lim. */
     ray = way_m_q30(need->speed_mps_q27, age_ns + tick_ns) + noise + off;
     error = way_m_q30(need->object_mps_q27, age_ns);
     if (need->radius_m_q30 > 0) {

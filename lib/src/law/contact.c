@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Contact law: spring, damper and pullback at one virtual wall. */
+/* Contact law: spring, damper and pull-back at one virtual wall. */
 #include "exhand/contact.h"
 
 #include "exhand/fix.h"
@@ -44,6 +44,6 @@ void exh_contact_serialize(struct exh_bytes *c, struct exh_contact *s)
     exh_bytes_u8(c, &s->inward);
     exh_bytes_u8(c, &s->touching);
     exh_bytes_u8(c, &s->started);
-    s->inward = s->inward != 0; /* factors of a force, from bytes */
+    s->inward = s->inward != 0; /* these bytes multiply forces */
     s->touching = s->touching != 0;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Rule for stiffness and damping: staging checks it, and slewed steps keep it. */
+/* Rule for stiffness and damping: staging checks it, and slewed steps obey it. */
 #include "exhand/gains.h"
 
 #include "exhand/contact.h"
@@ -54,10 +54,11 @@ static int same_rate(int32_t rate_Hz_q8, struct exh_period T)
     return (off < 0 ? -off : off) * 100 <= want;
 }
 
-/* What is inside is one piece, but for no wall: k_min is not above an inner knot alone. */
+/* Checks that the allowed region is connected, apart from "no wall": k_min is not above an inner
+ * knot between two higher ones. */
 static int hangs_together(const struct exh_gains_par *rule)
 {
-    int ends = 0; /* of rows of knots at k_min or above */
+    int ends = 0; /* ends of runs of knots at k_min or above */
     for (int32_t i = 1; i <= rule->knots; i++) {
         const int last = i == rule->knots || rule->k_Npm_q10[i] < rule->k_min_Npm_q10;
         ends += last && rule->k_Npm_q10[i - 1] >= rule->k_min_Npm_q10;
@@ -110,14 +111,14 @@ struct pair {
 
 static int is_none(struct pair at) { return at.k == 0 && at.b == 0; }
 
-/* (a - b) times (c - d) of what lies within 0 .. 2^30, exact. Other values wrap, and lie outside
- * the pieces anyway. */
+/* (a - b) times (c - d) of values within 0 .. 2^30, exact. Other values wrap; they lie outside
+ * anyway. */
 static inline int64_t area(int32_t a, int32_t b, int32_t c, int32_t d)
 {
     return (int64_t)exh_wrap_diff(a, b) * exh_wrap_diff(c, d);
 }
 
-/* Under the pieces, no wall only if it is there too. */
+/* On or below the segments. "No wall" only if it lies there, too. */
 static int is_under(const struct exh_gains_par *rule, struct pair at)
 {
     int under = 0;
@@ -148,14 +149,14 @@ int32_t exh_gains_k_max(const struct exh_gains_par *rule, int32_t b_Nspm_q20)
 
 /* --- staged --- */
 
-/* A scene with materials does not read the contact's. The row of b is the next. */
+/* A scene with materials does not use the contact's rows. The row of b follows. */
 static uint16_t k_id(const struct exh_params *p)
 {
     const int has = exh_signal_find(p->table, EXH_MATERIAL_K_ID, 0) >= 0;
     return has ? EXH_MATERIAL_K_ID : EXH_CONTACT_K_ID;
 }
 
-/* Both of an instance, or it has no wall. */
+/* Checks k and b of an instance; an instance without them has no wall. */
 static int pair_ok(const struct exh_params *p, const struct exh_gains_par *rule, uint16_t instance)
 {
     const uint16_t id = k_id(p);
@@ -209,15 +210,15 @@ void exh_gains_enable(struct exh_params *p, int on)
     p->led[1] = on ? EXH_CONTACT_B_ID : 0;
 }
 
-/* The k to go for: the goal's if no knot between is below the straight line there; else what passes
- * below all of them. Both pairs are under the pieces. */
+/* The k to move to: the goal's, if no knot between lies below the straight line. Otherwise the
+ * highest k that passes below all of them. Both pairs obey the rule. */
 static int32_t aim(const struct exh_gains_par *rule, struct pair at, struct pair goal)
 {
     int32_t low = at.k;
     int straight = 1;
     for (int32_t i = 0; i < rule->knots; i++) {
         const int32_t b = rule->b_Nspm_q20[i], k = rule->k_Npm_q10[i];
-        const int64_t line = area(goal.k, at.k, b, at.b); /* there, above at, times the way of b */
+        const int64_t line = area(goal.k, at.k, b, at.b); /* line above at, times b's distance */
         const int64_t knot = area(k, at.k, goal.b, at.b);
         if (at.b < goal.b ? b <= at.b || b >= goal.b : b >= at.b || b <= goal.b) { continue; }
         straight &= at.b < goal.b ? line <= knot : line >= knot;
@@ -226,9 +227,8 @@ static int32_t aim(const struct exh_gains_par *rule, struct pair at, struct pair
     return straight ? goal.k : low;
 }
 
-/* From under the pieces to under the pieces. One of the two may have to wait for the other: k falls
- * alone, since less stiff is inside too; b goes alone where k rises, since then the line there is
- * above k. */
+/* One step from an allowed pair to an allowed pair. k falls alone, since a lower stiffness is
+ * allowed. b moves alone where k rises, since the line there is above k. */
 static struct pair slewed(
     const struct exh_gains_par *rule, struct pair at, struct pair goal, unsigned shift)
 {
@@ -252,7 +252,7 @@ static struct pair stepped(
     if (!goal_under && !is_none(goal)) { return under ? at : none; }
     if (shift == 0) { return goal; }
     if (under && goal_under) { return slewed(rule, at, goal, shift); }
-    if (under) { /* no wall lies apart */
+    if (under) { /* "no wall" is separate */
         if (at.k <= rule->k_min_Npm_q10) { return none; }
         at.k = exh_params_slew_step(at.k, rule->k_min_Npm_q10, shift);
         return at;
@@ -262,8 +262,8 @@ static struct pair stepped(
     return goal;
 }
 
-/* While nothing is on its way, what is staged is what is active, or damaged, and nobody goes there:
- * that is the guard's to tell. */
+/* While nothing moves, staged and active values are equal or damaged. Then change nothing, so that
+ * the guard reports the damage. */
 void exh_gains_step(struct exh_params *p, const struct exh_gains_par *rule)
 {
     const int moves = p->moving;

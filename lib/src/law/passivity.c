@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Passivity observer and controller of one finger: energy given out and taken in. */
+/* Passivity observer and controller of one finger: energy received and returned. */
 #include "exhand/passivity.h"
 
 #include "exhand/error.h"
@@ -7,9 +7,9 @@
 #include "exhand/units.h"
 
 #define SPEED_MIN_MPS_Q27 EXH_Q(1, 10, EXH_Q_VEL)
-#define WAY_MAX_CNT       (INT32_C(1) << 24) /* 10 m/s at 1 Hz and 1 um: 10^7 */
+#define WAY_MAX_CNT       (INT32_C(1) << 24) /* 10 m/s at 1 Hz and 1 um gives 10^7 */
 #define LATE              2
-/* 100 N over 10^10 counts: no device gets there, and no sum leaves 64 bits. */
+/* 100 N over 10^10 counts: beyond any device, and no sum exceeds 64 bits. */
 #define ENERGY_MAX_NCNT_Q20 (INT64_C(1) << 60)
 
 const struct exh_signal exh_passivity_rows[EXH_PASSIVITY_ROWS] = {
@@ -51,20 +51,20 @@ int exh_passivity_setup(struct exh_passivity_cfg *cfg, const struct exh_passivit
 
 /* --- the tick --- */
 
-/* Between two ticks. Moved out, the least that may have been held counts, moved in the most. */
+/* Energy between two ticks. Outwards counts the lowest possible force, inwards the highest. */
 static void observe(struct exh_passivity *s, int32_t moved_cnt, int touching)
 {
     const int32_t held = s->held_N_q20, late = s->late_N_q20;
     const int32_t least = late < held ? late : held, most = late < held ? held : late;
     int64_t e = s->energy_Ncnt_q20 + (int64_t)(moved_cnt < 0 ? most : least) * moved_cnt;
 
-    /* A contact is over with a tick without it and without its force. Energy is not lent to the
-     * next one. Debts are forgotten once no output can be on its way. */
+    /* A contact ends with a tick without contact and without force. Its energy does not count for
+     * the next one. Debt is cleared when no output can still act. */
     if (held == 0 && (!touching || !s->touching) && (e > 0 || late == 0)) { e = 0; }
     s->energy_Ncnt_q20 = exh_clamp64(e, ENERGY_MAX_NCNT_Q20);
 }
 
-/* owed / way, rounded up and by less than 3 LSB more; never less. */
+/* owed / way, rounded up by less than 3 LSB, never down. */
 static int64_t owed_over_way(const struct exh_passivity_cfg *cfg, int64_t owed_Ncnt_q20)
 {
     const int32_t x = exh_clamp((owed_Ncnt_q20 >> (cfg->shift & 63)) + 1, 0, INT32_MAX);
@@ -84,7 +84,7 @@ uint32_t exh_passivity_step(struct exh_passivity *s, const struct exh_passivity_
     s->touching = touching != 0;
     s->started = 1;
 
-    /* In every tick, owed or not: the cost must not depend on it. */
+    /* Computed in every tick, since the cost must not depend on the debt. */
     less = owed_over_way(cfg, -s->energy_Ncnt_q20);
     limit = less < most ? most - less : 0;
     over = asked - limit;
@@ -97,7 +97,7 @@ void exh_passivity_update(struct exh_passivity *s, const struct exh_passivity_cf
     const struct exh_force_ledger *f, int32_t coded_A_q26)
 {
     const int64_t held = exh_table_at(cfg->held, coded_A_q26) - f->pullback_N_q20;
-    const int any = f->force_N_q20 > f->pullback_N_q20; /* else it is all the pull-back's */
+    const int any = f->force_N_q20 > f->pullback_N_q20; /* else all of it is pull-back */
     const int32_t before = s->held_N_q20;
     s->held_N_q20 = any ? exh_clamp(held, 0, INT32_MAX) : 0;
     s->late_N_q20 = cfg->par->on == LATE ? before : s->held_N_q20;
@@ -117,7 +117,7 @@ void exh_passivity_serialize(struct exh_bytes *c, struct exh_passivity *s)
     exh_bytes_i32(c, &s->cnt);
     exh_bytes_u8(c, &s->touching);
     exh_bytes_u8(c, &s->started);
-    /* From damaged bytes: nothing that a sum overflows with, and no force that pushes. */
+    /* Damaged bytes: keep sums from overflowing and the force from pushing. */
     s->energy_Ncnt_q20 = exh_clamp64(s->energy_Ncnt_q20, ENERGY_MAX_NCNT_Q20);
     s->held_N_q20 = exh_clamp(s->held_N_q20, 0, INT32_MAX);
     s->late_N_q20 = exh_clamp(s->late_N_q20, 0, INT32_MAX);

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* The virtual contact of a finger: it follows planes from the world and freezes at touch. */
+/* Virtual contact of a finger: follows planes from the world and freezes before contact. */
 #include "exhand/precontact.h"
 
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
 #define MATERIALS_MAX    255u
-#define HALF_Q60         (INT64_C(1) << 29) /* of an LSB of d: rounds it half up */
+#define HALF_Q60         (INT64_C(1) << 29) /* half an LSB of d, for rounding */
 #define SCALE_MIN_Q24    (INT32_C(1) << 21)
 #define SCALE_MAX_Q24    (INT32_C(1) << 27)
-#define TOUCH_M_Q30      (-8) /* nearer than this, s*d can be less than an LSB */
-#define RUNS_OUT_MPS_Q27 EXH_Q(1, 100, EXH_Q_VEL) /* a finger that trembles is slower */
-#define LATE_SCALE       2                        /* string metres per fingertip metre, at most */
+#define TOUCH_M_Q30      (-8)                     /* closer than this, s*d may be below an LSB */
+#define RUNS_OUT_MPS_Q27 EXH_Q(1, 100, EXH_Q_VEL) /* faster than the tremor of a finger */
+#define LATE_SCALE       2                        /* most string metres per fingertip metre */
 #define SLEW_MAX_NPS     10000000
 
 const struct exh_signal exh_material_rows[EXH_MATERIAL_ROWS] = {
@@ -42,8 +42,7 @@ const struct exh_signal exh_precontact_rows[EXH_PRECONTACT_ROWS] = {
         "rise of force where a plane came too late"},
 };
 
-/* The first number of ticks that lasts longer. At 20 kHz and a minute 1.2 million: far from any
- * end. */
+/* The smallest number of ticks longer than ms. At most 1.2 million: one minute at 20 kHz. */
 static uint32_t more_than(int32_t ms, struct exh_period T) { return exh_ticks_in(ms, T) + 1; }
 
 int exh_precontact_setup(struct exh_precontact_cfg *cfg, const struct exh_precontact_par *par,
@@ -79,8 +78,8 @@ static int64_t dot(const struct exh_vec3 *a, const struct exh_vec3 *b)
     return (int64_t)a->x * b->x + (int64_t)a->y * b->y + (int64_t)a->z * b->z;
 }
 
-/* | |n|^2 - 1 | <= 2^-16: from there on no product with any vector overflows, and d at 5 mm
- * is right within 0.04 um. A normal of float has 2^-23. */
+/* | |n|^2 - 1 | <= 2^-16: then no product with any vector overflows, and d at 5 mm is exact to 0.04
+ * um. A normal in float has 2^-23. */
 static int is_unit(const struct exh_vec3 *n_q30)
 {
     const uint64_t one_q60 = UINT64_C(1) << 60, tol_q60 = UINT64_C(1) << 44;
@@ -104,7 +103,7 @@ int exh_precontact_update(struct exh_precontact *s, const struct exh_precontact_
     uint32_t left = 0;
     if (plane->kind == EXH_PLANE_UNTOLD) { return 0; }
     if (plane->kind == EXH_PLANE_NONE) {
-        s->met = 1; /* while the box pulls, as the next tick says */
+        s->met = 1; /* if the device pulls in the next tick */
     } else {
         if (plane->kind != EXH_PLANE_HIT || plane->material >= cfg->materials ||
             !is_unit(&plane->normal_q30)) {
@@ -136,8 +135,8 @@ static int32_t distance_m_q30(const struct exh_precontact_plane *p, const struct
     return exh_sat32(exh_wrap_diff64(p->offset_m_q60, dot(&p->normal_q30, tip)) >> EXH_Q_POS);
 }
 
-/* s with the string's own slope: as q goes on by 1, d does by -(n.slope), and d has to go
- * by -d. A finger that does not approach gets the end of the range. */
+/* s from the slope of the string: when q grows by 1, d changes by -(n.slope), and it must change by
+ * -d. For a finger that does not approach, s is the end of its range. */
 static int32_t scale_of_slope(
     const struct exh_vec3 *normal_q30, const struct exh_vec3 *slope_q24, uint32_t *bits)
 {
@@ -159,8 +158,8 @@ static uint32_t place(struct exh_precontact *s, const struct exh_precontact_par 
     return bits;
 }
 
-/* The d below which q_lim moves along: d_lim for a finger that has been there with this plane; the
- * touch for one that has not, and a hysteresis before it for one that was inside. */
+/* The d below which q_lim moves. For a finger that has been there with this plane: d_lim. For one
+ * that has not: the touch. For one that was inside: a hysteresis before the touch. */
 static int32_t follows_until(const struct exh_precontact *s, const struct exh_precontact_par *par)
 {
     const int32_t out_m_q30 = s->phase == EXH_PRECONTACT_INSIDE ? -par->hyst_m_q30 : 0;
@@ -177,13 +176,13 @@ static uint32_t track(struct exh_precontact *s, const struct exh_precontact_par 
     return EXH_PRECONTACT_TRACKS | place(s, par, in);
 }
 
-/* q_lim stays what it is. */
+/* Freezes q_lim, which stays unchanged. */
 static uint32_t freeze(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
     const struct exh_precontact_in *in)
 {
     const uint8_t m = s->newest.material;
     s->held = s->newest;
-    /* A restored state may have a larger index. */
+    /* A restored state may contain a larger index. */
     s->taken = cfg->material[m < cfg->materials ? m : 0];
     s->frozen_n++;
     s->ahead_m_q30 = exh_clamp((int64_t)s->lim_m_q30 - in->pos_m_q30, INT32_MIN, INT32_MAX);
@@ -199,8 +198,8 @@ static uint32_t be_inside(struct exh_precontact *s)
     return EXH_PRECONTACT_AROUND;
 }
 
-/* A wall far before where the finger is would pull it there: who does not go into the object is not
- * late, nor where the string goes on by much more than the fingertip. */
+/* A wall far before the finger would pull it there. So a finger that does not move inwards is not
+ * late, nor one whose string moves much more than its fingertip. */
 static uint32_t be_late(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
     const struct exh_precontact_in *in)
 {
@@ -216,7 +215,7 @@ static uint32_t be_late(struct exh_precontact *s, const struct exh_precontact_cf
     return EXH_PRECONTACT_LATE | freeze(s, cfg, in);
 }
 
-/* One message may be a world's mistake; what is told twice in a row is there. */
+/* One message may be an error of the world; two in a row are accepted. */
 static uint32_t be_told_again(struct exh_precontact *s)
 {
     s->lim_m_q30 = EXH_PRECONTACT_NO_LIM;
@@ -234,7 +233,7 @@ static uint32_t be_idle(struct exh_precontact *s, uint32_t left)
     return stale ? EXH_PRECONTACT_STALE : 0;
 }
 
-/* A finger that went around what it was frozen at, or through it, leaves it by the string alone. */
+/* For a finger that moved around or through the frozen surface, the string alone decides. */
 static int went_back(const struct exh_precontact *s, const struct exh_precontact_par *par,
     const struct exh_precontact_in *in)
 {
@@ -242,7 +241,7 @@ static int went_back(const struct exh_precontact *s, const struct exh_precontact
     return ahead_m_q30 > (int64_t)s->ahead_m_q30 - par->d_lim_m_q30;
 }
 
-/* One that is frozen: EXH_PRECONTACT_RELEASE among the bits if it is so no longer. */
+/* A tick of a frozen finger. Sets EXH_PRECONTACT_RELEASE if the freeze ends. */
 static uint32_t stand(struct exh_precontact *s, const struct exh_precontact_cfg *cfg,
     const struct exh_precontact_in *in, uint32_t blind)
 {
@@ -282,7 +281,7 @@ uint32_t exh_precontact_step(struct exh_precontact *s, const struct exh_preconta
     const struct exh_precontact_in *in)
 {
     const struct exh_precontact_par *par = cfg->par;
-    /* Clamped: a restored state may hold more. */
+    /* Limited: a restored state may contain more. */
     const uint32_t left = s->left_ticks < cfg->age_ticks ? s->left_ticks : cfg->age_ticks;
     const uint32_t blind = in->tip_age_ticks >= cfg->tip_ticks ? EXH_PRECONTACT_BLIND : 0;
     const int resumed = s->resumed;
@@ -312,10 +311,10 @@ uint32_t exh_precontact_step(struct exh_precontact *s, const struct exh_preconta
 
 /* --- state --- */
 
-/* What tell() could not have left there becomes no plane. */
+/* Refuses planes that exh_precontact_update() cannot have stored. */
 static int plane_bytes(struct exh_bytes *c, struct exh_precontact_plane *p)
 {
-    const int64_t most_q60 = INT64_C(1) << 62; /* beyond |n|*|P| + pad of any point */
+    const int64_t most_q60 = INT64_C(1) << 62; /* above |n|*|P| + pad of any point */
     exh_bytes_i64(c, &p->offset_m_q60);
     exh_bytes_vec3(c, &p->normal_q30);
     exh_bytes_u16(c, &p->object);
@@ -327,7 +326,7 @@ static int plane_bytes(struct exh_bytes *c, struct exh_precontact_plane *p)
     return 0;
 }
 
-/* In the order of the rows, each brought back into its range. */
+/* In the order of the rows; brings each value into its range. */
 static void taken_bytes(struct exh_bytes *c, struct exh_material_par *m)
 {
     int32_t *const v[EXH_MATERIAL_ROWS] = {&m->k_Npm_q10, &m->b_Nspm_q20, &m->f_max_N_q20};

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-/* Who may change what. */
+/* Table of permissions for changing parameters. */
 #include "exhand/authority.h"
 
 #include "exhand/error.h"
 #include "exhand/signal.h"
 
-/* What a cell allows. Before the set-up is over no cell but NEVER and SAME holds anything back. */
+/* The permission of a cell. Before the end of set-up, only NEVER and SAME refuse changes. */
 enum cell {
-    NEVER, /* what is neither a source nor a class, too */
-    SAME,  /* as it stands: who writes a whole block may write it back */
-    SETUP, /* before the loop, then as it stands */
-    REST,  /* another value while no force may be */
-    FALL,  /* the same, and at any time a lower one */
-    RISE,  /* the same, and at any time a higher one */
+    NEVER, /* also all sources and classes without a row */
+    SAME,  /* only the present value, as when a client writes a whole block */
+    SETUP, /* before the loop; then as SAME */
+    REST,  /* another value only while the gate cannot be open */
+    FALL,  /* as REST, and a lower value at any time */
+    RISE,  /* as REST, and a higher value at any time */
     ANY    /* at any time */
 };
 

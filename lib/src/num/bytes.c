@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Cursor over a buffer that reads, writes or measures fields. */
+/* Cursor over a buffer: reads, writes or measures fields. */
 #include "exhand/bytes.h"
 
 #include "exhand/fix.h"
 
 #include "word.h"
 
-/* A cursor counts to UINT32_MAX, which must stay beyond every cap. */
+/* A cursor counts to UINT32_MAX, so every cap must stay below. */
 static uint32_t capacity(size_t B) { return B < UINT32_MAX ? (uint32_t)B : UINT32_MAX - 1; }
 
 struct exh_bytes exh_bytes_writer(void *buf, size_t cap_B)
@@ -17,7 +17,7 @@ struct exh_bytes exh_bytes_writer(void *buf, size_t cap_B)
 
 struct exh_bytes exh_bytes_reader(const void *buf, size_t len_B)
 {
-    /* The cursor has one pointer for both directions; a reader only reads. */
+    /* One pointer serves both directions; a reader only reads from it. */
     union {
         const void *in;
         uint8_t *p;
@@ -34,9 +34,8 @@ struct exh_bytes exh_bytes_measure(void)
     return c;
 }
 
-/* Where the next n bytes are, or NULL if nothing goes to or comes from there: there is no room, or
- * sizes are all that is asked for. Counting past cap tells the size needed; saturates instead of
- * wrapping. */
+/* The place of the next n bytes, or NULL if there is no room or the cursor only measures. Counts
+ * beyond cap, which gives the required size, and saturates instead of wrapping. */
 static uint8_t *move_past(struct exh_bytes *c, uint32_t n)
 {
     const uint32_t at = c->at;
@@ -48,7 +47,7 @@ static uint8_t *move_past(struct exh_bytes *c, uint32_t n)
     return NULL;
 }
 
-/* A value that stays: what is written, or only measured. */
+/* 1 if the value keeps its content: writing or measuring. */
 static int stays(const struct exh_bytes *c) { return c->mode != EXH_BYTES_READ; }
 
 void exh_bytes_u8(struct exh_bytes *c, uint8_t *v)
@@ -96,7 +95,7 @@ void exh_bytes_u32(struct exh_bytes *c, uint32_t *v)
     *v = (uint32_t)i;
 }
 
-/* Of a buffer that ends among them, each goes for itself: what fits is done. */
+/* If the buffer ends among them, processes each value that fits. */
 void exh_bytes_i32s(struct exh_bytes *c, int32_t *v, uint32_t n)
 {
     const uint32_t at = c->at;

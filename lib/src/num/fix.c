@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* 64-bit division, ticks of a time in milliseconds, and the set-up of a gain. */
+/* 64-bit division, milliseconds to ticks, and the set-up of a gain. */
 #include "exhand/fix.h"
 
 #include "exhand/error.h"
@@ -12,7 +12,7 @@ uint64_t exh_udiv64(uint64_t num, uint64_t den, uint64_t *rem)
     uint64_t r = 0;
     EXH_ASSERT(den != 0);
     for (int i = 63; i >= 0; i--) {
-        r = r << 1 | (num >> i & 1); /* no more than num >> i */
+        r = r << 1 | (num >> i & 1); /* at most num >> i */
         quot <<= 1;
         if (r >= den) {
             r -= den;
@@ -46,7 +46,7 @@ int exh_gain_set(struct exh_gain *g, uint64_t num, uint64_t den)
     if (num == 0) { return 0; }
     mant = exh_udiv64(num, den, &rem);
     if (mant > INT32_MAX) { return -EXH_E_RANGE; }
-    while (mant < UINT64_C(1) << 30) { /* one more quotient bit at a time */
+    while (mant < UINT64_C(1) << 30) { /* adds one quotient bit per step */
         rem <<= 1;
         mant <<= 1;
         if (rem >= den) {

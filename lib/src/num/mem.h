@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* memcpy() without <string.h>, which a compiler without a C library does not have. */
+/* memcpy() without <string.h>, which a freestanding compiler does not have. */
 #ifndef NUM_MEM_H
 #define NUM_MEM_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Staging, slewing and sealing of a scene's parameters, and their image. */
+/* Parameters of a scene: staging, slewing, sealing, and their image. */
 #include "exhand/params.h"
 
 #include "exhand/authority.h"
@@ -16,7 +16,7 @@ const struct exh_signal exh_tune_rows[EXH_TUNE_ROWS] = {
         "least time a slewed parameter takes for 63 % of its way; 0: at once"},
 };
 
-/* --- the two arrays, and the sum over both --- */
+/* --- the two arrays, and their checksum --- */
 
 /* Distinct odd weights: any single flipped bit of either array changes the sum. */
 static uint32_t term(const struct exh_params *p, const int32_t *array, uint32_t i, uint32_t value)
@@ -24,7 +24,7 @@ static uint32_t term(const struct exh_params *p, const int32_t *array, uint32_t 
     return (4 * i + (array == p->active ? 1 : 3)) * value;
 }
 
-/* By difference, so a value damaged before is not forgiven. */
+/* Updates the checksum by the difference, so that earlier damage is still detected. */
 static void put(struct exh_params *p, int32_t *array, uint32_t i, int32_t v)
 {
     const uint32_t more = term(p, array, i, (uint32_t)v - (uint32_t)array[i]);
@@ -49,7 +49,7 @@ int exh_params_verify(struct exh_params *p)
 {
     const uint32_t i = p->at < p->count ? p->at : 0;
     int bad;
-    if (p->count == 0) { return 0; } /* a table of none, or a struct of zeros */
+    if (p->count == 0) { return 0; } /* an empty table, or a struct of zeros */
     bad = p->active[i] != p->staged[i] && !p->pending && !p->moving;
     p->passed += both(p, i);
     p->at = i + 1;
@@ -98,7 +98,7 @@ int exh_params_validate_by(
     return exh_authority_check(who, row->when, p->staged[i], raw);
 }
 
-/* Open or not is nothing to who stands there. */
+/* The person may change values with the gate open or closed. */
 static const struct exh_authority person = {EXH_FROM_PERSON, 1, 1};
 
 int exh_params_validate(const struct exh_params *p, uint32_t i, int32_t raw)
@@ -135,7 +135,7 @@ int32_t exh_params_slew_step(int32_t now, int32_t goal, unsigned shift)
     return exh_from_u32((uint32_t)now + (goal < now ? 0u - part : part));
 }
 
-/* A step, or none where somebody else moves it. */
+/* One slew step; none for values that another module moves. */
 static void slew(struct exh_params *p, const struct exh_signal *row, uint32_t i)
 {
     const int falls = row->when == EXH_WHEN_LIMIT && p->staged[i] < p->active[i];
@@ -146,7 +146,7 @@ static void slew(struct exh_params *p, const struct exh_signal *row, uint32_t i)
     p->moving |= p->active[i] != p->staged[i];
 }
 
-/* One whose two values differ; `all`: something was staged. */
+/* Applies a value whose two copies differ. all: a value was staged. */
 static void apply_value(struct exh_params *p, const struct exh_signal *row, uint32_t i, int all)
 {
     if (p->locked && exh_signal_is_slewed(row)) {
@@ -162,7 +162,7 @@ void exh_params_set_active(struct exh_params *p, uint32_t i, int32_t raw)
     p->moving |= raw != p->staged[i];
 }
 
-/* The first from i on whose two values differ, or end. */
+/* The index of the first value from i whose two copies differ, or end. */
 static uint32_t next_other(const struct exh_params *p, uint32_t i, uint32_t end)
 {
     const int32_t *const active = p->active, *const staged = p->staged;
@@ -170,13 +170,13 @@ static uint32_t next_other(const struct exh_params *p, uint32_t i, uint32_t end)
     return i;
 }
 
-/* Values from `first` on, of one group: few differ, and of the others there is nothing to do. */
+/* Applies values of one group from first on. Few differ, and the others need no work. */
 static void apply_group(
     struct exh_params *p, const struct exh_signal_group *g, uint32_t first, int all)
 {
     const uint32_t end = first + (uint32_t)g->rows * g->instances;
     for (uint32_t i = next_other(p, first, end); i < end; i = next_other(p, i + 1, end)) {
-        while (i - first >= g->rows) { first += g->rows; } /* of its instance */
+        while (i - first >= g->rows) { first += g->rows; } /* to the start of its instance */
         apply_value(p, &g->row[i - first], i, all);
     }
 }
@@ -210,7 +210,7 @@ void exh_params_rollback(struct exh_params *p, const int32_t *was, uint8_t pendi
 
 /* --- keyframe --- */
 
-/* 1: what is read may be; it is taken only if `take`. */
+/* Reads or writes one value. 1 if a read value is allowed; it is stored only if take is set. */
 static int value_bytes(
     struct exh_bytes *c, struct exh_params *p, const struct exh_signal *row, uint32_t i, int take)
 {
@@ -228,8 +228,7 @@ static int value_bytes(
     return exh_params_validate(p, i, is) == 0 && exh_params_validate(p, i, wanted) == 0;
 }
 
-/* Row by row as the table has them: finding each value's row anew was nine tenths of a keyframe's
- * cost. */
+/* Row by row in the order of the table. Look-ups would take nine tenths of the time. */
 static int values_bytes(struct exh_bytes *c, struct exh_params *p, int take)
 {
     uint32_t i = 0;
@@ -293,7 +292,7 @@ int32_t exh_params_save(const struct exh_params *p, void *buf, size_t cap_B)
     return exh_bytes_ok(&c) ? (int32_t)c.at : -EXH_E_SHORT;
 }
 
-/* Head, length and CRC: 0, or why it is no image of this table. */
+/* Checks head, length and CRC: 0, or the error. */
 static int whole(const struct exh_params *p, const void *buf, size_t len_B)
 {
     const size_t body_B = IMAGE_HEAD_B + 4 * (size_t)p->count;
@@ -314,7 +313,8 @@ static int whole(const struct exh_params *p, const void *buf, size_t len_B)
     return crc == exh_crc32(0, buf, body_B) ? 0 : -EXH_E_CRC;
 }
 
-/* By a person: with his values. Two passes: an image is taken whole or not at all. */
+/* source EXH_FROM_PERSON includes the person's values. Two passes, so that an image is loaded whole
+ * or not at all. */
 static int load(struct exh_params *p, const void *buf, size_t len_B, uint32_t *bad, uint8_t source)
 {
     const struct exh_authority who = {source, 1, 1};

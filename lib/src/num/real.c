@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Positive real numbers for set-ups, computed in integers. */
+/* Positive real numbers for set-ups, in integers. */
 #include "real.h"
 
 #include "exhand/error.h"
 
 #define TOP (UINT64_C(1) << 62)
 
-/* v * 2^e brought to 63 bits. */
+/* v * 2^e normalised to 63 bits. */
 static struct exh_real norm(uint64_t v, int32_t e)
 {
     struct exh_real r = {v, e};
@@ -41,7 +41,7 @@ struct exh_real exh_real_div(struct exh_real a, struct exh_real b)
     uint64_t quot = 0;
     uint64_t rem = a.m;
     EXH_ASSERT(b.m != 0);
-    for (int i = 0; i < 64; i++) { /* rem < 2 b: one bit at a time */
+    for (int i = 0; i < 64; i++) { /* rem < 2 b: one bit per step */
         quot <<= 1;
         if (rem >= b.m) {
             rem -= b.m;
@@ -73,7 +73,7 @@ uint64_t exh_real_round(struct exh_real a)
     return (a.m >> (-a.e - 1) >> 1) + (a.m >> (-a.e - 1) & 1);
 }
 
-/* Lambert's fraction, x/(1 - x^2/(3 - x^2/(5 - ...))): eleven levels leave less than
+/* Lambert's continued fraction, x/(1 - x^2/(3 - x^2/(5 - ...))). Eleven levels leave an error below
  * 2^-60 at x = pi/4. */
 static struct exh_real tangent(struct exh_real x)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Search, count and CRC of a table of signals. */
+/* Lookup, count and CRC of a table of signals. */
 #include "exhand/signal.h"
 
 #include "exhand/bytes.h"
@@ -22,7 +22,7 @@ const struct exh_signal *exh_signal_at(
         const struct exh_signal_group *grp = &t->group[g];
         const uint32_t all = (uint32_t)grp->rows * grp->instances;
         uint16_t k = 0;
-        if (i >= all) { /* a group in one go: every value staged in a tick is looked for */
+        if (i >= all) { /* skips whole groups, since every staged value is looked up in a tick */
             i -= all;
             continue;
         }
@@ -33,10 +33,10 @@ const struct exh_signal *exh_signal_at(
     return NULL;
 }
 
-/* By rows, not by values: a packet may ask for it in a tick. */
+/* Searches rows, not values, since a packet may need it within a tick. */
 int32_t exh_signal_find(const struct exh_signal_table *t, uint16_t id, uint16_t instance)
 {
-    uint32_t first = 0; /* value of this group */
+    uint32_t first = 0; /* first value of this group */
     for (uint16_t g = 0; g < t->groups; g++) {
         const struct exh_signal_group *grp = &t->group[g];
         for (uint16_t r = 0; r < grp->rows && instance < grp->instances; r++) {
@@ -52,7 +52,7 @@ int32_t exh_signal_find(const struct exh_signal_table *t, uint16_t id, uint16_t 
 int exh_rows_validate(const struct exh_signal *row, unsigned n, const void *values)
 {
     for (unsigned i = 0; i < n; i++) {
-        /* By bytes of the whole: no pointer to one member of a struct may go on to the next. */
+        /* Address from bytes of the whole: a pointer to one member must not reach the next. */
         const void *at = (const uint8_t *)values + i * sizeof(int32_t);
         const int32_t v = *(const int32_t *)at;
         if (!exh_inside(v, row[i].min, row[i].max)) { return 0; }
@@ -67,7 +67,7 @@ uint32_t exh_signal_crc(const struct exh_signal_table *t)
         uint16_t rows = t->group[g].rows;
         uint8_t head[2];
         struct exh_bytes h = exh_bytes_writer(head, sizeof head);
-        exh_bytes_u16(&h, &rows); /* values are instance-major within a group */
+        exh_bytes_u16(&h, &rows); /* all rows of an instance are adjacent */
         crc = exh_crc32(crc, head, h.at);
         for (uint16_t r = 0; r < t->group[g].rows; r++) {
             struct exh_signal row = t->group[g].row[r];

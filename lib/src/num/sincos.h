@@ -1,20 +1,21 @@
 /* SPDX-License-Identifier: MIT */
-/* Sine and cosine as code in place, for angle.c and for hand.c, which needs three at once. */
+/* Inline sine and cosine, for angle.c, and for hand.c, which needs three at once. */
 #ifndef EXHAND_SINCOS_H
 #define EXHAND_SINCOS_H
 
 #include "exhand/angle.h"
 #include "exhand/fix.h"
 
-/* Both polynomials belong to 0 .. 1/8 turn, where u = 8x (0..1) and z = u^2:
- *   sin = u (S0 + z (S1 + z (S2 + z S3)))       misses by 1.21e-9 at most
- *   cos = 1 - z (C1 + z (C2 + z (C3 + z C4)))   misses by 5.4e-11
- * They are the polynomials of these degrees with the least largest error, by the Remez
- * exchange on 0 <= u <= 1 with 40 digits (error equal and alternating at 5 points; the sine odd,
- * the cosine even with 1 at 0), each coefficient then rounded to its format, and S0 lowered by
- * one for what the floors of the products add. A product keeps its high word, so a format loses
- * the two bits of z's q30 at every step: what is added to it has the format of that result. -u,
- * -sin and -cos are computed, as these fit 32 bits at both ends. */
+/* Both polynomials cover 0 .. 1/8 turn, with u = 8x (0..1) and z = u^2:
+ *
+ *   sin = u (S0 + z (S1 + z (S2 + z S3)))       error at most 1.21e-9
+ *   cos = 1 - z (C1 + z (C2 + z (C3 + z C4)))   error at most 5.4e-11
+ *
+ * They have the least maximum error of these degrees, by the Remez exchange on 0 <= u <= 1 with 40
+ * digits. The error is equal and alternating at 5 points; the sine is odd, the cosine even with 1
+ * at 0. Coefficients are rounded. S0 is lowered by one to offset the floors of the products. A
+ * product keeps its high word, so each step loses the two bits of z's q30; an addend has the format
+ * of the result. The code computes -u, -sin and -cos, as these fit 32 bits at both ends. */
 #define S0_Q31  1686629689   /*  0.785398152542748 */
 #define S1_Q33  (-693597423) /* -0.0807453672710303 */
 #define S2_Q35  85551349     /*  0.00248987196800914 */
@@ -31,7 +32,7 @@
 /* -1 if the top bit of x is set, else 0. */
 static inline int32_t top_mask(uint32_t x) { return exh_from_u32(x) >> 31; }
 
-/* floor(a*b / 2^32) of 32-bit values, in a type no narrower and as wide as the machine likes. */
+/* floor(a*b / 2^32) of 32-bit values, in the fastest type of at least 32 bits. */
 static inline int_fast32_t high(int_fast32_t a, int_fast32_t b)
 {
     return (int_fast32_t)((int64_t)a * b >> 32);
@@ -41,7 +42,7 @@ static inline struct exh_sincos sincos_in_place(int32_t x_turn_q32)
 {
     const uint32_t x = (uint32_t)x_turn_q32;
 
-    /* Less the distance to the nearest whole quarter, an eighth at most: -2^31 .. 0. */
+    /* Minus the distance to the nearest multiple of a quarter, at most an eighth: -2^31 .. 0. */
     const int32_t v_q31 = exh_from_u32(x << 2);
     const int32_t odd = v_q31 >> 31;
     const int_fast32_t u_q31 = odd - (v_q31 ^ odd);
@@ -57,7 +58,7 @@ static inline struct exh_sincos sincos_in_place(int32_t x_turn_q32)
     const int_fast32_t c1_q32 = high(z_q30, c2_q34) + C1_Q32;
     const int32_t c_q30 = (int32_t)high(z_q30, c1_q32) - ONE_Q30;
 
-    /* Between 1/8 and 3/8 turn, and opposite, the two change places. */
+    /* Between 1/8 and 3/8 turn, and in the opposite range, sine and cosine swap. */
     const int32_t swap = (s_q30 ^ c_q30) & top_mask((x + EIGHTH) << 1);
     const int32_t below = top_mask(x);
     const int32_t left = top_mask(x + QUARTER);

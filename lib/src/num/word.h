@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* 32 bits as bytes. */
+/* 32-bit words from bytes. */
 #ifndef NUM_WORD_H
 #define NUM_WORD_H
 
 #include <stdint.h>
 
-/* Least significant byte first. Written out byte by byte: compilers make one access of them where
- * the machine has it. */
+/* Little-endian. Written byte by byte; compilers make one access of it where the CPU has one. */
 static inline uint32_t word_at(const uint8_t *p)
 {
     return p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;

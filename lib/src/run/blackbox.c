@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Black box: the newest records stay in memory and freeze at a fault. */
+/* Black box: keeps the newest records in memory and freezes them at a fault. */
 #include "exhand/run/blackbox.h"
 
 #include "exhand/error.h"
@@ -10,26 +10,26 @@
 
 enum stage { HEADER, RECORDS, FROZE, END, DONE };
 
-static uint8_t *memory; /* the header's payload, then the ring */
+static uint8_t *memory; /* payload of the header, then the ring */
 static uint32_t memory_B, header_B;
 static int alone;
 static const struct exh_scene *scene;
 static struct exh_ring ring;
 static uint32_t after_ticks;
-static int32_t faults_at; /* index of the scene's signal; < 0: it has none */
+static int32_t faults_at; /* index of the scene's signal; < 0: none */
 
 static struct exh_blackbox_is is;
 static uint32_t seen;      /* faults of the last tick */
 static uint32_t left;      /* ticks to the freeze */
-static uint32_t last_tick; /* recorded */
+static uint32_t last_tick; /* last recorded tick */
 
-/* The parameters in the header's payload: brought up to date value by value while it runs on, since
- * all of them at once cost as much as a dozen ticks. Layout as exh_params_save() makes it. */
+/* The parameters in the payload of the header. After a fault they are updated a few per tick, since
+ * all at once cost as much as a dozen ticks. Layout as by exh_params_save(). */
 static struct {
-    uint32_t header_B; /* of the payload */
-    uint32_t end_B;    /* of it, to the end of the parameters; behind them are calibrations */
-    uint32_t n, at;    /* values, done */
-    uint32_t slice;    /* of them a tick */
+    uint32_t header_B; /* of the header's payload */
+    uint32_t end_B;    /* to the end of the parameters; calibrations follow */
+    uint32_t n, at;    /* number of values; index of the next */
+    uint32_t slice;    /* values per tick */
     uint32_t crc;
 } image;
 
@@ -55,7 +55,7 @@ struct exh_blackbox_is exh_blackbox_is(void)
     return now;
 }
 
-/* --- records in --- */
+/* --- recording --- */
 
 static int recording(void)
 {
@@ -67,7 +67,7 @@ static int empty(void) { return exh_ring_first(&ring).left_B == 0; }
 static void take(uint8_t type, uint32_t tick, const uint8_t *payload, uint32_t len_B)
 {
     if (!recording() || type == EXH_RECORD_HEADER) { return; }
-    if (empty() && type != EXH_RECORD_KEYFRAME) { return; } /* what nothing could begin with */
+    if (empty() && type != EXH_RECORD_KEYFRAME) { return; } /* begins with a keyframe */
     (void)exh_ring_put(&ring, type, tick, payload, len_B);
 }
 
@@ -107,8 +107,8 @@ void exh_blackbox_clear(void)
     is = (struct exh_blackbox_is){.state = EXH_BLACKBOX_RECORDS};
 }
 
-/* Room for the header, for so many keyframes, and for twice the ticks that it runs on, so that a
- * fault and what led to it are in it. */
+/* 1 if memory suffices for the header, the keyframes, and twice the ticks after a fault. So it
+ * contains a fault and its cause. */
 static int fits(const struct exh_scene *sc)
 {
     struct exh_bytes key = exh_bytes_measure(), frame = exh_bytes_measure();
@@ -249,7 +249,7 @@ void exh_blackbox_stop(int halted)
     if (is.state == EXH_BLACKBOX_RUNS_ON) { freeze(); }
 }
 
-/* --- records out --- */
+/* --- reading --- */
 
 static uint16_t at_most(uint32_t v) { return v < UINT16_MAX ? (uint16_t)v : UINT16_MAX; }
 
@@ -276,7 +276,7 @@ static void begin_end(void)
     begin_small(EXH_RECORD_END, &c);
 }
 
-/* 0: there is none. */
+/* Prepares the next record. 0: none. */
 static int next_record(void)
 {
     if (dump.stage <= RECORDS) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Calibration images of a scene: check, choice and defaults at set-up. */
+/* Calibration images of a scene at set-up: check, selection and defaults. */
 #include "exhand/run/calib_set.h"
 
 #include "exhand/error.h"
@@ -18,7 +18,7 @@ const struct exh_signal exh_calib_set_rows[EXH_CALIB_SET_ROWS] = {
         "1: a calibration beyond half or 3/2 of kf, or of the fingers' median, is believed"},
 };
 
-/* Images carry at most so many points. */
+/* An image with room for the maximum number of points. */
 struct loaded {
     struct exh_calib c;
     struct exh_calib_point point[EXH_CALIB_POINTS_MAX];
@@ -40,7 +40,7 @@ static int load(struct loaded *to, struct exh_scene_calib *k, unsigned i)
     to->c.point = to->point;
     to->c.cap = EXH_CALIB_POINTS_MAX;
     err = exh_calib_load(&to->c, k->image[i].byte, k->image[i].len_B, &bad);
-    /* Bytes behind it would stand in a log's header as the next image, and no replay take it. */
+    /* In a log's header, extra bytes would look like the next image. */
     if (err == 0 && k->image[i].len_B !=
                         EXH_CALIB_IMAGE_B - 16u * (EXH_CALIB_POINTS_MAX - (uint32_t)to->c.points)) {
         err = -EXH_E_RANGE;
@@ -48,7 +48,7 @@ static int load(struct loaded *to, struct exh_scene_calib *k, unsigned i)
     return err < 0 ? refuse(k, i, bad, err) : 0;
 }
 
-/* Is what an image says of force over current within half of what is expected? */
+/* Is the ratio of force and current of an image within half of the expected one? */
 static int near(
     struct exh_scene_calib *k, unsigned i, const struct loaded *now, int32_t kf_NpA_q20, int others)
 {
@@ -63,7 +63,7 @@ static int near(
     return refuse(k, i, bad, err);
 }
 
-/* Of each image's line; the lower one of an even number. All are sound. */
+/* Median of the ratios of all images; of an even number the lower one. All images are valid. */
 static int32_t median(struct exh_scene_calib *k)
 {
     int32_t sorted[EXH_FINGERS] = {0};
@@ -79,7 +79,7 @@ static int32_t median(struct exh_scene_calib *k)
     return sorted[(k->images - 1) / 2];
 }
 
-/* Of two that differ nobody knows which one is wrong: kf alone judges them. */
+/* With two images, it is unknown which one is wrong: compare with kf only. */
 static int alike(struct exh_scene_calib *k)
 {
     struct loaded now;
@@ -94,7 +94,7 @@ static int alike(struct exh_scene_calib *k)
     return err;
 }
 
-/* With the image's own scales where `drive` is NULL. */
+/* With the scales of the image itself if drive is NULL. */
 static struct exh_calib_target here(const struct exh_calib *c, const struct exh_calib_set_par *par,
     const struct exh_drive_par *drive)
 {
@@ -109,7 +109,7 @@ static struct exh_calib_target here(const struct exh_calib *c, const struct exh_
     return h;
 }
 
-/* All images; *fingers: those that have none yet. */
+/* Checks all images. *fingers: mask of the fingers without one so far. */
 static int check(struct exh_scene_calib *k, const struct exh_calib_set_par *par, uint32_t fingers)
 {
     static const struct exh_calib_error wrong_finger = {EXH_CALIB_FINGER, 0};
@@ -120,7 +120,7 @@ static int check(struct exh_scene_calib *k, const struct exh_calib_set_par *par,
         int err = load(&now, k, i);
         if (err < 0) { return err; }
         if (!(fingers >> now.c.finger & 1u)) { return refuse(k, i, wrong_finger, -EXH_E_VERSION); }
-        fingers &= ~(UINT32_C(1) << now.c.finger); /* a second one for it is refused */
+        fingers &= ~(UINT32_C(1) << now.c.finger); /* refuse a second image */
         h = here(&now.c, par, NULL);
         err = exh_calib_check(&now.c, &h, &bad);
         if (err < 0) { return refuse(k, i, bad, err); }
@@ -150,7 +150,7 @@ int exh_calib_set_load(struct exh_scene_calib *k, struct exh_params *params,
 
 /* --- tables --- */
 
-/* Straight lines; the monitor's also below zero. */
+/* Straight lines; the monitor's also for negative currents. */
 static int lines(struct exh_calib_tables *t, const struct exh_calib_finger *of)
 {
     const int32_t peak_A_q26 = of->drive->i_peak_A_q26;

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* CRC-32 by four bytes a step, for 4 KiB of table: whoever links this object takes it in place of
- * the library's (lib/src/num/crc.c). */
+/* CRC-32 in steps of four bytes with a table of 4 KiB. Link this object to replace the library's
+ * CRC (lib/src/num/crc.c). */
 #include "exhand/bytes.h"
 
 #include "../num/word.h"
 
-/* What a byte adds is the sum, modulo 2, of what each of its bits adds. */
+/* The contribution of a byte is the sum, modulo 2, of those of its bits. */
 #define BIT(n, b, adds) ((1u << (b) & (n)) != 0 ? UINT32_C(adds) : 0)
 #define OF_0(n) \
     (BIT(n, 0, 0x77073096) ^ BIT(n, 1, 0xEE0E612C) ^ BIT(n, 2, 0x076DC419) ^ \
@@ -29,7 +29,7 @@
     SIXTEEN(of, n), SIXTEEN(of, n + 16), SIXTEEN(of, n + 32), SIXTEEN(of, n + 48)
 #define ALL(of) SIXTY_FOUR(of, 0u), SIXTY_FOUR(of, 64u), SIXTY_FOUR(of, 128u), SIXTY_FOUR(of, 192u)
 
-/* [k][b]: byte b, and k bytes of zeros behind it. */
+/* [k][b]: byte b, followed by k zero bytes. */
 static const uint32_t table[4][256] = {{ALL(OF_0)}, {ALL(OF_1)}, {ALL(OF_2)}, {ALL(OF_3)}};
 
 uint32_t exh_crc32(uint32_t crc, const void *buf, size_t len_B)

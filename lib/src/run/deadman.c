@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* Commands that the dead-man switch gives: run, clear, off. */
+/* Commands from the dead-man switch: run, clear, off. */
 #include "exhand/run/deadman.h"
 
 #include "exhand/fix.h"
 #include "exhand/safety.h"
 
 static const struct exh_safety *safety;
-static uint32_t settle; /* ticks in 50 ms: contacts bounce, and a glitch is no hand */
+static uint32_t settle; /* ticks in 50 ms, against contact bounce and glitches */
 static uint32_t open_for, closed_for;
-static int armed; /* it was open for long enough */
+static int armed; /* 1: it was open long enough */
 
 void exh_deadman_start(const struct exh_scene *sc, struct exh_scene_board board)
 {
@@ -18,7 +18,7 @@ void exh_deadman_start(const struct exh_scene *sc, struct exh_scene_board board)
     armed = 0;
 }
 
-/* What the grip asks for, by the state that the person sees. */
+/* The command for closing the switch, by the state of the device. */
 static uint8_t wanted(void)
 {
     const uint8_t state = safety ? safety->state : (uint8_t)EXH_STATE_OFF;

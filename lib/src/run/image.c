@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* main() of a firmware image: one scene, named by the build, run by the dead-man switch. A port
- * that has more to offer (options, a log) brings its own, PORT_MAIN in its port.mk. */
+/* main() of a firmware image with one scene, which the build names. The dead-man switch controls
+ * it. A port with options or a log brings its own main, PORT_MAIN in its port.mk. */
 #include "exhand/run/deadman.h"
 #include "exhand/run/loop.h"
 
@@ -16,7 +16,7 @@ int main(void)
     int err;
     if (EXH_SCENE.defaults) { EXH_SCENE.defaults(); }
 #ifdef UNCALIBRATED
-    /* A build that says so (make UNCALIBRATED=1): no option can, and there is no calibration. */
+    /* Built with make UNCALIBRATED=1: the image has no options and no calibration. */
     if (EXH_SCENE.calib) { (void)exh_params_stage(EXH_SCENE.params, 0x8903, 0, 1); }
 #endif
     err = exh_loop(&EXH_SCENE, 0, &hooks);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Log of a run: header, frames, events and keyframes as records. */
+/* Log of a run: writes header, frames, events and keyframes as records. */
 #include "exhand/run/log.h"
 
 #include "exhand/board.h"
@@ -9,16 +9,16 @@
 static const struct exh_scene *scene;
 static uint8_t buf[EXH_LOG_RECORD_B];
 static uint32_t seq;
-static uint32_t lost;      /* in all */
-static uint32_t lost_here; /* since the last record that was taken */
+static uint32_t lost;      /* records lost in all */
+static uint32_t lost_here; /* lost since the last written record */
 static const struct exh_log_tap *tap;
-static int silent; /* this record, or all of them (alone), is the tap's alone */
+static int silent; /* this record, or all (alone), goes to the tap only */
 static int alone;
 static uint8_t type_now; /* of the record in buf */
 static uint32_t tick_now;
 static struct exh_record_header header;
 
-/* One record out, whole or not at all; lost ones are counted. */
+/* Outputs one record, whole or not at all. Counts lost records. */
 static int put(struct exh_bytes *c)
 {
     const uint32_t len = exh_record_end(c);
@@ -73,7 +73,7 @@ static void event(uint32_t tick, struct exh_event e)
     end(&c);
 }
 
-/* State before `tick`: a replay may start here. */
+/* The state before tick, where a replay may start. */
 static void keyframe(uint32_t tick)
 {
     struct exh_bytes c;
@@ -174,9 +174,9 @@ void exh_log_mark(uint32_t tick, int32_t value)
     event(tick, (struct exh_event){EXH_EVENT_MARK, 0, 0, value, 0});
 }
 
-/* Staged parameters become events at the tick they will first act in; one on its way still may
- * come again, and is staged anew with the value it has. Who stages where one on its way is now
- * halts it: while any is, all that may be are told. */
+/* Logs staged parameters as events of the tick in which they act first. A value that still slews
+ * may repeat; it is staged again with the same value. Staging the present value stops the slew, so
+ * while any value slews, log all that may. */
 static void log_params(uint32_t tick, const struct exh_params *p)
 {
     const uint32_t n = exh_signal_count(p->table);
@@ -214,14 +214,14 @@ static void packets(uint32_t tick, struct exh_scene_mail *in)
 
 void exh_log_after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
-    struct exh_scene_in i = *in; /* a cursor takes what it may also fill */
+    struct exh_scene_in i = *in; /* a cursor needs non-const fields */
     struct exh_drive_out o = *out;
     struct exh_bytes c;
     if (scene->link) { packets(tick, scene->link->in); }
     c = begin(EXH_RECORD_FRAME, tick);
     exh_log_frame_serialize(&c, scene, &i, &o, exh_scene_signals(scene));
     end(&c);
-    /* Here and not in exh_log_before(), where it would delay the output. */
+    /* Not in exh_log_before(), where it would delay the outputs. */
     silent = alone || (tick + 1) % EXH_LOG_KEYFRAME_TICKS != 0;
     if (!silent || (tap && tap->due())) { keyframe(tick + 1); }
     silent = alone;

@@ -7,7 +7,7 @@
 #include "exhand/fix.h"
 #include "exhand/safety.h"
 
-/* Board up, parameters in, scene ready. */
+/* Initialises the board, stages the parameters, sets up the scene. */
 static int set_up(const struct exh_scene *sc, uint32_t rate_Hz, struct exh_scene_board *board)
 {
     int err;
@@ -23,7 +23,7 @@ static int set_up(const struct exh_scene *sc, uint32_t rate_Hz, struct exh_scene
     return err;
 }
 
-/* The glove's frame of the tick before, older by this one and those missed. */
+/* The glove frame of the last tick, with its age increased by this tick and those missed. */
 static void same_glove(struct exh_scene_in *in)
 {
     const uint32_t age = in->glove.age_ticks + 1u + in->missed;
@@ -31,8 +31,8 @@ static void same_glove(struct exh_scene_in *in)
     in->glove_new = 0;
 }
 
-/* *wait: ticks to the next frame, counted, since a division has no place in a tick. The board may
- * have none newer than the last. */
+/* *wait: ticks to the next frame, counted, since a tick must not divide. There may be no newer
+ * frame. */
 static int read_glove(const struct exh_scene *sc, struct exh_scene_in *in, uint32_t *wait)
 {
     struct exh_glove_in got;
@@ -50,7 +50,7 @@ static int read_glove(const struct exh_scene *sc, struct exh_scene_in *in, uint3
     return 0;
 }
 
-/* Everything that crosses inward from the board at this tick. */
+/* Reads all inputs of this tick from the board. */
 static int read_board(const struct exh_scene *sc, struct exh_scene_in *in, uint32_t *wait)
 {
     struct exh_drive_in got;
@@ -82,7 +82,7 @@ static void write_link(const struct exh_scene_link *link)
     }
 }
 
-/* put: 1, the outputs go out; 0, they stay as they are. */
+/* put: 1, write the outputs; 0, leave them unchanged. */
 static int one_tick(const struct exh_scene *sc, const struct exh_loop_hooks *h, uint32_t tick,
     struct exh_scene_in *in, int put)
 {
@@ -100,9 +100,9 @@ static int one_tick(const struct exh_scene *sc, const struct exh_loop_hooks *h, 
     return err;
 }
 
-/* A card that failed ends the run, by one last tick: what was read last, and EXH_DIN_CARDS open, so
- * that the scene's fault, its log and whoever listens have the cause. The outputs are safe before,
- * and nothing of this tick reaches them. */
+/* After a card failure, runs one last tick with the last inputs and EXH_DIN_CARDS open. So the
+ * fault with its cause reaches the scene, the log and the clients. The outputs are safe before, and
+ * this tick does not change them. */
 static void last_tick(const struct exh_scene *sc, const struct exh_loop_hooks *h, uint32_t tick,
     struct exh_scene_in *in)
 {
@@ -137,7 +137,7 @@ int exh_loop(const struct exh_scene *sc, uint32_t rate_Hz, const struct exh_loop
     return err;
 }
 
-/* "file.c:123" without a C library. */
+/* Writes "file.c:123" backwards from end, without a C library. */
 static const char *place(char *end, const char *file, int line)
 {
     size_t n = 0;
@@ -152,6 +152,6 @@ static const char *place(char *end, const char *file, int line)
 void exh_assert_failed(const char *file, int line)
 {
     char text[80];
-    exh_board_safe(); /* first the currents, then the words */
+    exh_board_safe(); /* currents first, then text */
     exh_board_halt(place(text + sizeof text, file, line));
 }

@@ -74,7 +74,7 @@ enum stream_is stream_read(
 {
     const uint32_t magic = len_B < STREAM_HEAD_B ? 0 : get32(datagram);
     const size_t tail_B = STREAM_CRC_B + (magic == STREAM_MAGIC_K ? EXH_MAC_B : 0);
-    const size_t all_B = len_B - tail_B; /* that the CRC is of */
+    const size_t all_B = len_B - tail_B; /* bytes covered by the CRC */
     if (magic == STREAM_MAGIC_1) { return STREAM_OLD; }
     if (magic != STREAM_MAGIC && magic != STREAM_MAGIC_K) { return STREAM_NONE; }
     if (len_B < STREAM_HEAD_B + tail_B || all_B > STREAM_HEAD_B + STREAM_DATA_B ||

@@ -16,8 +16,7 @@ void exh_integrity_seal(
     if (params) { exh_params_seal(params); }
 }
 
-/* The last part of a round may be shorter; what it lacks is spent on nothing, so all ticks cost the
- * same. */
+/* The last part of a round may be shorter. Dummy work keeps the cost of all ticks equal. */
 static void look_at_area(struct exh_integrity *g)
 {
     static const uint8_t nothing[EXH_INTEGRITY_B] = {0};

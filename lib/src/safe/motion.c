@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Speed limit of a finger, and detector of an encoder that is stuck. */
+/* Speed limit of a finger, and detector of a stuck encoder. */
 #include "exhand/motion.h"
 
 #include "exhand/error.h"
@@ -45,7 +45,7 @@ int exh_motion_setup(
     return 0;
 }
 
-/* One more of a run that is on, up to `most`; none of one that is not. */
+/* The length of a run: one more, up to most, while on is 1; else 0. */
 static uint32_t run_of(uint32_t ticks, int on, uint32_t most)
 {
     return !on ? 0 : ticks < most ? ticks + 1 : most;

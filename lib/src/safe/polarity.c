@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The small pull of arming: do motor and encoder agree? */
+/* The small pull of arming, which checks the signs of motor and encoder. */
 #include "exhand/polarity.h"
 
 #include "exhand/error.h"

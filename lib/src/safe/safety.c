@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* State machine of the box: causes, arming, release and faults. */
+/* State machine of the device: causes, arming, release and faults. */
 #include "exhand/safety.h"
 
 #include "exhand/error.h"
@@ -8,15 +8,15 @@
 #include <stddef.h>
 
 #define MISSED_MAX     1
-#define LATE_MOST      (4u * EXH_LATE_TICKS) /* or a minute of overrun took an hour to be gone */
+#define LATE_MOST      (4u * EXH_LATE_TICKS) /* else a minute of overrun takes an hour */
 #define SMALL_MIN_NQ20 EXH_Q(1, 10, EXH_Q_FORCE)
 #define SMALL_MAX_NQ20 EXH_Q(10, 1, EXH_Q_FORCE)
 #define ARM_MAX_MS     1000
 #define RAMP_MAX_MS    5000
 #define RELEASE_MIN_MS 5
-#define SLOW_HZ        500 /* below it a release has no more than */
+#define SLOW_HZ        500 /* below it, a release has at most 4 ticks */
 #define SLOW_TICKS     4
-#define RELEASE_MAX_MS 18 /* and the tick that sees it, at 500 Hz: 20 */
+#define RELEASE_MAX_MS 18 /* with the tick that detects it, at 500 Hz: 20 */
 #define FULL_Q30       (INT32_C(1) << 30)
 
 const struct exh_signal exh_safety_rows[EXH_SAFETY_ROWS] = {
@@ -58,11 +58,11 @@ int exh_safety_setup(
     return exh_gain_set(&cfg->fall, 1, cfg->release_ticks);
 }
 
-/* --- what is the case --- */
+/* --- conditions --- */
 
 static uint32_t add_sat(uint32_t a, uint32_t b) { return a > UINT32_MAX - b ? UINT32_MAX : a + b; }
 
-/* A tick too long by half a period misses every other one: it must add up. */
+/* A tick half a period too long misses every other tick, so misses must accumulate. */
 static void count_missed(struct exh_safety *s, uint32_t missed)
 {
     s->missed = add_sat(s->missed, missed);
@@ -73,7 +73,7 @@ static void count_missed(struct exh_safety *s, uint32_t missed)
     if (s->late > LATE_MOST) { s->late = LATE_MOST; }
 }
 
-/* All of them in every tick: the cost must not depend on limits. */
+/* Counts all limits in every tick, since the cost must not depend on them. */
 static void count_limits(struct exh_safety *s)
 {
     uint32_t left = s->limits;
@@ -83,7 +83,7 @@ static void count_limits(struct exh_safety *s)
     }
 }
 
-/* Faults are latched in FAULT and on the way there, and nowhere else. */
+/* Only FAULT and a RELEASE towards it have latched faults. */
 static int sane(const struct exh_safety *s)
 {
     return s->state == EXH_STATE_FAULT  ? s->faults != 0
@@ -110,7 +110,7 @@ static uint32_t causes(
     return c;
 }
 
-/* Steps of arming that do not hold, of those that need no open gate. */
+/* Steps of arming that fail, among those that need no open gate. */
 static uint32_t lacking(const struct exh_safety *s, uint32_t ready, uint32_t now)
 {
     return (~ready & EXH_ARM_ALL) | (now ? EXH_ARM_DEADMAN : 0u) |
@@ -126,14 +126,14 @@ static void latch(struct exh_safety *s, uint32_t now)
     s->faults |= now;
 }
 
-/* Let go after the last cause, also one that came back while the switch was open: nobody clears
- * what he has not seen the end of. */
+/* Requires a release of the dead-man after the last cause, and after causes that return while it is
+ * open. So a person clears only faults that have ended. */
 static void see_hand(struct exh_safety *s, uint32_t din)
 {
     if (s->present) { s->opened = s->present == EXH_FAULT_DEADMAN && !(din & EXH_DIN_DEADMAN); }
 }
 
-/* --- what follows from it --- */
+/* --- transitions --- */
 
 #define O EXH_STATE_OFF
 #define A EXH_STATE_ARM
@@ -159,7 +159,7 @@ const uint8_t exh_safety_next[EXH_STATES][EXH_TRIGGERS] = {
 
 #define ON(trigger, when) ((when) ? 1u << EXH_ON_##trigger : 0u)
 
-/* Which triggers apply. Those that one state alone has are asked for in no other. */
+/* Bits of all triggers that apply. Triggers of one state are computed in that state only. */
 static uint32_t triggers(const struct exh_safety *s, const struct exh_safety_cfg *cfg,
     const struct exh_safety_in *in, uint32_t lacks)
 {
@@ -180,7 +180,7 @@ static uint32_t triggers(const struct exh_safety *s, const struct exh_safety_cfg
            ON(NONE, 1);
 }
 
-/* The first of them: the number of the lowest bit. */
+/* The first trigger: the index of the lowest bit. */
 static uint8_t first_of(uint32_t due)
 {
     const uint32_t low = due & (~due + 1u);
@@ -188,7 +188,7 @@ static uint8_t first_of(uint32_t due)
                      ((low & 0xF0F0u) != 0) << 2 | ((low & 0xFF00u) != 0) << 3);
 }
 
-/* What a state counts: from its first tick on. */
+/* Counts the ticks of a state from its first tick. */
 static void count_steps(struct exh_safety *s, const struct exh_safety_cfg *cfg, int anew,
     const struct exh_safety_in *in)
 {
@@ -237,7 +237,7 @@ struct exh_permit exh_safety_step(
     if (lacks &&
         (s->trigger == EXH_ON_REFUSED ||
             (s->trigger == EXH_ON_OFF && in.ready & EXH_ARM_WAIT && exh_safety_pulls(s)))) {
-        s->refused = (uint8_t)(lacks & (~lacks + 1u)); /* the lowest: the first step */
+        s->refused = (uint8_t)(lacks & (~lacks + 1u)); /* lowest bit: the first step */
         s->refusals = add_sat(s->refusals, 1);
     }
     before = s->state;
@@ -258,7 +258,7 @@ uint8_t exh_safety_arm_step(const struct exh_safety *s)
 /* --- state --- */
 
 /* A corrupted state must not read as RUN, so it carries a CRC. The CRC is multiplied by an odd
- * constant: data followed by its own plain CRC makes any enclosing CRC constant. */
+ * constant, because data followed by its plain CRC makes any enclosing CRC constant. */
 static int sealed(struct exh_bytes *c, uint32_t from)
 {
     const int buffer = c->mode != EXH_BYTES_MEASURE && exh_bytes_ok(c);

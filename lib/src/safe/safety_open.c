@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* When the gate is open. A file of its own: compiled into safety.c, it makes the tick there a third
- * larger. */
+/* exh_safety_is_open(). A separate file: in safety.c, it makes the tick a third larger. */
 #include "exhand/safety.h"
 
 int exh_safety_is_open(const struct exh_safety *s)

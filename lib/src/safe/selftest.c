@@ -6,8 +6,8 @@
 #include "exhand/fix.h"
 #include "exhand/integrity.h"
 
-/* What goes in is volatile, or the compiler would test itself; constant, so it lies in ROM. A test
- * that damages it says so. */
+/* Inputs are volatile, so that the compiler does not compute the results, and constant, so that
+ * they are in ROM. A test that damages them redefines INPUT. */
 #ifndef INPUT
 #define INPUT static const volatile
 #endif
@@ -57,7 +57,7 @@ int exh_selftest(void)
                               : EXH_SELFTEST_OK;
 }
 
-/* --- what scenes with a glove use besides --- */
+/* --- additional code of scenes with a glove --- */
 
 static int sine_fails(void)
 {
@@ -66,8 +66,8 @@ static int sine_fails(void)
     return y.sin_q30 != 463948540 || y.cos_q30 != 968335303;
 }
 
-/* A step of 2^20 into 30 Hz, order 2, at 2 kHz: the first ticks, all of whose bits hang on tan, on
- * both integrators and on the feedback. */
+/* A step of 2^20 into a filter of 30 Hz, order 2, at 2 kHz. All bits of the first outputs depend on
+ * tan, both integrators and the feedback. */
 static int filter_fails(void)
 {
     static const int32_t want[] = {2182, 10618, 26639, 49166, 77200, 109819, 146181, 185515};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Set-up, reset and step of the low-pass filters; filter_low.c and filter_high.c hold the kinds. */
+/* Set-up, reset and step of the low-pass filters. The kinds: filter_low.c, filter_high.c. */
 #include "exhand/filter.h"
 
 #include "exhand/error.h"
@@ -30,10 +30,10 @@ static int32_t coefficient(struct exh_real v, int32_t n, unsigned bits)
     return (int32_t)(r > most ? most : r);
 }
 
-/* The n that brings v to 2^(bits-1) .. 2^bits. */
+/* The n that scales v to 2^(bits-1) .. 2^bits. */
 static int32_t places(struct exh_real v, int32_t bits) { return bits - 63 - v.e; }
 
-/* Below, g = tan(pi fc T) and damped = g (g + sqrt 2); see NUMERICS.md. */
+/* In the functions below, g = tan(pi fc T) and damped = g (g + sqrt 2); see NUMERICS.md. */
 static void low2(struct exh_filter_cfg *cfg, struct exh_real g, struct exh_real damped)
 {
     const struct exh_real more = exh_real_add(exh_real_of(1), damped);
@@ -42,7 +42,7 @@ static void low2(struct exh_filter_cfg *cfg, struct exh_real g, struct exh_real 
     int32_t n;
     cfg->c = coefficient(exh_real_mul(g, exh_real_scale(exh_real_of(23), -4)), POS_Q, 31);
     a = exh_real_scale(exh_real_div(a, exh_real_of((uint64_t)cfg->c)), POS_Q);
-    n = places(b, 31); /* 2a fits, too: b is (g + sqrt 2) 23/16 a, more than 2a */
+    n = places(b, 31); /* 2a also fits: b is (g + sqrt 2) 23/16 a, more than 2a */
     cfg->a = coefficient(a, n, 30);
     cfg->b = coefficient(b, n, 31);
     cfg->shift = (uint8_t)(n - VEL_Q);
@@ -59,7 +59,7 @@ static void high2(struct exh_filter_cfg *cfg, struct exh_real g, struct exh_real
 static void low1(struct exh_filter_cfg *cfg, struct exh_real g)
 {
     const struct exh_real a = exh_real_div(g, exh_real_add(exh_real_of(1), g));
-    const int32_t n = places(a, 30); /* 2a must fit, too */
+    const int32_t n = places(a, 30); /* 2a must also fit */
     cfg->a = coefficient(a, n, 30);
     cfg->shift = (uint8_t)(n - POS_Q);
 }
@@ -76,7 +76,7 @@ int exh_filter_ratio(
     const uint64_t den = (uint64_t)T.den << 16;
     *fc = num;
     *rate = den;
-    /* Frames of a glove may come slower than any loop runs. */
+    /* A glove may have a lower rate than any loop. */
     if (T.num == 0 || T.den == 0) { return -EXH_E_RATE; }
     if (num == 0 || par->order < 1 || par->order > 2) { return -EXH_E_RANGE; }
     if (num >= den / 2) { return -EXH_E_CUTOFF; }
@@ -93,7 +93,7 @@ int exh_filter_setup(
     if (err != 0) { return err; }
 
     g = exh_real_tan_pi(num, den);
-    /* g > 11/32. Beyond a quarter of the rate g > 1, and without end. */
+    /* g > 11/32. Above a quarter of the rate, g > 1 and unbounded. */
     high = num > den / 4 || exh_real_round(exh_real_scale(g, 32)) > UINT64_C(11) << 27;
     damped = exh_real_mul(g, exh_real_add(g, EXH_REAL_SQRT2));
     *cfg = (struct exh_filter_cfg){0, 0, 0, 0, 0};
@@ -113,7 +113,7 @@ int exh_filter_setup(
     return 0;
 }
 
-/* --- the tick, and around it --- */
+/* --- the tick, reset and retuning --- */
 
 void exh_filter_step(struct exh_filter *s, const struct exh_filter_cfg *cfg, const int32_t *x,
     int32_t *y, unsigned n)
@@ -132,15 +132,14 @@ void exh_filter_reset(struct exh_filter *s, const int32_t *x, unsigned n)
     for (unsigned i = 0; i < n; i++) { exh_filter_rest(&s[i], x[i]); }
 }
 
-/* Speeds of the same unit, which the new filter can brake. */
+/* Speeds have the same unit, and the new filter can decelerate them. */
 static int speed_stays(const struct exh_filter_cfg *from, const struct exh_filter_cfg *to)
 {
     return from->kind == to->kind &&
            (to->kind == EXH_FILTER_LOW2 || (to->kind == EXH_FILTER_HIGH2 && to->a >= from->a));
 }
 
-/* The place keeps what it means: the output does not jump, it goes on from there. The high kinds
- * see by themselves what they are given. */
+/* The position keeps its meaning, so the output continues without a jump. High kinds convert it. */
 void exh_filter_retune(struct exh_filter *s, const struct exh_filter_cfg *from,
     const struct exh_filter_cfg *to, unsigned n)
 {

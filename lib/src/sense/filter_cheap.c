@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The cheap low-pass: sums of products of 32 by 32 bits, each one instruction of a small CPU. */
+/* The cheap low-pass: sums of 32 by 32 bit products, each one instruction on a small CPU. */
 #include "exhand/filter_cheap.h"
 
 #include "exhand/error.h"
@@ -8,21 +8,21 @@
 #include "filter_setup.h"
 #include "../num/real.h"
 
-/* Of the coefficients of the high kind: with any input its sum fits, too. */
+/* Fraction bits of the high coefficients: the sum fits for any input. */
 #define HIGH_Q 29
 #define HALF   (UINT32_C(1) << (HIGH_Q - 1))
-#define MIDDLE (INT32_C(3) << (HIGH_Q - 3)) /* a where fc is 0.2 of the rate, and -a at 0.3 */
+#define MIDDLE (INT32_C(3) << (HIGH_Q - 3)) /* value of a at 0.2 of the rate, and of -a at 0.3 */
 
 /* --- set-up: g = tan(pi fc T), b0 = g^2 / (1 + K), K = g (g + sqrt 2); see NUMERICS.md --- */
 
-/* Nearest value of v * 2^n, which fits. */
+/* Nearest value of v * 2^n; it must fit. */
 static int32_t coefficient(struct exh_real v, int32_t n)
 {
     return (int32_t)exh_real_round(exh_real_scale(v, n));
 }
 
-/* The speed is at most 1.907 g of full scale a tick, with any input; its unit is 9/4 g / 2^32 of
- * full scale. What b is rounded by, c makes up for: it is five times as fine. */
+/* The speed is at most 1.907 g of full scale per tick, for any input. Its unit is 9/4 g / 2^32 of
+ * full scale. c compensates the rounding of b, as it is five times as fine. */
 static void low(struct exh_filter_cheap_cfg *cfg, struct exh_real g, struct exh_real inv)
 {
     const struct exh_real b0 = exh_real_mul(exh_real_mul(g, g), inv);
@@ -36,12 +36,12 @@ static void low(struct exh_filter_cheap_cfg *cfg, struct exh_real g, struct exh_
 static void high(struct exh_filter_cheap_cfg *cfg, struct exh_real g, struct exh_real inv)
 {
     const struct exh_real square = exh_real_mul(g, g), one = exh_real_of(1);
-    const int beyond = g.e >= -62; /* g >= 1, from a quarter of the rate on */
+    const int beyond = g.e >= -62; /* g >= 1, from a quarter of the rate */
     const struct exh_real off = beyond ? exh_real_sub(square, one) : exh_real_sub(one, square);
     const int32_t a = coefficient(exh_real_mul(off, inv), HIGH_Q + 1);
     cfg->a = beyond ? -a : a;
     cfg->b = coefficient(exh_real_mul(square, inv), HIGH_Q);
-    /* Gain 1 at 0 Hz. It fits, 4 b does not. */
+    /* Gain 1 at 0 Hz. c fits, although 4 b does not. */
     cfg->c = exh_from_u32((UINT32_C(1) << HIGH_Q) - 4 * (uint32_t)cfg->b - (uint32_t)cfg->a);
     cfg->high = 1;
 }
@@ -58,7 +58,7 @@ int exh_filter_cheap_setup(
     inv = exh_real_add(exh_real_of(1), exh_real_mul(g, exh_real_add(g, EXH_REAL_SQRT2)));
     inv = exh_real_div(exh_real_of(1), inv);
     *cfg = (struct exh_filter_cheap_cfg){0, 0, 0, 0};
-    /* g > 7/32, which itself has no end. */
+    /* g > 7/32; g itself is unbounded. */
     if (num > den / 4 || exh_real_round(exh_real_scale(g, 32)) > UINT64_C(7) << 27) {
         high(cfg, g, inv);
     } else {
@@ -67,7 +67,7 @@ int exh_filter_cheap_setup(
     return 0;
 }
 
-/* --- the tick, and around it --- */
+/* --- the tick and reset --- */
 
 static inline int32_t word(int64_t v) { return exh_from_u32((uint32_t)((uint64_t)v >> 32)); }
 
@@ -78,7 +78,7 @@ static inline int64_t words(int32_t high, uint32_t low)
 
 static inline uint64_t times(int32_t a, int32_t b) { return (uint64_t)((int64_t)a * b); }
 
-/* Modulo 2^32, for coefficients of damaged memory. */
+/* Modulo 2^32, for damaged coefficients. */
 static inline int32_t multiple(int32_t k, int32_t v)
 {
     return exh_from_u32((uint32_t)k * (uint32_t)v);
@@ -94,8 +94,8 @@ static struct factors factors_of(int32_t b)
     return (struct factors){b, multiple(2, b), multiple(-4, b)};
 }
 
-/* sum + b (x + 2 in1 + in2 - 4 at), and the input moves on: by one product of 64 bits where there
- * is one, else by one a word. */
+/* sum + b (x + 2 in1 + in2 - 4 at); then shifts the inputs. Uses one 64-bit product where the CPU
+ * has one, else one per word. */
 static inline uint64_t driven(
     uint64_t sum, struct exh_filter_cheap *s, int32_t x, int32_t at, const struct factors *k)
 {
@@ -117,7 +117,7 @@ static void rest(struct exh_filter_cheap *s, int32_t at)
     s->vel = 0;
 }
 
-/* Sums modulo 2^64: only damaged bytes wrap them. */
+/* Sums are modulo 2^64; only damaged bytes wrap them. */
 static void step_low(struct exh_filter_cheap *s, const struct exh_filter_cheap_cfg *cfg,
     const int32_t *x, int32_t *y, unsigned n)
 {
@@ -131,7 +131,7 @@ static void step_low(struct exh_filter_cheap *s, const struct exh_filter_cheap_c
         v = word(s->vel);
         s->pos = exh_from_u64((uint64_t)s->pos + times(v, c));
         to = word(s->pos);
-        if (((to ^ v) & (to ^ at)) < 0) { /* beyond the rail that it went to */
+        if (((to ^ v) & (to ^ at)) < 0) { /* beyond the rail in the direction of motion */
             EXH_SATURATED();
             to = at < 0 ? INT32_MIN : INT32_MAX;
             rest(s, to);
@@ -140,9 +140,9 @@ static void step_low(struct exh_filter_cheap *s, const struct exh_filter_cheap_c
     }
 }
 
-/* What a rounding leaves goes into the next sum, which takes it away at 0 Hz, or is turned over
- * first, which does so at half the rate: there the recursion would make it a cycle around rest. In
- * the middle it would at either, so sums are rounded alone. */
+/* The rounding remainder enters the next sum. Added, it cancels at 0 Hz. Inverted, it cancels at
+ * half the rate, where the recursion would turn it into a limit cycle. Near the middle frequency
+ * either would cause one, so sums are only rounded there. */
 static void step_high(struct exh_filter_cheap *s, const struct exh_filter_cheap_cfg *cfg,
     const int32_t *x, int32_t *y, unsigned n)
 {
@@ -178,7 +178,7 @@ void exh_filter_cheap_reset(struct exh_filter_cheap *s, const struct exh_filter_
 {
     for (unsigned i = 0; i < n; i++) {
         rest(&s[i], x[i]);
-        if (cfg->high) { /* half an LSB there, too */
+        if (cfg->high) { /* plus half an LSB in the high kind */
             s[i].pos = words(x[i], HALF);
             s[i].vel = words(x[i], 0);
         }

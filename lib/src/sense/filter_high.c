@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The high kinds: cut-off up to half the rate. Fractions of 31 bits times 64-bit states, of which
- * no more than 32 by 32 bits are ever multiplied. */
+/* The high kinds: cut-off up to half the rate. 31-bit fractions times 64-bit states, as products of
+ * at most 32 by 32 bits. */
 #include "filter_tick.h"
 
 #include "exhand/fix.h"
@@ -8,17 +8,17 @@
 #define Q    EXH_FILTER_HIGH_Q
 #define HALF (UINT64_C(1) << (Q - 1))
 
-/* Twice 4 times full scale: an output that no input can cause. */
+/* Twice 4 times full scale: no input causes such an output. */
 #define FAR (INT64_C(8) << (31 + Q))
 
-/* What a reset, or a low kind before, left: into our format. Neither leaves a speed. */
+/* Converts a state after a reset or from a low kind to our format. Both have zero speed. */
 static void widen(struct exh_filter *s)
 {
     s->pos >>= EXH_FILTER_POS_Q - Q;
     s->wide = 1;
 }
 
-/* The output where it does not fit. A state that no input can cause starts anew there. */
+/* The output where it saturates. A state that no input can cause is reset there. */
 static int32_t at_rail(struct exh_filter *s, int64_t twice)
 {
     const int32_t y = twice < 0 ? INT32_MIN : INT32_MAX;
@@ -27,7 +27,7 @@ static int32_t at_rail(struct exh_filter *s, int64_t twice)
     return y;
 }
 
-/* Of the state before and now the mean. The limit is seen in the high word alone. */
+/* The mean of the previous and present state. Tests the limit on the high word only. */
 static inline int32_t mean(struct exh_filter *s, uint64_t before)
 {
     const uint64_t twice = before + (uint64_t)s->pos, full = UINT64_C(1) << (32 + Q);
@@ -37,10 +37,11 @@ static inline int32_t mean(struct exh_filter *s, uint64_t before)
 
 static inline uint32_t low_word(int64_t v) { return (uint32_t)((uint64_t)v & UINT32_MAX); }
 
-/* Modulo 2^64: the words of damaged coefficients may wrap. */
+/* Modulo 2^64: words of damaged coefficients may wrap. */
 static inline uint64_t times(int32_t word, int32_t c) { return (uint64_t)((int64_t)word * c); }
 
-/* floor((e a + v b) / 2^32), of the four words' products the low ones added before they are cut. */
+/* floor((e a + v b) / 2^32). Of the four products of words, the low ones are added before
+ * truncation. */
 static inline uint64_t sum(
     int64_t e, EXH_FILTER_WORD int32_t *a, int64_t v, EXH_FILTER_WORD int32_t *b)
 {
@@ -50,7 +51,7 @@ static inline uint64_t sum(
     return times(high_word(e), of_e) + (uint32_t)(below >> 32) + times(high_word(v), of_v);
 }
 
-/* Of one of the two, likewise. */
+/* The same for one product. */
 static inline uint64_t share(int64_t e, EXH_FILTER_WORD int32_t *a)
 {
     const int32_t of_e = *a;
@@ -64,7 +65,7 @@ static inline int64_t error_of(const struct exh_filter *s, int32_t x)
     return exh_from_u64(at - (uint64_t)s->pos);
 }
 
-/* Modulo 2^64: a state of damaged bytes may wrap here. */
+/* Modulo 2^64: a damaged state may wrap here. */
 EXH_FILTER_STEP(exh_filter_high2)
 {
     EXH_FILTER_WORD int32_t a = cfg->a, b = cfg->b;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The low kinds: cut-off well below the rate, where the state creeps and the cost counts.
- * Words are cut so that a 32-bit CPU multiplies 32 by 32 bits only and shifts once. */
+/* The low kinds: cut-off well below the sample rate, where the state changes slowly and the cost
+ * matters. A 32-bit CPU multiplies only 32 by 32 bits and shifts once. */
 #include "filter_tick.h"
 
 #include "exhand/fix.h"
@@ -10,7 +10,7 @@
 /* No input moves the state this far; only damaged bytes do. */
 #define BEYOND (INT64_C(5) << (31 - 2 + POS_Q)) /* 5/4 of full scale */
 
-/* The output where it does not fit. A state that no input can cause starts anew there. */
+/* The output where it saturates. A state that no input can cause is reset there. */
 static int32_t clipped(struct exh_filter *s, int64_t low)
 {
     const int32_t y = low < 0 ? INT32_MIN : INT32_MAX;
@@ -19,7 +19,7 @@ static int32_t clipped(struct exh_filter *s, int64_t low)
     return y;
 }
 
-/* The limit seen in the high word alone. */
+/* Tests the limit on the high word only. */
 static inline int32_t output(struct exh_filter *s, int64_t low)
 {
     const uint64_t half = UINT64_C(1) << (31 + POS_Q);
@@ -27,8 +27,8 @@ static inline int32_t output(struct exh_filter *s, int64_t low)
     return exh_from_u32((uint32_t)((uint64_t)low >> POS_Q & UINT32_MAX));
 }
 
-/* (x - floor(pos)) * a modulo 2^64, in whichever way the CPU has the shorter code: the same
- * bits. 2a fits. */
+/* (x - floor(pos)) * a modulo 2^64, in the form with the shorter code for the CPU. Both have the
+ * same bits. 2a fits. */
 static inline uint64_t drive(int64_t pos, int32_t x, int32_t a)
 {
 #if UINTPTR_MAX > UINT32_MAX
@@ -41,7 +41,7 @@ static inline uint64_t drive(int64_t pos, int32_t x, int32_t a)
 #endif
 }
 
-/* Damaged bytes may wrap here, which clipped() finds. Nothing else comes near. */
+/* Only damaged bytes wrap here; clipped() detects them. */
 EXH_FILTER_STEP(exh_filter_low2)
 {
     const int32_t a = cfg->a, b = cfg->b, c = cfg->c;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Glove frame to joint angles: quantize, filter, calibrate, detect faulty sensors. */
+/* Glove frame to joint angles: fault detection, low-pass, quantizer, calibration. */
 #include "exhand/glove.h"
 
 #include "exhand/error.h"
@@ -12,11 +12,11 @@
 #define HYST_MAX_RAW_Q16 EXH_Q(4096, 1, 16)
 #define MARGIN_MAX_Q16   EXH_Q(8, 1, 16)
 
-/* A finger's own movements stay below some 10 Hz, and the filter's delay adds to how early
- * the surface must be known. Delay times noise bandwidth is 1/4 for first and second order
- * alike, so order 2 for its flat pass band; at 30 Hz it delays by 7.5 ms, and of white
- * noise sampled at 2 kHz 18 % pass. The paper's noise, 6.1 mV peak to peak, is 20 codes:
- * hysteresis of as much keeps its 11 bits stable at every rate, filtered or not. */
+/* Finger movements stay below about 10 Hz, and the delay of the filter adds to the required warning
+ * time. Delay times noise bandwidth is 1/4 for first and second order. So order 2 is used for its
+ * flat pass band. At 30 Hz it delays by 7.5 ms and passes 18 % of white noise sampled at 2 kHz. The
+ * noise of the paper, 6.1 mV peak to peak, is 20 codes. A hysteresis of 20 codes keeps its 11 bits
+ * stable at every rate, filtered or not. */
 const struct exh_signal exh_glove_rows[EXH_GLOVE_ROWS] = {
     {0x0901, 0, EXH_WHEN_SETUP, 0, 2, 2, "glove_order", "",
         "order of the glove's low-pass, 0 = none"},
@@ -45,15 +45,15 @@ const char *exh_glove_cause_text(unsigned cause)
 
 /* --- set-up --- */
 
-/* The codes that each sensor is believed at: its span, its margin, between the rails. A span
- * between them also tells that the rails are in order. */
+/* Computes the accepted codes of each sensor: its span and margin, within the rails. A span between
+ * the rails also proves their order. */
 static int limits(struct exh_glove_cfg *cfg, const struct exh_glove_par *par)
 {
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
         const struct exh_glove_sensor *s = &cfg->cal->sensor[i];
         const int32_t margin =
             (int32_t)exh_mul_shr((int32_t)s->high_raw - s->low_raw, par->margin_q16, 16);
-        if (!(cfg->cal->present >> i & 1)) { /* whatever a pin without a wire reads */
+        if (!(cfg->cal->present >> i & 1)) { /* ignores an unconnected pin */
             cfg->lo_raw[i] = INT16_MIN;
             cfg->hi_raw[i] = INT16_MAX;
             continue;
@@ -95,7 +95,7 @@ int exh_glove_setup(struct exh_glove_cfg *cfg, const struct exh_glove_par *par,
     return limits(cfg, par);
 }
 
-/* --- which code is believed --- */
+/* --- acceptance of codes --- */
 
 static uint8_t cause_of(const struct exh_glove_cfg *cfg, unsigned i, int16_t raw)
 {
@@ -104,12 +104,12 @@ static uint8_t cause_of(const struct exh_glove_cfg *cfg, unsigned i, int16_t raw
     return raw >= cfg->high_raw ? cfg->high_cause : EXH_GLOVE_OUTSIDE;
 }
 
-/* A code that is bad, or good on a channel that was in doubt. */
+/* Processes a bad code, or a good one on a channel with rejected codes. */
 static void doubt(struct exh_glove *s, const struct exh_glove_cfg *cfg, unsigned i, int16_t raw)
 {
     const uint8_t now = cause_of(cfg, i, raw);
     const int faulty = s->cause[i] != EXH_GLOVE_GOOD, bad = now != EXH_GLOVE_GOOD;
-    if (faulty && bad) { s->cause[i] = now; } /* the latest is what to look for */
+    if (faulty && bad) { s->cause[i] = now; } /* report the latest cause */
     if (faulty == bad) {
         s->run[i] = 0;
     } else if (s->run[i] + 1 < cfg->debounce_frames) {
@@ -122,7 +122,7 @@ static void doubt(struct exh_glove *s, const struct exh_glove_cfg *cfg, unsigned
     if (!bad && s->cause[i] == EXH_GLOVE_GOOD) { s->good_raw[i] = raw; }
 }
 
-/* The first frame: no code was ever good. */
+/* The first frame: there is no good code yet. */
 static void start(
     struct exh_glove *s, const struct exh_glove_cfg *cfg, const struct exh_glove_in *in)
 {
@@ -163,7 +163,7 @@ uint32_t exh_glove_believe(struct exh_glove *s, const struct exh_glove_cfg *cfg,
     return faulty;
 }
 
-/* The limit is seen in the high word alone, of a small CPU. */
+/* Tests the limit on the high word only, for small CPUs. */
 static inline int32_t angle_of(int32_t from_zero_raw_q15, int32_t gain_turnpraw_q38)
 {
     const unsigned n = EXH_Q_ZERO + EXH_Q_TPRAW - EXH_Q_TURN;
@@ -177,13 +177,13 @@ void exh_glove_angles(struct exh_glove *s, const struct exh_glove_cfg *cfg, unsi
     unsigned to, int32_t *angle_turn_q32)
 {
     const struct exh_glove_sensor *cal = &cfg->cal->sensor[from];
-    int32_t *const x = angle_turn_q32; /* codes q16 on their way to become angles */
+    int32_t *const x = angle_turn_q32; /* codes q16, which become angles */
     if (cfg->order > 0 && from < to) {
         exh_filter_step(&s->filter[from], &cfg->filter, &x[from], &x[from], to - from);
     }
     for (unsigned i = from; i < to; i++, cal++) {
         const int32_t code = quantizer_in_place(&s->quantizer[i], &cfg->quantizer, x[i]);
-        /* Half the code: the difference to a zero at the far end fits. */
+        /* Half the code, so that the difference to a zero at the far end fits. */
         x[i] = angle_of(exh_wrap_diff(code >> 1, cal->zero_raw_q15), cal->gain_turnpraw_q38);
     }
 }

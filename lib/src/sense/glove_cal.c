@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* Calibration of a user's glove: what is accepted, its image, and one to begin with. */
+/* Calibration of a user's glove: checks, image, and a default. */
 #include "exhand/glove.h"
 
 #include "exhand/error.h"
 
 #define IMAGE_MAGIC           0x47485845u        /* "EXHG" */
-#define GAIN_MIN_TURNPRAW_Q38 (INT32_C(1) << 17) /* 2^-21 turn a code: 11 degrees over the card */
+#define GAIN_MIN_TURNPRAW_Q38 (INT32_C(1) << 17) /* 2^-21 turn per code: 11 degrees in all */
 #define ZERO_END_RAW_Q15      (INT32_C(1) << 30)
 
 /* --- the default --- */
 
-/* From normalised end points in thousandths and the angles there in degrees; -9 .. 9 V of
- * a +-10 V card are 58982.4 codes. All quotients are exact to one LSB. */
+/* From normalised end points in thousandths and their angles in degrees. -9 .. 9 V of a +-10 V card
+ * are 58982.4 codes. All quotients are exact to one LSB. */
 #define CODE(m) ((int16_t)((2 * (m)-1000) * INT64_C(294912) / 10000))
 #define ZERO_Q15(m0, m1, d0, d1) \
     ((int32_t)((2 * ((m0)*INT64_C(1) * ((d1) - (d0)) - (d0)*INT64_C(1) * ((m1) - (m0))) - \
@@ -42,7 +42,7 @@ const struct exh_glove_cal exh_glove_cal_default = {
         UP(357, 650, 0, 40), UP(154, 622, -30, 40), DOWN(925, 236, -30, 10)},
 };
 
-/* --- words --- */
+/* --- names --- */
 
 const char *exh_glove_sensor_text(unsigned sensor)
 {
@@ -99,10 +99,9 @@ static int refuse(struct exh_glove_error *bad, unsigned what, unsigned at, int e
     return err;
 }
 
-/* --- what is accepted --- */
+/* --- checks --- */
 
-/* A cross term is of a sensor that is there and has none itself, as this one has: so it is
- * of no sensor's own, and one pass over the angles does. */
+/* A cross term must refer to a present sensor without cross terms of its own. One pass suffices. */
 static int cross_ok(const struct exh_glove_cal *cal, unsigned at)
 {
     for (unsigned k = 0; k < 2; k++) {
@@ -122,7 +121,7 @@ unsigned exh_glove_sensor_validate(const struct exh_glove_cal *cal, unsigned at)
 {
     const struct exh_glove_sensor *s = &cal->sensor[at];
     const int present = (int)(cal->present >> at & 1);
-    const int64_t gain = s->gain_turnpraw_q38; /* -2^31 has a size here */
+    const int64_t gain = s->gain_turnpraw_q38; /* 64 bits: -2^31 has a magnitude here */
     const int64_t size = gain < 0 ? -gain : gain;
     if (present ? size < GAIN_MIN_TURNPRAW_Q38 || size > INT32_MAX : size != 0) {
         return EXH_GLOVE_GAIN;
@@ -174,7 +173,7 @@ static void head_bytes(struct exh_bytes *b, struct head *h)
     exh_bytes_u16(b, &h->sensors);
 }
 
-/* All behind the head but the CRC. */
+/* All fields after the head except the CRC. */
 static void body_bytes(struct exh_bytes *b, struct exh_glove_cal *cal)
 {
     exh_bytes_u32(b, &cal->user_id);
@@ -200,7 +199,7 @@ int32_t exh_glove_cal_save(
 {
     struct head h = {IMAGE_MAGIC, EXH_GLOVE_CAL_VERSION, EXH_GLOVE_SENSORS};
     struct exh_bytes b = exh_bytes_writer(buf, cap_B);
-    struct exh_glove_cal copy = *cal; /* the cursor's functions go both ways */
+    struct exh_glove_cal copy = *cal; /* the cursor's functions also read */
     uint32_t crc;
     const int err = exh_glove_cal_validate(cal, bad);
     if (err < 0) { return err; }

@@ -1,30 +1,29 @@
 /* SPDX-License-Identifier: MIT */
-/* A glove's calibration from poses: least squares, in integers.
+/* Calibration of a glove from poses: least squares, in integers.
  *
- * A sensor's angle is linear in its code and, for an abduction, in the angles of two
- * knuckles. Sums over all pairs of poses of products of differences stand for the usual
- * sums about the mean (n times as large) and need no mean. The last unknown is found by
- * elimination, its share taken from the angles, and so on down to the gain.
- */
+ * The angle of a sensor is linear in its code and, for an abduction, in the angles of two knuckles.
+ * Sums of products of differences over all pairs of poses replace the usual sums about the mean.
+ * They are n times as large and need no mean. Elimination gives the last unknown; its share is
+ * subtracted from the angles, and so on down to the gain. */
 #include "exhand/glove.h"
 
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
 #define ALL                   4                  /* code, two knuckles, and the known angle */
-#define ANGLES_APART_TURN_Q32 EXH_Q(5, 360, 32)  /* known angles that differ at all */
-#define PIVOT_MIN             (INT64_C(1) << 42) /* a knuckle that moved by 2.8 degrees */
-#define PIVOT_SHARE           8                  /* 2^-8 of it in its own way */
+#define ANGLES_APART_TURN_Q32 EXH_Q(5, 360, 32)  /* smallest difference of known angles */
+#define PIVOT_MIN             (INT64_C(1) << 42) /* a knuckle movement of 2.8 degrees */
+#define PIVOT_SHARE           8                  /* 2^-8 of it must be independent */
 
 const struct exh_glove_fit_par exh_glove_fit_default = {256, 128, EXH_Q(6, 360, 32)};
 
-/* The poses that know one sensor's angle. */
+/* The poses with a known angle of one sensor. */
 struct known {
-    unsigned n, terms;                 /* poses, unknown factors */
-    uint8_t pose[EXH_GLOVE_POSES_MAX]; /* which they are */
+    unsigned n, terms;                 /* number of poses; of unknown factors */
+    uint8_t pose[EXH_GLOVE_POSES_MAX]; /* their indices */
     int32_t code_raw_q16[EXH_GLOVE_POSES_MAX];
     int32_t term[ALL][EXH_GLOVE_POSES_MAX];      /* code q12, angles of knuckles turn_q28 */
-    int32_t angle_turn_q32[EXH_GLOVE_POSES_MAX]; /* less what cross terms explain */
+    int32_t angle_turn_q32[EXH_GLOVE_POSES_MAX]; /* minus the cross terms found */
 };
 
 struct factor {
@@ -32,7 +31,7 @@ struct factor {
     int down; /* 1: negative */
 };
 
-/* num/den, den > 0; less than 2^-32 is none. */
+/* num/den, den > 0; results below 2^-32 are 0. */
 static int factor_set(struct factor *f, int64_t num, int64_t den)
 {
     const uint64_t size = num < 0 ? (uint64_t)-num : (uint64_t)num;
@@ -42,7 +41,7 @@ static int factor_set(struct factor *f, int64_t num, int64_t den)
     return size < (uint64_t)den ? 0 : -EXH_E_RANGE;
 }
 
-/* f v; by the inequality of Cauchy and Schwarz no larger than the sums it comes from. */
+/* f v. By the Cauchy-Schwarz inequality, no larger than the sums from which it comes. */
 static int64_t factor_mul(const struct factor *f, int64_t v)
 {
     const int64_t q31 = exh_mul64_q31(v, f->size.mant);
@@ -57,7 +56,7 @@ static int32_t own_turn_q32(const struct exh_glove_sensor *s, int32_t raw_q16)
         EXH_Q_ZERO + EXH_Q_TPRAW - EXH_Q_TURN));
 }
 
-/* sum[r][c] over all pairs; the known angle comes behind the terms. */
+/* sum[r][c] over all pairs; the known angle follows the terms. */
 static void sums(int64_t sum[ALL][ALL], const struct known *k)
 {
     for (unsigned r = 0; r <= k->terms; r++) {
@@ -73,8 +72,8 @@ static void sums(int64_t sum[ALL][ALL], const struct known *k)
     }
 }
 
-/* The factor of the last term, and its inverse if wanted. -EXH_E_RANGE: the terms moved
- * too little, or together. */
+/* The factor of the last term, and its inverse if wanted. -EXH_E_RANGE: the terms moved too little
+ * or were dependent. */
 static int last_factor(struct known *k, struct factor *f, struct factor *inverse)
 {
     const unsigned last = k->terms - 1, y = k->terms;
@@ -83,7 +82,7 @@ static int last_factor(struct known *k, struct factor *f, struct factor *inverse
     sums(sum, k);
     for (unsigned r = 0; r <= last; r++) { least[r] = sum[r][r] >> PIVOT_SHARE; }
     for (unsigned r = 0; r <= last; r++) {
-        /* Of what moves with the terms before it, rounding alone would be left to divide by. */
+        /* With dependent terms, the divisor would consist of rounding errors. */
         if (sum[r][r] < 1 || sum[r][r] < least[r] || (r > 0 && sum[r][r] < PIVOT_MIN)) {
             return -EXH_E_RANGE;
         }
@@ -101,7 +100,7 @@ static int last_factor(struct known *k, struct factor *f, struct factor *inverse
     return factor_set(f, sum[last][y], sum[last][last]);
 }
 
-/* The poses of sensor `at`, and whether they will do. EXH_GLOVE_ERRORS: they will. */
+/* Collects the poses of sensor `at` and checks them. EXH_GLOVE_ERRORS: no error. */
 static unsigned gather(struct known *k, const struct exh_glove_cal *cal, struct exh_glove_fit *fit,
     unsigned at, const struct exh_glove_pose *pose, unsigned n, const struct exh_glove_fit_par *par)
 {
@@ -141,7 +140,7 @@ static unsigned gather(struct known *k, const struct exh_glove_cal *cal, struct 
                                                                            : EXH_GLOVE_ERRORS;
 }
 
-/* Cross terms from the last to the first, each taken from the angles. */
+/* Finds the cross terms from last to first and subtracts each from the angles. */
 static unsigned fit_cross(struct known *k, struct exh_glove_sensor *s)
 {
     for (unsigned j = 2; j-- > 0;) {
@@ -165,12 +164,12 @@ static unsigned fit_cross(struct known *k, struct exh_glove_sensor *s)
 
 static int64_t mean(const int32_t *v, unsigned n)
 {
-    uint64_t sum = (uint64_t)n << 31; /* lifted: never negative */
+    uint64_t sum = (uint64_t)n << 31; /* offset, so never negative */
     for (unsigned p = 0; p < n; p++) { sum += (uint64_t)(int64_t)v[p]; }
     return (int64_t)exh_udiv64(sum, n, NULL) - (INT64_C(1) << 31);
 }
 
-/* Gain by the line through what is left, zero where it crosses. */
+/* The gain by a line through the remaining angles, and its zero. */
 static unsigned fit_line(struct known *k, struct exh_glove_sensor *s)
 {
     struct factor f, inverse;
@@ -201,7 +200,7 @@ static unsigned residuals(const struct known *k, const struct exh_glove_sensor *
     return worst > max_turn_q32 ? EXH_GLOVE_RESIDUAL : EXH_GLOVE_ERRORS;
 }
 
-/* The span over all poses: also those that do not say the angle. */
+/* The span over all poses, including those without a known angle. */
 static void span(
     struct exh_glove_sensor *s, unsigned at, const struct exh_glove_pose *pose, unsigned n)
 {
@@ -232,7 +231,7 @@ static unsigned fit_sensor(struct exh_glove_cal *cal, struct exh_glove_fit *fit,
     return what == EXH_GLOVE_ERRORS ? residuals(&k, s, fit, par->residual_max_turn_q32) : what;
 }
 
-/* The other sensors it needs are there, have no cross terms, and came out fine. */
+/* 1 if the other sensors it needs are present, have no cross terms and were fitted. */
 static int cross_known(
     const struct exh_glove_cal *cal, const struct exh_glove_fit *fit, unsigned at)
 {
@@ -247,7 +246,7 @@ static int cross_known(
     return 1;
 }
 
-/* Those that are there and have cross terms, or those that have none. */
+/* Fits all present sensors with cross terms, or all without. */
 static void fit_all(struct exh_glove_cal *cal, struct exh_glove_fit *fit,
     const struct exh_glove_pose *pose, unsigned n, const struct exh_glove_fit_par *par, int cross)
 {

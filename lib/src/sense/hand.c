@@ -16,9 +16,9 @@
 #define PULL_MAX_RADPM_Q20 EXH_Q(250, 1, 20)
 #define HALF_TURN_Q56      (UINT64_C(1) << 55)
 
-/* The arms are ours, and not measured: cables guided 20, 16 and 12 mm from the joints'
- * axes (thicker there, and less room towards the tip) give 61 mm of string from straight to bent
- * in full; exoskeletons of this kind are said to move 60 to 90 mm. */
+/* Default arms, estimated, not measured: cables guided 20, 16 and 12 mm from the joint axes. They
+ * give 61 mm of string from straight to fully bent. Exoskeletons of this kind are reported to move
+ * 60 to 90 mm. */
 const struct exh_signal exh_hand_rows[EXH_HAND_ROWS] = {
     {0x0A01, EXH_Q_POS, EXH_WHEN_SETUP, 0, ARM_MAX_M_Q30, EXH_Q(20, 1000, EXH_Q_POS), "arm1", "m",
         "string per radian of the knuckle"},
@@ -67,7 +67,7 @@ uint32_t exh_hand_joints(const struct exh_hand_map *map, unsigned finger,
         for (unsigned t = 0; t < EXH_HAND_TERMS; t++) {
             sum_q56 += (int64_t)j->gain_q24[t] * sensor_turn_q32[j->sensor[t]];
         }
-        if ((uint64_t)sum_q56 + HALF_TURN_Q56 < 2 * HALF_TURN_Q56) { /* half of an LSB is in it */
+        if ((uint64_t)sum_q56 + HALF_TURN_Q56 < 2 * HALF_TURN_Q56) { /* includes half an LSB */
             want = exh_from_u32((uint32_t)((uint64_t)sum_q56 >> (56 - 32) & UINT32_MAX));
         } else {
             want = sum_q56 < 0 ? INT32_MIN : INT32_MAX;
@@ -81,7 +81,7 @@ uint32_t exh_hand_joints(const struct exh_hand_map *map, unsigned finger,
 
 /* --- joints to the fingertip --- */
 
-/* Of rows that are: the third is the first two's product, and not its mirror image. */
+/* For a rotation matrix: the third row is the product of the first two, not its mirror image. */
 static int right_handed(const int32_t rot_q30[3][3])
 {
     const int32_t *x = rot_q30[0], *y = rot_q30[1];
@@ -91,7 +91,7 @@ static int right_handed(const int32_t rot_q30[3][3])
     return z0 * rot_q30[2][0] + z1 * rot_q30[2][1] + z2 * rot_q30[2][2] > 0;
 }
 
-/* Rows of length 1 and square to each other, to 1e-6 (2^-20), right-handed. */
+/* Rows of length 1, orthogonal to 1e-6 (2^-20), right-handed. */
 static int is_rotation(const int32_t rot_q30[3][3])
 {
     const int64_t tol_q60 = INT64_C(1) << 40;
@@ -144,7 +144,7 @@ int exh_hand_setup(
     return 0;
 }
 
-/* How a sensor turns per metre of string. */
+/* Turn of a sensor's joint per metre of string. */
 static int64_t rate_radpm_q20(const struct exh_hand_finger *f, const uint8_t *bent, uint8_t sensor)
 {
     if (sensor == bent[0]) { return f->pull_radpm_q20[0]; }
@@ -169,23 +169,25 @@ int exh_hand_couple(struct exh_hand_finger *f, const struct exh_hand_map *map, u
     return 0;
 }
 
-/* With lengths l0, l1, l2 and q3 = q2 the tip lies, along and across the first bone,
+/* With lengths l0, l1, l2 and q3 = q2, the tip lies along and across the first bone at
+ *
  *   along  = l0 + l1 cos q2 + l2 cos 2 q2 = l0 - l2 + M cos q2
- *   across =      l1 sin q2 + l2 sin 2 q2 =           M sin q2,    M = l1 + 2 l2 cos q2,
- * which saves sine and cosine of every sum of joints. */
+ *   across =      l1 sin q2 + l2 sin 2 q2 =           M sin q2,    M = l1 + 2 l2 cos q2.
+ *
+ * This avoids sine and cosine of every sum of joints. */
 struct pose {
     struct exh_sincos q0, q1, q2;
     int_fast32_t fold_m_q33; /* M */
     int_fast32_t along_m_q34, across_m_q34;
 };
 
-/* floor(a*b / 2^n) of 32-bit values, as is the result, in a type as wide as the machine likes. */
+/* floor(a*b / 2^n) of 32-bit values with a 32-bit result, in the fastest type. */
 static inline int_fast32_t part(int_fast32_t a, int_fast32_t b, unsigned n)
 {
     return (int_fast32_t)((int64_t)a * b >> n);
 }
 
-/* The same and c, where the sum has 32 bits again but the product, of long bones, more. */
+/* part() + c, where the sum has 32 bits, but the product of long bones more. */
 static inline int_fast32_t part_and(int_fast32_t a, int_fast32_t b, unsigned n, int_fast32_t c)
 {
     return (int_fast32_t)(((int64_t)a * b >> n) + c);
@@ -204,12 +206,12 @@ static inline struct pose pose_of(const int32_t len_m_q34[3], const int32_t *joi
     return p;
 }
 
-/* A vector in the axes of the finger's base. */
+/* A vector in the base frame of the finger. */
 struct base3 {
     int_fast32_t x, y, z;
 };
 
-/* (along, across) turned by q1, then by q0 about z; same format. */
+/* (along, across) rotated by q1, then by q0 about z; same format. */
 static inline struct base3 turned(const struct pose *p, int_fast32_t along, int_fast32_t across)
 {
     const int64_t out = (int64_t)along * p->q1.cos_q30 - (int64_t)across * p->q1.sin_q30;
@@ -220,8 +222,8 @@ static inline struct base3 turned(const struct pose *p, int_fast32_t along, int_
     return v;
 }
 
-/* One coordinate in the palm. Three products lose half an LSB of q32 each, which the 3 gives back
- * (1.5, and 2 to round). */
+/* One coordinate in the palm. Three products lose half an LSB of q32 each. Adding 3 compensates
+ * that (1.5) and rounds (2). */
 static inline int32_t place_m_q30(
     int32_t base_m_q32, const int32_t row_q30[3], struct base3 v_m_q34)
 {
@@ -253,8 +255,8 @@ static inline int32_t turned_q24(const int32_t row_q30[3], struct base3 v_q24)
     return (int32_t)exh_shr_round(sum_q54, 54 - 24);
 }
 
-/* As q1 turns, the tip moves by (-across, along); as q2 turns, and q3 with it, by
- * (-K sin q2, K cos q2 - 2 l2), K = 2 M - l1. */
+/* When q1 turns, the tip moves by (-across, along). When q2 and q3 turn, it moves by (-K sin q2, K
+ * cos q2 - 2 l2), K = 2 M - l1. */
 void exh_hand_tip_slope(const struct exh_hand_finger *f, const int32_t *joint_turn_q32,
     struct exh_vec3 *tip_m_q30, struct exh_vec3 *slope_q24)
 {

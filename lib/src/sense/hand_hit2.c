@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The DLR/HIT Hand II, right: its bones, and how the glove's sensors move it (glove.h
- * lends their names, no more). */
+/* The right DLR/HIT Hand II: its bones, and its map from the glove's sensors. */
 #include "exhand/hand.h"
 
 #include "exhand/angle.h"
@@ -9,7 +8,7 @@
 
 /* --- bones --- */
 
-/* 55 and 25 mm, and 25 mm to the middle of the pad: five fingers alike. */
+/* 55 and 25 mm, and 25 mm to the pad's centre, equal for five fingers. */
 #define BONES \
     { \
         EXH_Q(55, 1000, 34), EXH_Q(25, 1000, 34), EXH_Q(25, 1000, 34) \
@@ -21,13 +20,13 @@
 #define SIN_10 186453311
 #define COS_10 1057429273
 
-/* Nearest q32 of a length in nm. */
+/* The q32 value nearest to a length in nm. */
 #define NM(n) \
     ((int32_t)(((n) * (INT64_C(1) << 32) + ((n) < 0 ? -500000000 : 500000000)) / 1000000000))
 
-/* Places and turns as published for the hand's model (roll, pitch, yaw about fixed axes). The four
- * fingers stand upright, spread by 5 degrees and 10 (little); the thumb's are 0.225810, -1.083656,
- * 0.411355 rad. Each constant is the nearest of its format. */
+/* Positions and rotations as published for the model of the hand (roll, pitch, yaw about fixed
+ * axes). The four fingers are upright, spread by 5 degrees, the little one by 10. The thumb has
+ * 0.225810, -1.083656, 0.411355 rad. Each constant is the nearest in its format. */
 const struct exh_hand_bones exh_hit2_bones[EXH_FINGERS] = {
     [EXH_THUMB] = {BONES,
         {{460690812, -613157138, -751481074}, {200973197, 874240148, -590114771},
@@ -45,11 +44,10 @@ const struct exh_hand_bones exh_hit2_bones[EXH_FINGERS] = {
 
 /* --- map --- */
 
-/* A sensor's span, in degrees, laid over a joint's: the joint is at its lower limit at `from` and
- * at its upper limit at `to`. The spans are a hand's: what joints of real hands in gloves that
- * nobody calibrated reach, in round numbers, so that few postures are cut off. The price is
- * that a flat hand in a calibrated glove bends the robot's knuckles by 18 degrees and its
- * middle joints by 10; a map of the person's own need not. */
+/* Maps a sensor's span in degrees to a joint's. The joint is at its lower limit at `from`, at its
+ * upper limit at `to`. The spans are rounded ranges of real hands in uncalibrated gloves, so that
+ * few postures are clipped. As a consequence, a flat hand in a calibrated glove bends the robot's
+ * knuckles by 18 degrees and its middle joints by 10. A map for the person avoids this. */
 #define SPAN_GAIN(lo, hi, from, to) EXH_Q((hi) - (lo), (to) - (from), 24)
 #define SPAN_BIAS(lo, hi, from, to) \
     EXH_DEG((lo) * ((to) - (from)) - ((hi) - (lo)) * (from), (to) - (from))
@@ -58,19 +56,19 @@ const struct exh_hand_bones exh_hit2_bones[EXH_FINGERS] = {
 #define PROXIMAL_LIMITS 0, EXH_DEG(85, 1)
 #define MIDDLE_LIMITS   0, EXH_DEG(65, 1)
 
-/* Spreading: a quarter of it, so that 60 degrees between two fingers (a sensor's span is 45 to 50)
- * are the robot's 15. The robot's middle finger stands still, as no sensor tells where it
- * is; index and ring are turned from it, and little by its distance from ring more. */
+/* Abduction, reduced to a quarter: 60 degrees between two fingers (a sensor spans 45 to 50) become
+ * 15. The robot's middle finger stays, since no sensor measures it. Index and ring turn relative to
+ * it, and the little finger also by its distance from the ring finger. */
 #define SPREAD_GAIN EXH_Q(1, 4, 24)
 
-/* Bending at the knuckle: from 30 degrees backwards to 110 forwards. */
+/* Flexion of the knuckle: from 30 degrees backwards to 110 forwards. */
 #define KNUCKLE(mpj) \
     { \
         SPAN_BIAS(0, 85, -30, 110), {SPAN_GAIN(0, 85, -30, 110), 0}, {mpj, 0}, PROXIMAL_LIMITS \
     }
 
-/* q2 and q3 are one in the robot and two in the hand: their sum is laid over the robot's sum, so
- * each sensor bends q2 by half. */
+/* q2 and q3 are coupled in the robot, but two joints in the hand. The sum of the sensors maps to
+ * the robot's sum, so each sensor bends q2 by half. */
 #define CURL(pij, dij, from, to) \
     { \
         SPAN_BIAS(0, 65, from, to), {SPAN_GAIN(0, 65, from, to), SPAN_GAIN(0, 65, from, to)}, \
@@ -82,11 +80,11 @@ const struct exh_hand_map exh_hit2_map =
         .joint =
             {
                 [EXH_THUMB] =
-                    {/* Turning across the palm moves the robot's thumb against q0. */
+                    {/* Rotation across the palm moves the robot's thumb against q0. */
                         {-SPAN_BIAS(-15, 15, -60, 130), {-SPAN_GAIN(-15, 15, -60, 130), 0},
                             {EXH_GLOVE_THUMB_ROTATE, 0}, SIDE_LIMITS},
-                        /* The base bends as the thumb comes to the palm: by its own joint, or less
-                           abduction. */
+                        /* The base bends when the thumb moves to the palm: by flexion, or by less
+                         * abduction. */
                         {SPAN_BIAS(0, 85, -85, 45),
                             {SPAN_GAIN(0, 85, -85, 45), -SPAN_GAIN(0, 85, -85, 45)},
                             {EXH_GLOVE_THUMB_MPJ, EXH_GLOVE_THUMB_AB}, PROXIMAL_LIMITS},
@@ -99,7 +97,7 @@ const struct exh_hand_map exh_hit2_map =
                 [EXH_RING] = {{0, {SPREAD_GAIN, 0}, {EXH_GLOVE_RING_MIDDLE_AB, 0}, SIDE_LIMITS},
                     KNUCKLE(EXH_GLOVE_RING_MPJ),
                     CURL(EXH_GLOVE_RING_PIJ, EXH_GLOVE_RING_DIJ, -40, 225)},
-                /* The little finger's sensors reach farther in all recordings. */
+                /* In all recordings the sensors of the little finger have a larger span. */
                 [EXH_LITTLE] =
                     {{0, {SPREAD_GAIN, SPREAD_GAIN},
                          {EXH_GLOVE_RING_MIDDLE_AB, EXH_GLOVE_LITTLE_RING_AB}, SIDE_LIMITS},

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Quadrature decoding; board counts extended to 32 bits and scaled to metres. */
+/* Quadrature decoding; counts of a board extended to 32 bits and scaled to metres. */
 #include "exhand/quad.h"
 
 #include "exhand/error.h"
@@ -12,15 +12,15 @@
 const struct exh_signal exh_quad_rows[EXH_QUAD_ROWS] = {
     {0x0201, EXH_Q_STEP, EXH_WHEN_SETUP, STEP_MIN_M_Q42, INT32_MAX,
         EXH_Q(6632, 100000000, EXH_Q_STEP), "step", "m", "string per encoder count"},
-    /* Beyond the fastest hand: what moves more is no movement. */
+    /* Above the fastest hand: a larger step is no movement. */
     {0x0202, EXH_Q_VEL, EXH_WHEN_SETUP, SPEED_MIN_MPS_Q27, INT32_MAX, EXH_Q(10, 1, EXH_Q_VEL),
         "speed_max", "m_per_s", "faster is an encoder fault"},
 };
 
 /* --- two lines --- */
 
-/* The three sums of up to 255 samples fit side by side into one word; the count, which
- * may go down, is its top, so that it borrows from nobody. */
+/* Three sums of up to 255 samples fit into one word. The count may fall, so it is the top one and
+ * borrows from no other. */
 #define RUN_MAX 255u
 #define EDGE    0x100u
 #define UP      (EDGE + 0x10000u)
@@ -51,7 +51,7 @@ void exh_quad_ab_step(struct exh_quad_ab *s, const struct exh_quad_mode *mode, u
 void exh_quad_ab_run(
     struct exh_quad_ab *s, const struct exh_quad_mode *mode, const uint8_t *ab, size_t n)
 {
-    uint32_t past; /* samples, the last in the low bits */
+    uint32_t past; /* samples, the last one in the low bits */
     if (n == 0) { return; }
     past = s->started ? s->ab : ab[0];
     while (n > 0) {
@@ -68,7 +68,7 @@ void exh_quad_ab_run(
     s->started = 1;
 }
 
-/* Ones among 64 bits: sums of 2, 4 and 8 of them side by side, then all. */
+/* Number of ones in 64 bits: sums of 2, 4 and 8 in parallel, then all. */
 static uint32_t ones(uint64_t x)
 {
     x -= x >> 1 & UINT64_C(0x5555555555555555);
@@ -83,7 +83,7 @@ void exh_quad_ab_word(struct exh_quad_ab *s, uint64_t a, uint64_t b)
     const uint64_t was_b = b << 1 | (s->started ? (uint64_t)s->ab & 1 : b & 1);
     const uint64_t moved_a = a ^ was_a, moved_b = b ^ was_b;
     const uint64_t edge = moved_a ^ moved_b;
-    const uint64_t up = edge & (was_a ^ b); /* where a goes, b stood; where b goes, a does */
+    const uint64_t up = edge & (was_a ^ b); /* where a changes, b is stable, and the reverse */
     const uint32_t edges = ones(edge);
 
     s->cnt = exh_wrap_add(s->cnt, exh_from_u32(2 * ones(up) - edges));
@@ -128,12 +128,12 @@ int exh_quad_setup(
 
 int32_t exh_quad_step(struct exh_quad *s, const struct exh_quad_cfg *cfg, uint32_t raw)
 {
-    /* At the top of the word the counter's own wrap is the word's. */
+    /* At the top of the word, the wrap of the counter is the wrap of the word. */
     const int32_t moved = exh_from_u32((raw - s->raw) << (cfg->unused & 31)) >> (cfg->unused & 31);
 
     const int jump = moved > cfg->jump_cnt || moved < -cfg->jump_cnt;
 
-    /* Where the string is after a jump nobody knows: that outlives the jump. */
+    /* The position after a jump is unknown, so lost outlives the jump. */
     if (s->started && jump) { s->lost = 1; }
     if (s->started && !jump) { s->cnt = exh_wrap_add(s->cnt, moved); }
     s->raw = raw;
@@ -161,7 +161,7 @@ void exh_quad_ab_serialize(struct exh_bytes *c, struct exh_quad_ab *s)
     exh_bytes_u32(c, &s->illegal);
     exh_bytes_u8(c, &s->ab);
     exh_bytes_u8(c, &s->started);
-    s->ab &= 3; /* an index into a table, from bytes */
+    s->ab &= 3; /* a table index; bytes may be damaged */
 }
 
 void exh_quad_index_serialize(struct exh_bytes *c, struct exh_quad_index *s)

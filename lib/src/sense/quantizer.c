@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Quantizer with hysteresis: a code that does not flicker with noise. */
+/* Quantizer with hysteresis: a code without jitter from noise. */
 #include "exhand/quantizer.h"
 
 #include "exhand/error.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Velocity of a counted position: window, pole, adaptive window and tracker. */
+/* Velocity from a count: window, pole, adaptive window and observer. */
 #include "exhand/velocity.h"
 
 #include "exhand/error.h"
@@ -9,7 +9,7 @@ const struct exh_signal exh_velocity_rows[EXH_VELOCITY_ROWS] = {
     {0x0301, 0, EXH_WHEN_SETUP, 0, 4, 1, "vel_p", "", "velocity window of 2^p ticks"},
 };
 
-/* Gain from m to m/s q27, when v = m * step / (T * n). n < 2^13. */
+/* Gain from a difference m to m/s q27, where v = m * step / (T * n). n < 2^13. */
 static int scale(struct exh_gain *g, struct exh_velocity_scale s, uint32_t n)
 {
     const uint64_t period = ((uint64_t)s.T.num * n) << (EXH_Q_STEP - EXH_Q_VEL);
@@ -23,7 +23,7 @@ static int32_t share_q31(struct exh_period T, uint32_t tau_us)
 {
     const uint64_t t = (uint64_t)T.num * 1000000u;
     struct exh_gain g;
-    /* Of a period that is none the caller knows. */
+    /* For an invalid period; the caller has checked it. */
     if (exh_gain_set(&g, t, t + (uint64_t)T.den * tau_us) < 0 || g.shift < 31) { return INT32_MAX; }
     return g.shift == 31 ? g.mant : (int32_t)exh_shr_round(g.mant, g.shift - 31u);
 }
@@ -56,7 +56,7 @@ void exh_velocity_window_serialize(struct exh_bytes *c, struct exh_velocity_wind
     for (unsigned i = 0; i < EXH_VELOCITY_N; i++) { exh_bytes_i32(c, &s->cnt[i]); }
     exh_bytes_u8(c, &s->at);
     exh_bytes_u8(c, &s->started);
-    s->at %= EXH_VELOCITY_N; /* an index, from bytes */
+    s->at %= EXH_VELOCITY_N; /* an index; bytes may be damaged */
 }
 
 #define POLE_MAX_MPS_Q55 (INT64_C(16) << 55)
@@ -77,7 +77,7 @@ int32_t exh_velocity_pole_step(
         (int64_t)exh_sat32(exh_gain_mul(cfg->gain, moved)) * (INT32_C(1) << 28);
     s->cnt = cnt;
     s->started = 1;
-    /* Modulo 2^64: a share of damaged memory may be none. */
+    /* Modulo 2^64: a damaged share may have any value. */
     s->v_mps_q55 = exh_wrap_add64(
         s->v_mps_q55, exh_mul64_q31(exh_wrap_diff64(diff_q55, s->v_mps_q55), cfg->a_q31));
     return exh_sat32(exh_shr_round(s->v_mps_q55, 28));
@@ -95,7 +95,7 @@ int exh_velocity_foaw_setup(
     struct exh_velocity_foaw_cfg *cfg, struct exh_velocity_scale s, unsigned n, unsigned tol_cnt)
 {
     int err = n < 1 || n > EXH_VELOCITY_N || tol_cnt < 1 || tol_cnt > 255 ? -EXH_E_RANGE : 0;
-    uint32_t sum = 0, weight = 0; /* weight = m(m+1)(m+2)/6, summed up */
+    uint32_t sum = 0, weight = 0; /* sum of the weights m(m+1)(m+2)/6 */
     cfg->n = (uint8_t)n;
     cfg->tol_cnt = (uint8_t)tol_cnt;
     for (uint32_t m = 1; err == 0 && m <= n; m++) {
@@ -106,8 +106,8 @@ int exh_velocity_foaw_setup(
     return err;
 }
 
-/* Slopes as whole numbers: of M = 12252240, which each n and each n(n+1)(n+2)/6 up to 16 divides,
- * M/n and M over the other. */
+/* Slopes as integers, in units of M = 12252240. Each n and each n(n+1)(n+2)/6 up to 16 divides M;
+ * the table contains M/n and M divided by the latter. */
 static const struct part {
     int32_t each, fit;
 } part[EXH_VELOCITY_N] = {{12252240, 12252240}, {6126120, 3063060}, {4084080, 1225224},
@@ -115,9 +115,9 @@ static const struct part {
     {1361360, 74256}, {1225224, 55692}, {1113840, 42840}, {1021020, 33660}, {942480, 26928},
     {875160, 21879}, {816816, 18018}, {765765, 15015}};
 
-/* g*m rounded half up and saturated, for |m| < 2^42. Where m needs more than 32
- * bits, a gain of 1 and more saturates anyway, and below the product is taken in
- * two parts; the first shift is a floor, so only the last one rounds. */
+/* g*m rounded half up and saturated, for |m| < 2^42. If m needs more than 32 bits, a gain of 1 or
+ * more saturates. For smaller gains the product has two parts; the first shift is a floor, so only
+ * the last one rounds. */
 static int32_t wide_gain(struct exh_gain g, int64_t m)
 {
     if (m == exh_clamp(m, INT32_MIN, INT32_MAX)) { return exh_sat32(exh_gain_mul(g, (int32_t)m)); }
@@ -127,16 +127,16 @@ static int32_t wide_gain(struct exh_gain g, int64_t m)
         (m >> 31) * g.mant + ((m & INT32_MAX) * g.mant >> 31), ((g.shift - 32u) & 31u) + 1u));
 }
 
-/* A window fits if its slope lies between those of the lines through the newest that pass each
- * sample by no more than tol. What the samples so far allow is kept from window to window. Windows
- * look back, so slopes here are those of -y. */
+/* A window fits if its slope lies between those of all lines through the newest sample that pass
+ * each sample within tol. The bounds accumulate from window to window. Windows look back, so slopes
+ * here are those of -y. */
 int32_t exh_velocity_foaw_step(
     struct exh_velocity_foaw *s, const struct exh_velocity_foaw_cfg *cfg, int32_t cnt)
 {
     const int32_t longest = cfg->n < EXH_VELOCITY_N ? cfg->n : EXH_VELOCITY_N;
     const int32_t most = longest < s->have ? longest : s->have;
     const int64_t less = -(int64_t)cfg->tol_cnt;
-    int64_t lo = INT64_MIN / 4, hi = INT64_MAX / 4, off = 0; /* off: below 0 once one does not */
+    int64_t lo = INT64_MIN / 4, hi = INT64_MAX / 4, off = 0; /* off: below 0 after a misfit */
     int64_t sum = 0, m = 0, best = 0;
     int32_t best_n = 1;
     unsigned at = s->at < EXH_VELOCITY_N ? s->at + 1u : 0;
@@ -149,7 +149,7 @@ int32_t exh_velocity_foaw_step(
         int64_t d, pass, reach, slope;
         at = at > 0 ? at - 1 : EXH_VELOCITY_N;
         d = exh_wrap_diff(s->cnt[at], cnt);
-        m += n * d - sum; /* twice the sum of each times its n, less n times their sum */
+        m += n * d - sum; /* twice the sum of each sample times its n, minus n times their sum */
         sum += d;
         pass = d * of.each;
         reach = less * of.each;

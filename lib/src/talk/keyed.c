@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Number, echo and tag behind the packets of a link with a key. */
+/* Appends and checks number, echo and tag of packets on a link with a key. */
 #include "exhand/keyed.h"
 
 #include "exhand/error.h"
@@ -7,11 +7,11 @@
 #include "../num/word.h"
 
 #define LEN_AT  4u
-#define ECHO_AT 8u /* behind the packet */
+#define ECHO_AT 8u /* after the packet */
 #define TAG_AT  16u
-#define WHO     (UINT64_C(1) << 63) /* of a number: who sends */
+#define WHO     (UINT64_C(1) << 63) /* bit of a number: the sender's role */
 #define WINDOW  64u
-#define RUN     (UINT64_C(1) << 32) /* numbers so near are of one run: they begin at random */
+#define RUN     (UINT64_C(1) << 32) /* numbers so near are of one run */
 
 static uint64_t get(const uint8_t *p) { return (uint64_t)word_at(p + 4) << 32 | word_at(p); }
 
@@ -42,7 +42,7 @@ int32_t exh_keyed_encode(struct exh_keyed *s, void *buf, size_t len_B, size_t ca
     return (int32_t)(len_B + EXH_KEYED_B);
 }
 
-/* --- in --- */
+/* --- receiving --- */
 
 static int32_t refuse(uint32_t *count, int error)
 {
@@ -50,13 +50,13 @@ static int32_t refuse(uint32_t *count, int error)
     return -error;
 }
 
-/* A packet as long as it says, and undamaged. */
+/* 1 for an undamaged packet of the stated length. */
 static int is_packet(const uint8_t *p, size_t whole_B)
 {
     return word_at(p + whole_B - 4) == exh_crc32(0, p, whole_B - 4);
 }
 
-/* A number of the run that is believed. 1: to be handed on. */
+/* A number of the accepted run. 1: pass on. */
 static int in_run(struct exh_keyed *s, uint64_t number)
 {
     const uint64_t ahead = number - s->newest, late = s->newest - number;
@@ -70,19 +70,19 @@ static int in_run(struct exh_keyed *s, uint64_t number)
     return 1;
 }
 
-/* A right tag. 1: to be handed on, 0: unproved, < 0: again. */
+/* A packet with a correct tag. 1: pass on, 0: unproved, < 0: again. */
 static int judge(struct exh_keyed *s, uint64_t number, uint64_t echo)
 {
     const int fresh = s->next - echo - 1 < EXH_WIRE_AHEAD;
-    if (((number ^ s->next) & WHO) == 0) { return -1; } /* our own come back */
+    if (((number ^ s->next) & WHO) == 0) { return -1; } /* our own packet returned */
     if (s->newest != 0 && number - s->newest + RUN < 2 * RUN) {
         return fresh && in_run(s, number) ? 1 : -1;
     }
     s->heard = number;
     if (!fresh || echo - s->since >= s->next - s->since) { return 0; }
     s->newest = number;
-    s->seen = UINT64_MAX; /* what it sent before it heard of us */
-    s->since = s->next;   /* what others have recorded so far is no proof any more */
+    s->seen = UINT64_MAX; /* its packets before the proof are not accepted */
+    s->since = s->next;   /* recordings made so far prove nothing any more */
     return 1;
 }
 

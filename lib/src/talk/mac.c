@@ -4,7 +4,7 @@
 
 #include "../num/word.h"
 
-/* Written out, as compilers call a helper for a turn by a variable on 32-bit machines. */
+/* Constant rotations, since 32-bit compilers call a helper for a variable one. */
 #define TURN(v, by) ((v) = (v) << (by) | (v) >> (64 - (by)))
 
 struct words {

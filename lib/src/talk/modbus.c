@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* One request in, one answer out. Checked in the order of the specification: function, then counts
- * and lengths, then addresses, then values. */
+/* One request in, one response out. Checks in the order of the specification: function, counts and
+ * lengths, addresses, values. */
 #include "exhand/modbus.h"
 
 #include "exhand/error.h"
@@ -10,10 +10,10 @@
 #define WRITE_BITS 1968u
 #define READ_REGS  125u
 #define WRITE_REGS 123u
-#define BOTH_REGS  121u /* written by function 23 */
+#define BOTH_REGS  121u /* most registers that function 23 writes */
 
 struct request {
-    const uint8_t *p; /* the function code first */
+    const uint8_t *p; /* starts with the function code */
     uint32_t len_B;
 };
 
@@ -22,7 +22,7 @@ static uint16_t be16(const struct request *q, uint32_t at)
     return (uint16_t)((uint32_t)q->p[at] << 8 | q->p[at + 1]);
 }
 
-/* Each of these returns the bytes of its answer, or minus an exception. */
+/* Each of the next functions returns the bytes of its response, or minus an exception. */
 
 static int read_bits(const struct exh_regs *r, const struct request *q, uint8_t *resp)
 {
@@ -51,7 +51,7 @@ static int read_regs(const struct exh_regs *r, const struct request *q, uint8_t 
     return err != 0 ? -err : (int)(2 + 2 * n);
 }
 
-/* The answer repeats the first n bytes of the request. */
+/* A response that repeats the first n bytes of the request. */
 static int echo(const struct request *q, uint32_t n, uint8_t *resp)
 {
     for (uint32_t i = 1; i < n; i++) { resp[i] = q->p[i]; }
@@ -102,7 +102,7 @@ static int write_regs(struct exh_regs *r, const struct request *q, uint8_t *resp
     return err != 0 ? -err : echo(q, 5, resp);
 }
 
-/* What stands there, and-mask, or or-mask where the and-mask is 0. */
+/* (present and AND mask) or (OR mask and not AND mask), function 22. */
 static int mask_reg(struct exh_regs *r, const struct request *q, uint8_t *resp)
 {
     uint8_t now[2];
@@ -117,7 +117,7 @@ static int mask_reg(struct exh_regs *r, const struct request *q, uint8_t *resp)
     return err != 0 ? -err : echo(q, 7, resp);
 }
 
-/* Writes, then reads; nothing is written unless both can be. */
+/* Writes, then reads. Writes nothing unless both are possible. */
 static int write_and_read(struct exh_regs *r, const struct request *q, uint8_t *resp)
 {
     uint32_t get, put;
@@ -136,14 +136,14 @@ static int write_and_read(struct exh_regs *r, const struct request *q, uint8_t *
     return err != 0 ? -err : (int)(2 + 2 * get);
 }
 
-/* --- device identification, 43/14: the three objects that every device has --- */
+/* --- device identification, 43/14: the three mandatory objects --- */
 
 #define OBJECTS 3u
-/* The version as text, made by the preprocessor: a number of any length. */
+/* The version as text, made by the preprocessor for numbers of any length. */
 #define TEXT_OF(v) #v
 #define TEXT(v)    TEXT_OF(v)
 #define VERSION    TEXT(EXH_VERSION_MAJOR) "." TEXT(EXH_VERSION_MINOR) "." TEXT(EXH_VERSION_PATCH)
-#define CONFORMS   0x81u /* those, as a stream or one by one */
+#define CONFORMS   0x81u /* these objects, as a stream or one by one */
 
 static uint8_t *object(uint8_t *to, uint32_t id)
 {
@@ -167,7 +167,7 @@ static int identify(const struct request *q, uint8_t *resp)
     first = q->p[3];
     if (how < 1 || how > 4) { return -EXH_MODBUS_VALUE; }
     if (how == 4 && first >= OBJECTS) { return -EXH_MODBUS_ADDRESS; }
-    if (first >= OBJECTS) { first = 0; } /* a stream then begins anew */
+    if (first >= OBJECTS) { first = 0; } /* an unknown object restarts the stream */
     n = how == 4 ? 1 : OBJECTS - first;
     resp[1] = 14;
     resp[2] = (uint8_t)how;
@@ -200,7 +200,7 @@ static int answer(struct exh_regs *r, const struct request *q, uint8_t *resp)
 int exh_modbus_answer(
     struct exh_regs *r, const uint8_t *req, size_t len_B, uint8_t *resp, size_t cap_B)
 {
-    /* Longer than any request: its length is wrong, whatever it says. */
+    /* Limited to a length above any request, so that it is refused. */
     const struct request q = {req, len_B < 0xFFFFu ? (uint32_t)len_B : 0xFFFFu};
     int n;
     if (cap_B < EXH_MODBUS_PDU_B) { return -EXH_E_SHORT; }

@@ -9,7 +9,7 @@
 
 uint16_t exh_crc16(const uint8_t *p, size_t len_B)
 {
-    /* Two 4-bit steps a byte, as exh_crc32(). */
+    /* Two 4-bit steps per byte, as in exh_crc32(). */
     static const uint16_t nibble[16] = {0x0000, 0xCC01, 0xD801, 0x1400, 0xF001, 0x3C00, 0x2800,
         0xE401, 0xA001, 0x6C00, 0x7800, 0xB401, 0x5000, 0x9C01, 0x8801, 0x4400};
     uint32_t crc = 0xFFFFu;
@@ -47,7 +47,7 @@ void exh_modbus_rtu_discard(struct exh_modbus_rtu *u)
     if (!u->ready) { u->len_B = EXH_MODBUS_ADU_B + 1; }
 }
 
-/* The silence that ends a frame has come. */
+/* Processes a frame after the silence that ends it. */
 static void ended(struct exh_modbus_rtu *u)
 {
     const uint32_t n = u->len_B;
@@ -74,7 +74,7 @@ int exh_modbus_rtu_poll(struct exh_modbus_rtu *u, uint32_t us)
     return u->ready;
 }
 
-/* What may be said to all. */
+/* 1 for functions allowed in a broadcast. */
 static int is_write(uint32_t function)
 {
     return function == 5 || function == 6 || function == 15 || function == 16 || function == 22;

@@ -70,7 +70,7 @@ static void text_bytes(struct exh_bytes *c, char text[16])
         exh_bytes_u8(c, &u);
         text[i] =
             (char)(u < 0x80u ? (int)u
-                             : (int)u - 0x100); /* fits where char is signed, wraps where not */
+                             : (int)u - 0x100); /* fits a signed char, wraps in an unsigned one */
     }
 }
 

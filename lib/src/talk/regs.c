@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The register map, read only: locate an address, read values and bits. */
+/* Read access to the register map: locates an address, reads values and bits. */
 #include "regs_parts.h"
 
 #include "exhand/error.h"
@@ -64,7 +64,7 @@ void exh_regs_update(struct exh_regs *r, const struct exh_safety *s, uint32_t di
 
 /* --- values --- */
 
-/* What is wanted may have become what is staged. */
+/* A staged value may equal the wanted one meanwhile; it then does not count. */
 static uint32_t staged_count(const struct exh_regs *r)
 {
     uint32_t n = 0;
@@ -175,7 +175,7 @@ static uint32_t word_of(const struct exh_regs *r, enum exh_regs_source source, u
     return (uint32_t)raw_of(r, source, i);
 }
 
-/* Big-endian registers of value i, as far as they are in the span. */
+/* Writes the registers of value i that are in the span, big-endian. */
 static uint8_t *put(uint8_t *to, const struct exh_regs_span *s, uint32_t i, uint32_t v)
 {
     if (2 * i >= s->from) {

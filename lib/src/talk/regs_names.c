@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The map in words, for people and documents; an image that prints none links none. */
+/* Names of the register map, for people and documents. An image that prints none links none. */
 #include "exhand/regs.h"
 
 const struct exh_regs_row exh_regs_head_row[EXH_HEADS] = {

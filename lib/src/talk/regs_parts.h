@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the sources of the register map share; not part of the library's interface. */
+/* Common parts of the register map's sources. Not part of the library's interface. */
 #ifndef EXH_REGS_PRIVATE_H
 #define EXH_REGS_PRIVATE_H
 
@@ -7,7 +7,7 @@
 
 /* --- walking a table --- */
 
-/* The row of one value after the other, without a search for each. */
+/* Iterates over the rows of all values, without a search for each. */
 struct exh_regs_walk {
     const struct exh_signal_group *group;
     uint16_t instance, row;
@@ -27,7 +27,7 @@ static inline struct exh_regs_walk exh_regs_walk_to(const struct exh_signal_tabl
     return w;
 }
 
-/* Beyond the last value it points behind the table. */
+/* After the last value it points beyond the table. */
 static inline void exh_regs_walk_on(struct exh_regs_walk *w)
 {
     if (++w->row < w->group->rows) { return; }
@@ -49,7 +49,7 @@ static inline int exh_regs_is_staged(const struct exh_regs *r, uint32_t i)
     return (int)(r->touched[i >> 5] >> (i & 31u) & 1u);
 }
 
-/* What a holding register shows. */
+/* The value of a holding register. */
 static inline int32_t exh_regs_held(const struct exh_regs *r, uint32_t i)
 {
     return exh_regs_is_staged(r, i) ? r->staged[i] : r->wanted[i];
@@ -67,26 +67,26 @@ enum exh_regs_source {
     EXH_REGS_SET
 };
 
-/* Where a request lies: registers from..end-1 of a block. */
+/* The place of a request: registers from..end-1 of a block. */
 struct exh_regs_span {
     enum exh_regs_source source;
     int is_float;
     uint32_t from, end;
 };
 
-/* 0 or exception 2. */
+/* Finds the block of a request. 0 or exception 2. */
 int exh_regs_locate(const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at, uint16_t n,
     struct exh_regs_span *s);
 
-/* The same below EXH_REGS_SIGNAL_AT, behind the head; what is there; and what would be asked of the
- * trace with these registers written: 0, or exception 3. */
+/* For the trace: locate finds a request after the head and below EXH_REGS_SIGNAL_AT, value reads
+ * it, and request makes the trace request that a write would start. 0, or an exception. */
 int exh_regs_trace_locate(const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at,
     uint16_t n, struct exh_regs_span *s);
 uint32_t exh_regs_trace_value(const struct exh_regs *r, enum exh_regs_source source, uint32_t i);
 int exh_regs_trace_request(const struct exh_regs *r, const struct exh_regs_span *s,
     const uint8_t *from, struct exh_trace_request *what);
 
-/* Nothing is staged any more. */
+/* Clears all staged values. */
 void exh_regs_discard(struct exh_regs *r);
 
 #endif

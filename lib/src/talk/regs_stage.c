@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The registers that change something: what is staged, what is commanded. */
+/* Write access to the register map: staged values and commands. */
 #include "regs_parts.h"
 
 #include "exhand/error.h"
@@ -15,7 +15,7 @@ static void stage(struct exh_regs *r, uint32_t i, int32_t raw)
     if (raw != r->wanted[i]) { r->touched[i >> 5] |= bit; }
 }
 
-/* The raw value that a binary32 stands for at value i. 0 or exception 3. */
+/* The raw value of a binary32 for value i. 0 or exception 3. */
 static int from_float(
     const struct exh_regs *r, const struct exh_signal *row, uint32_t i, uint32_t bits, int32_t *raw)
 {
@@ -32,7 +32,7 @@ static int from_float(
     return 0;
 }
 
-/* In the box as it is shown. */
+/* The authority of a client in the present state of the device. */
 static struct exh_authority client(const struct exh_regs *r)
 {
     const struct exh_authority who = {
@@ -40,7 +40,7 @@ static struct exh_authority client(const struct exh_regs *r)
     return who;
 }
 
-/* May value i be staged as raw? 0 or exception 3. */
+/* Checks whether value i may be staged as raw. 0 or exception 3. */
 static int judge(const struct exh_regs *r, const struct exh_signal *row, uint32_t i, int32_t raw)
 {
     if (raw < row->min || raw > row->max) { return EXH_MODBUS_VALUE; }
@@ -49,13 +49,13 @@ static int judge(const struct exh_regs *r, const struct exh_signal *row, uint32_
 
 static uint32_t word(const uint8_t *p) { return (uint32_t)p[0] << 8 | p[1]; }
 
-/* What value i becomes by the bytes of a request. 0 or exception 3. */
+/* The value i after the bytes of a request. 0 or exception 3. */
 static int written(const struct exh_regs *r, const struct exh_regs_span *s,
     const struct exh_signal *row, uint32_t i, const uint8_t *from, int32_t *raw)
 {
     const int high = 2 * i >= s->from, low = 2 * i + 1 < s->end;
     const uint32_t at_B =
-        2 * (2 * i - s->from); /* of the high register; wraps if it is not there */
+        2 * (2 * i - s->from); /* of the high register; wraps if it is not in the span */
     uint32_t v = s->is_float ? 0 : (uint32_t)exh_regs_held(r, i);
     if (s->is_float && (!high || !low)) { return EXH_MODBUS_VALUE; }
     if (high) { v = word(&from[at_B]) << 16 | (v & 0xFFFFu); }
@@ -109,7 +109,7 @@ static int write_all(struct exh_regs *r, uint16_t at, uint16_t n, const uint8_t 
     return 0;
 }
 
-/* Somebody wanted what may not be; busy is only not yet. */
+/* Counts refusals; BUSY only means later. */
 static int counted(struct exh_regs *r, int err)
 {
     r->refused += err == EXH_MODBUS_VALUE;
@@ -146,7 +146,7 @@ int exh_regs_write_bits(struct exh_regs *r, uint16_t at, uint16_t n, const uint8
     return counted(r, write_bits(r, at, n, from));
 }
 
-/* --- carrying out --- */
+/* --- execution --- */
 
 uint32_t exh_regs_poll(struct exh_regs *r)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The registers of the trace. */
+/* Registers of the trace. */
 #include "regs_parts.h"
 
 #define VALUES EXH_REGS_FRAME_VALUES
@@ -51,7 +51,7 @@ uint32_t exh_regs_trace_value(const struct exh_regs *r, enum exh_regs_source sou
     return (uint32_t)t->frame[slot].raw[k - 2];
 }
 
-/* Each value as a whole, with its other half as it stands. */
+/* Completes each value with its other half, which is unchanged. */
 int exh_regs_trace_request(const struct exh_regs *r, const struct exh_regs_span *s,
     const uint8_t *from, struct exh_trace_request *what)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Ring of the newest records in the caller's memory, and records sent in pieces. */
+/* Ring of the newest records in the caller's memory, and output of records in pieces. */
 #include "exhand/ring.h"
 
 #include "exhand/error.h"
@@ -29,7 +29,7 @@ void exh_record_out_begin(struct exh_record_out *o, uint8_t type, uint32_t seq, 
 
 static uint32_t least(uint32_t a, uint32_t b) { return a < b ? a : b; }
 
-/* Of the payload, up to where its memory wraps. */
+/* Outputs payload bytes up to the wrap of its memory. */
 static uint32_t payload_out(struct exh_record_out *o, uint8_t *to, uint32_t n)
 {
     n = least(n, o->cap_B - o->at);
@@ -83,14 +83,14 @@ static uint32_t parts(const struct exh_ring *r) { return r->live & 0xFFu; }
 
 static uint32_t oldest(const struct exh_ring *r) { return r->live >> 8; }
 
-/* The slot of the i-th part, the oldest being 0. */
+/* The slot of the i-th part, 0 being the oldest. */
 static uint32_t slot(const struct exh_ring *r, uint32_t i)
 {
     const uint32_t at = oldest(r) + i;
     return at < SLOTS ? at : at - SLOTS;
 }
 
-/* From the beginning of the i-th part to the head. It is never full, or this would be 0. */
+/* Bytes from the start of the i-th part to the head. Never 0, since the ring is never full. */
 static uint32_t from_part(const struct exh_ring *r, uint32_t i)
 {
     const uint32_t start = r->start[slot(r, i)], head = r->head;
@@ -104,7 +104,7 @@ int exh_ring_due(const struct exh_ring *r)
     return parts(r) == 0 || from_part(r, parts(r) - 1) >= r->cap_B / EXH_RING_PARTS;
 }
 
-/* One store, so that who interrupts this finds the part or does not. */
+/* One store, so that an interrupt sees the part or does not. */
 static void drop_oldest(struct exh_ring *r) { r->live = slot(r, 1) << 8 | (parts(r) - 1); }
 
 static int lose(struct exh_ring *r)
@@ -113,7 +113,7 @@ static int lose(struct exh_ring *r)
     return 0;
 }
 
-/* Into free room, from `at` on; where the next byte goes. */
+/* Copies to free memory from `at` on. Returns the index of the next byte. */
 static uint32_t copy_in(struct exh_ring *r, uint32_t at, const uint8_t *from, uint32_t n)
 {
     const uint32_t first = least(n, r->cap_B - at);
@@ -169,7 +169,7 @@ int exh_ring_next(
     exh_bytes_u16(&c, &payload.len_B);
     exh_bytes_u8(&c, &type);
     exh_bytes_u32(&c, &tick);
-    if (payload.len_B > p->left_B - EXH_RING_HEAD_B) { return 0; } /* memory was damaged */
+    if (payload.len_B > p->left_B - EXH_RING_HEAD_B) { return 0; } /* damaged memory */
     exh_record_out_begin(o, type, seq, tick, payload);
     p->left_B -= EXH_RING_HEAD_B + (uint32_t)payload.len_B;
     p->at = payload.at + payload.len_B;

@@ -6,7 +6,7 @@
 #include "exhand/error.h"
 
 #define MAGIC         0x53485845u /* "EXHS" */
-#define SEQUENCE_LAST 0xFFFFFFFEu /* 0 and 2^32 - 1 are what erased memory reads as */
+#define SEQUENCE_LAST 0xFFFFFFFEu /* erased memory reads as 0 or 2^32 - 1 */
 
 static uint32_t u32_at(const uint8_t *p, size_t at)
 {

@@ -18,7 +18,7 @@ int exh_trace_setup(
     t->signals = signals;
     for (uint32_t i = 0; i < frames; i++) {
         frame[i] = empty;
-        frame[i].number = i + 1; /* no frame of this number is ever there */
+        frame[i].number = i + 1; /* a number that this slot never holds */
     }
     return 0;
 }
@@ -58,7 +58,7 @@ void exh_trace_copy(struct exh_trace *own, struct exh_trace *shown)
 {
     uint32_t n = exh_trace_oldest(own);
     if (own->run != shown->run) {
-        own->head = shown->head; /* frames that were not passed on give their numbers back */
+        own->head = shown->head; /* releases the numbers of frames not copied */
         begin(own, &shown->what);
         own->run = shown->run;
         return;

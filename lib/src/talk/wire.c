@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Packets between controller and world: encode, decode, sequence and clock. */
+/* Packets between controller and world: encoding, decoding, sequence and silence. */
 #include "exhand/wire.h"
 
 #include "exhand/error.h"
@@ -11,7 +11,7 @@
 #define LEN_AT     4u
 #define CRC_B      4u
 #define FINGERS_OF ((1u << EXH_FINGERS) - 1u)
-#define WINDOW     64 /* sequence numbers back that are remembered */
+#define WINDOW     64 /* number of past sequence numbers remembered */
 
 struct head {
     uint16_t magic;
@@ -33,7 +33,7 @@ static void head_bytes(struct exh_bytes *c, struct head *h)
 
 /* --- payloads --- */
 
-/* A value that cannot be: the rest of the packet is not believed either. */
+/* Requires a possible value; otherwise the whole packet is refused. */
 static void demand(struct exh_bytes *c, int holds)
 {
     if (!holds) { exh_bytes_fail(c); }
@@ -135,7 +135,7 @@ static void trace_bytes(struct exh_bytes *c, struct exh_wire_trace *t)
     }
 }
 
-/* The payload of p->type; no such type: 0. */
+/* The payload of p->type. 0: unknown type. */
 static int payload_bytes(struct exh_bytes *c, struct exh_wire_packet *p)
 {
     switch (p->type) {
@@ -154,7 +154,7 @@ static int payload_bytes(struct exh_bytes *c, struct exh_wire_packet *p)
     }
 }
 
-/* Of memory, what the payload of a type takes: the others are up to ten times as long. */
+/* The size of a payload in memory, since others are up to ten times as long. */
 static size_t payload_size(const struct exh_wire_packet *p)
 {
     switch (p->type) {
@@ -181,7 +181,7 @@ int32_t exh_wire_encode(
     end = c.at;
     if (end == UINT32_MAX || tx->session == 0) { return -EXH_E_RANGE; }
     if (cap_B < end + CRC_B) { return -EXH_E_SHORT; }
-    h.len_B = (uint16_t)(end - HEAD_B); /* now that it is known */
+    h.len_B = (uint16_t)(end - HEAD_B); /* the length is known only here */
     c.at = LEN_AT;
     exh_bytes_u16(&c, &h.len_B);
     c.at = end;
@@ -194,7 +194,7 @@ int32_t exh_wire_encode(
 
 /* --- receiving --- */
 
-/* Whole, undamaged, and all its values possible: 0, else the error, counted. */
+/* Checks that the packet is whole, undamaged and possible. Returns 0 or the counted error. */
 static int read_packet(struct exh_wire_rx *rx, struct head *h, struct exh_wire_packet *p,
     const uint8_t *buf, size_t len_B)
 {
@@ -225,7 +225,7 @@ static int read_packet(struct exh_wire_rx *rx, struct head *h, struct exh_wire_p
         rx->unknown++;
         return -EXH_E_UNKNOWN;
     }
-    if (c.at != HEAD_B + h->len_B) { /* failed, or of another length */
+    if (c.at != HEAD_B + h->len_B) { /* failed, or another length */
         rx->corrupt++;
         return -EXH_E_CRC;
     }
@@ -237,17 +237,17 @@ static void begin_session(struct exh_wire_rx *rx, const struct head *h)
     if (h->session != rx->session) { rx->former = rx->session; }
     rx->session = h->session;
     rx->seq = h->seq;
-    rx->seen = UINT64_MAX; /* what was sent before is not waited for */
+    rx->seen = UINT64_MAX; /* do not wait for packets sent before */
 }
 
-/* Of the session: newer than all before, and not by too much. */
+/* 1 for a packet of the session that is newer than all before, but not too far ahead. */
 static int is_next(const struct exh_wire_rx *rx, const struct head *h)
 {
     return h->session == rx->session && h->seq - rx->seq - 1u < EXH_WIRE_AHEAD;
 }
 
-/* The first; or the peer was not heard for long, and this one is there. While it is heard no other
- * session begins: who sends HELLOs of fresh ones would keep it out. */
+/* 1 for the first HELLO, or a new one after a silence. While the peer is heard, no other session
+ * may start: a sender of HELLOs with new sessions would lock it out. */
 static int begins(const struct exh_wire_rx *rx, const struct head *h)
 {
     if (h->type != EXH_WIRE_HELLO) { return 0; }
@@ -255,7 +255,7 @@ static int begins(const struct exh_wire_rx *rx, const struct head *h)
     return rx->open || rx->session == 0;
 }
 
-/* Of the session, and not next: the error, counted. */
+/* The error of a packet of the session that is not next, counted. */
 static int out_of_order(struct exh_wire_rx *rx, const struct head *h)
 {
     const uint32_t late = rx->seq - h->seq;
@@ -275,8 +275,7 @@ static int out_of_order(struct exh_wire_rx *rx, const struct head *h)
     return -EXH_E_STALE;
 }
 
-/* Nothing hangs on the order of these: where many packets overtake each other, a parameter would
- * else take very long to be set. */
+/* Their order does not matter; with many packets out of order, a parameter would take very long. */
 static int may_be_late(uint8_t type) { return type == EXH_WIRE_PARAM || type == EXH_WIRE_ACK; }
 
 static int refuse(struct exh_wire_rx *rx, const struct head *h)
@@ -301,7 +300,7 @@ static void advance(struct exh_wire_rx *rx, const struct head *h)
 int exh_wire_poll(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us)
 {
     const uint32_t was = rx->open;
-    if (rx->session == 0) { return 0; } /* any HELLO begins */
+    if (rx->session == 0) { return 0; } /* any HELLO starts a session */
     rx->quiet_us = passed_us < UINT32_MAX - rx->quiet_us ? rx->quiet_us + passed_us : UINT32_MAX;
     rx->open = rx->quiet_us >= limit_us;
     if (rx->open <= was) { return 0; }
@@ -334,7 +333,7 @@ int exh_wire_decode(
     return h.type;
 }
 
-/* --- what is done with them --- */
+/* --- use of packets --- */
 
 uint32_t exh_wire_compare(const struct exh_wire_hello *ours, const struct exh_wire_hello *theirs)
 {

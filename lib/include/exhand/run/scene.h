@@ -88,8 +88,7 @@ struct exh_scene {
     void (*tick)(const struct exh_scene_in *in, struct exh_drive_out *out);
     /* Computes signals that depend only on the state after a tick. NULL: the tick computes all. */
     void (*show)(void);
-    /* Writes text through exh_board_log after the outputs, so that it does not delay them; or
-     * NULL. */
+    /* Writes text through exh_board_log after the outputs, without delaying them; or NULL. */
     void (*tell)(void);
     /* The whole state through a cursor; NULL: not replayable. */
     void (*state)(struct exh_bytes *c);
@@ -110,8 +109,7 @@ struct exh_scene {
     int (*apply)(struct exh_params *params);
 };
 
-/* The signals of the last tick, valid until the next; NULL: none. Readers must call it in that
- * tick. */
+/* The signals of the last tick, valid until the next; NULL: none. Call it in that tick. */
 static inline int32_t *exh_scene_signals(const struct exh_scene *sc)
 {
     if (sc->show) { sc->show(); }

@@ -30,8 +30,8 @@
 void stream_open(uint32_t session);
 /* Adds a tag to all later pieces; NULL: none. The key is copied. */
 void stream_key(const struct exh_mac_key *key);
-/* Makes the next piece from n <= STREAM_DATA_B bytes; returns its length. It remains the next until
- * stream_sent(). */
+/* Makes the next piece from n <= STREAM_DATA_B bytes; returns its length. It stays the next piece
+ * until stream_sent(). */
 size_t stream_piece(uint8_t to[STREAM_PIECE_B], const uint8_t *byte, unsigned n, int last);
 void stream_sent(unsigned n);
 uint32_t stream_pieces(void);
