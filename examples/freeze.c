@@ -14,7 +14,7 @@
 /* --- the structures --- */
 
 enum kind { U8, I32, U32, I64, GAIN, TABLE, PAR, KINDS };
-/* TABLE and PAR point: their text is the scene's. */
+/* TABLE and PAR are pointers; the scene gives their text. */
 static const size_t size_B[KINDS] = {
     1, 4, 4, 8, sizeof(struct exh_gain), sizeof(struct exh_table), sizeof(void *)};
 
@@ -67,9 +67,8 @@ static int nothing(const uint8_t *p, size_t len_B)
     return len_B == 0;
 }
 
-/* Between fields there may be what aligns the next and no more, and set-up put nothing there: a
- * field that was added to the header and not here is told, also one where an alignment left room.
- */
+/* Checks for missing fields. Between listed fields only alignment padding is allowed, which set-up
+ * leaves unchanged. So a field missing in this list is detected, even if it fits into padding. */
 static int whole(const struct freeze_type *t, const uint8_t *of)
 {
     size_t end = 0;
@@ -83,7 +82,7 @@ static int whole(const struct freeze_type *t, const uint8_t *of)
            nothing(of + end, t->size_B - end);
 }
 
-/* --- as C --- */
+/* --- output as C --- */
 
 static void print_field(const struct field *f, const void *of, const char *text)
 {
@@ -148,7 +147,7 @@ void exh_assert_failed(const char *file, int line)
     exit(1);
 }
 
-/* Digits alone, at most 2^32-1. */
+/* Digits only, at most 2^32-1. */
 static int number(const char *text, char end, uint32_t *value, const char **rest)
 {
     uint64_t v = 0;
@@ -159,7 +158,7 @@ static int number(const char *text, char end, uint32_t *value, const char **rest
     return p != text && *p == end && v <= UINT32_MAX;
 }
 
-/* "HZ" or "N/D" seconds. */
+/* "HZ", or "N/D" in seconds. */
 static int period(const char *text, struct exh_period *T)
 {
     const char *rest;

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Frozen: a scene whose set-up was made with the image, for one period and one width of counters.
+/* Frozen: a scene whose set-up ran during the build, for one period and one counter width.
  *
- * `make image FROZEN=1000 SCENE=minimal PORT=...` runs the scene's own set-up on the machine that
- * builds and writes down, field by field, what it made (freeze.h): the scene is compiled with
- * EXH_FROZEN, which names that text, in the place of its set-up. So constants are constants: in
- * ROM, where nothing can change them, and in the code, where a branch or a product that they decide
- * is gone; and what divides is not linked.
- */
+ * `make image FROZEN=1000 SCENE=minimal PORT=...` runs the scene's set-up on the build machine and
+ * writes the results field by field as C (freeze.h). The scene is compiled with EXH_FROZEN, which
+ * names that text, instead of its set-up. So the values are constants: in ROM, where nothing can
+ * change them, and in the code, where branches and products of constants disappear. Code that
+ * divides is not linked. */
 #ifndef EXAMPLES_FROZEN_H
 #define EXAMPLES_FROZEN_H
 
@@ -14,9 +13,9 @@
 
 #include "exhand/error.h"
 
-/* May a scene that was frozen for the one board run on the other: 0, or -EXH_E_RATE, another
- * period, which may be written as another ratio, or -EXH_E_RANGE, counters of another width. Never
- * without: at another period its forces, ramps and releases are others. */
+/* Checks whether a scene frozen for one board may run on another. 0; -EXH_E_RATE: another period,
+ * where an equal ratio is accepted; -EXH_E_RANGE: another counter width. Always call it: at another
+ * period all forces, ramps and releases differ. */
 static inline int exh_frozen_for(struct exh_scene_board frozen, struct exh_scene_board is)
 {
     if (is.T.num == 0 || (uint64_t)is.T.num * frozen.T.den != (uint64_t)frozen.T.num * is.T.den) {

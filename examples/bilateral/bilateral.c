@@ -3,7 +3,7 @@
 
 #include "exhand/board.h"
 
-/* Fingers in use first: the gate opens the first n places. */
+/* Places the fingers in use first, since the gate opens the first n places. */
 static void place_fingers(struct bilateral_cfg *cfg, uint32_t mask)
 {
     unsigned at = 0;
@@ -19,7 +19,7 @@ static void place_fingers(struct bilateral_cfg *cfg, uint32_t mask)
     }
 }
 
-/* Nobody uses these, but damaged memory that says so: they are no null pointers then. */
+/* Damaged memory may select unused fingers; their pointers then are not NULL. */
 static void like_the_first(struct bilateral_cfg *cfg)
 {
     for (unsigned k = cfg->n; k < BILATERAL_FINGERS; k++) {
@@ -28,7 +28,8 @@ static void like_the_first(struct bilateral_cfg *cfg)
     }
 }
 
-/* A world that knows how a string bends a finger sees ahead of one that has not moved yet. */
+/* Tells the world how the string bends each finger, so that it predicts a finger that has not moved
+ * yet. */
 static void tell_pulls(struct bilateral_cfg *cfg)
 {
     for (unsigned k = 0; k < cfg->n; k++) {
@@ -50,7 +51,7 @@ int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct
     if (cfg->n == 0) { return -EXH_E_RANGE; }
     cfg->tested = exh_selftest_glove() == EXH_SELFTEST_OK;
     if (num > UINT32_MAX) { return -EXH_E_RATE; }
-    /* Every value of both in range: no overflow. */
+    /* All values are in range, so nothing overflows. */
     cfg->rest_ticks = (uint32_t)exh_udiv64((uint64_t)(uint32_t)par->own.f0_rest_ms * board.T.den,
                           UINT64_C(1000) * board.T.num, NULL) +
                       1;
@@ -93,8 +94,8 @@ static uint32_t sense(struct bilateral *s, const struct bilateral_cfg *cfg,
     return din;
 }
 
-/* The gate's codes from places back to fingers. It knows no drive that is not in use: what it gives
- * those is 0 A of the first. */
+/* Moves the gate's codes from places back to fingers. The gate does not know unused drives; they
+ * get the code of 0 A of the first. */
 static void out_by_finger(
     const struct bilateral_cfg *cfg, const struct exh_drive_out *placed, struct exh_drive_out *out)
 {
@@ -155,8 +156,8 @@ static void tell_box(struct bilateral_box *b, const struct bilateral *s)
     b->arm_step = exh_safety_arm_step(&s->safety);
 }
 
-/* Steps of arming that hold. A calibration that is none, a glove's or a finger's, was refused at
- * set-up. Where strings are pulled, all of them must have gone in, else the ramp waits. */
+/* Steps of arming that are satisfied. Set-up refuses an invalid calibration of glove or finger. If
+ * arming pulls, the ramp waits until all strings have moved in. */
 static uint8_t steps_held(
     struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_axis_now *now)
 {
@@ -239,7 +240,7 @@ void bilateral_bytes(struct exh_bytes *c, struct bilateral *s)
 static struct bilateral_par active, staged;
 static struct exh_params params;
 static struct bilateral_signals signals;
-static uint8_t untold; /* 1: those of the newest tick are not all filled in */
+static uint8_t untold; /* 1: signals of the last tick are incomplete */
 static struct bilateral_cfg cfg;
 static struct bilateral state;
 static struct exh_integrity guard;
@@ -250,11 +251,11 @@ static void defaults(void)
 {
     exh_params_setup(&params, &bilateral_params, (int32_t *)&active, (int32_t *)&staged);
     glove_rows_of_cal(&active.glove_own, active.sensor, &exh_glove_cal_default);
-    active.glove.fc_Hz_q16 = EXH_Q(200, 1, EXH_Q_RAW); /* it lags little: 1.1 ms */
+    active.glove.fc_Hz_q16 = EXH_Q(200, 1, EXH_Q_RAW); /* short delay: 1.1 ms */
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
         active.precontact[f].from_slope = 1;
         active.watch[f].stuck_ms =
-            10000; /* held against a stiff wall, a finger can stand for seconds */
+            10000; /* against a stiff wall, a finger may stay at rest for seconds */
         active.chatter[f].energy_J_q24 = EXH_Q(3, 100, 24);
         active.precontact[f].d_lim_m_q30 = -EXH_Q(8, 1000, EXH_Q_POS);
     }
@@ -273,7 +274,7 @@ int bilateral_stage_cal(const struct exh_glove_cal *cal, struct exh_glove_error 
     return err;
 }
 
-/* As the session: into the parameters, so that registers and the log's header say it. */
+/* As parameters, like the session, so that registers and the log's header show them. */
 static int soften(struct exh_period T)
 {
     struct exh_gains_par rule;
@@ -298,7 +299,7 @@ static int setup(struct exh_scene_board board)
     signals = silence;
     untold = 0;
     mail_in.packets = mail_out.packets = 0;
-    /* Into the parameters: the log's header has it, or no replay would be the same. */
+    /* As a parameter, so that the log's header has it; a replay needs the same session. */
     if (active.own.session == 0) {
         active.own.session = staged.own.session = (int32_t)(exh_board_cycles() >> 1 | 1u);
     }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Causes of faults that are the box's and not a finger's: glove, link, supply. */
+/* Causes of faults of the device, not of a finger: glove, link, supply. */
 #include "bilateral.h"
 
-/* Whole ticks in a time and one more; 0: never. Every value in range: no overflow. */
+/* Whole ticks in a time plus one; 0: never. All values are in range, so nothing overflows. */
 static uint32_t ticks_of(int32_t ms, struct exh_period T)
 {
     return ms == 0 ? 0 : exh_ticks_in(ms, T) + 1;
@@ -15,9 +15,9 @@ int bilateral_cause_setup(struct bilateral_cfg *cfg, struct exh_period T)
     return exh_supply_setup(&cfg->supply, &cfg->par->supply, T);
 }
 
-/* Of no finger in use the glove may have known nothing for so long: a sensor that is not believed,
- * no frame, or an old one. Where an age ends, be it that its 16 bits do, time goes on from it. What
- * its finger does until then is precontact's: it is let go alone. */
+/* A fault if the glove lacks data of a finger in use for too long: a faulty sensor, no frame, or an
+ * old one. When an age reaches its limit of 16 bits, time continues to count. Until the fault,
+ * precontact lets go of that finger alone. */
 static int glove_lost(struct bilateral *s, const struct bilateral_cfg *cfg, uint32_t missed)
 {
     uint32_t oldest = 0;
@@ -40,7 +40,7 @@ uint32_t bilateral_causes(
 {
     const int glove = glove_lost(s, cfg, in->missed);
     const int supply = exh_supply_step(&s->supply, &cfg->supply, in->drive.supply_raw, in->missed);
-    /* Contacts are local, frozen before they are felt: who wants a link for them says so. */
+    /* Contacts are local and frozen before they are felt, so a required link is an option. */
     const int link = cfg->link_ticks != 0 && s->wire.age_ticks >= cfg->link_ticks;
     return (s->broken ? EXH_FAULT_CONFIG : 0u) | (glove ? EXH_FAULT_GLOVE : 0u) |
            (supply ? EXH_FAULT_SUPPLY : 0u) | (link ? EXH_FAULT_LINK : 0u);

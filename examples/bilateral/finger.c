@@ -49,7 +49,7 @@ void bilateral_finger_see(struct bilateral_finger *s, const struct bilateral_cfg
 {
     s->clamped = (uint8_t)exh_hand_joints(&exh_hit2_map, f, angle_turn_q32, s->joint_turn_q32);
     if (cfg->par->precontact[f].from_slope) {
-        struct exh_hand_finger hand = cfg->finger[f].hand; /* joints at a limit stand still */
+        struct exh_hand_finger hand = cfg->finger[f].hand; /* joints at a limit do not move */
         if (s->clamped & 1u << 1) { hand.pull_radpm_q20[0] = 0; }
         if (s->clamped & 1u << 2) { hand.pull_radpm_q20[1] = 0; }
         exh_hand_tip_slope(&hand, s->joint_turn_q32, &s->tip_m_q30, &s->slope_q24);
@@ -58,7 +58,7 @@ void bilateral_finger_see(struct bilateral_finger *s, const struct bilateral_cfg
     }
 }
 
-/* The law with the material of the plane that is frozen. Else there is no contact. */
+/* The law with the material of the frozen plane. Without one there is no contact. */
 static struct exh_contact_par touch(
     const struct exh_precontact *p, const struct bilateral_cfg *cfg, unsigned f)
 {
@@ -67,7 +67,7 @@ static struct exh_contact_par touch(
         own->f0_band_m_q30, own->hyst_m_q30};
 }
 
-/* The drive's own limits, or what the material and a late contact leave of them. */
+/* The drive's limits, or lower ones of the material and of a late contact. */
 static struct exh_drive_most most(
     const struct exh_precontact *p, const struct bilateral_cfg *cfg, unsigned f)
 {
@@ -81,9 +81,9 @@ static struct exh_drive_most most(
     return own;
 }
 
-/* The finger that met no wall, or left one in haste, went back without the string, which hangs
- * slack and does not move: for the law it never ran in, and F0 would not act. Having rested, it
- * counts as running in, until it runs out by F0's band again. In contact it is taut. */
+/* Winds in a slack string. A finger that met no wall, or left one fast, returns without the string.
+ * A slack string does not move, so the law sees no inward movement and F0 does not act. After a
+ * rest it counts as running in, until it runs out by F0's band again. In contact it is taut. */
 static void wind_in(struct bilateral_finger *s, uint32_t rest_ticks)
 {
     struct exh_contact *c = &s->contact;
@@ -97,7 +97,7 @@ static void wind_in(struct bilateral_finger *s, uint32_t rest_ticks)
     s->out_m_q30 = c->turn_m_q30;
 }
 
-/* Arming's pull, in the place of the law: no more than it asks for, whatever share the ramp has. */
+/* The pull of arming instead of the law: no more than it requests, whatever share the ramp has. */
 static uint32_t pull(const struct bilateral *s, const struct bilateral_cfg *cfg, unsigned f,
     const struct exh_axis *axis, struct exh_permit permit, struct exh_force_ledger *force,
     struct exh_current_ledger *i)

@@ -1,21 +1,22 @@
 /* SPDX-License-Identifier: MIT */
-/* A glove frame through the ticks until the next: codes, angles, fingers. */
+/* A glove frame, processed over the ticks until the next: codes, angles, fingers. */
 #include "bilateral.h"
 
-/* Parts of about the same cost: sensors and places up to these. The first part also has all codes,
- * the one with the last sensor the cross terms. */
+/* Parts of about equal cost: sensors and places up to these. The first part also has all codes, the
+ * part with the last sensor the cross terms. */
 #define SENSOR_PARTS 4u
 static const struct bilateral_part upto[BILATERAL_PARTS + 1] = {
     {0, 0}, {4, 0}, {10, 0}, {16, 0}, {22, 0}, {22, 2}, {22, 4}, {22, 5}};
 
 static unsigned smaller(unsigned a, unsigned b) { return a < b ? a : b; }
 
-/* As many as there are, or as there are ticks to the next frame: all of a frame is done by then. */
+/* As many parts as defined, or as ticks to the next frame: so a frame is complete before the
+ * next. */
 void bilateral_frame_setup(struct bilateral_cfg *cfg)
 {
     const unsigned all = SENSOR_PARTS + (cfg->n + 1u) / 2;
     const unsigned every = (unsigned)cfg->par->glove_own.every;
-    const unsigned parts = every - 1u < all ? every : all; /* of 0, which is refused, too */
+    const unsigned parts = every - 1u < all ? every : all; /* also for 0, which is refused */
     cfg->part[0] = upto[0];
     for (unsigned p = 1; p <= parts; p++) {
         cfg->part[p] = upto[smaller((p * all + parts - 1) / parts, BILATERAL_PARTS)];
@@ -24,7 +25,7 @@ void bilateral_frame_setup(struct bilateral_cfg *cfg)
     cfg->parts = (uint8_t)parts;
 }
 
-/* Parts that are done. Of damaged memory a part is another, and none beyond an array. */
+/* Number of finished parts. Damaged memory gives a wrong part, but stays within array bounds. */
 static unsigned done(const struct bilateral *s, const struct bilateral_cfg *cfg)
 {
     return smaller((unsigned)cfg->parts - s->frame.left, BILATERAL_PARTS);
@@ -66,7 +67,7 @@ uint32_t bilateral_later(uint32_t ticks, uint32_t missed)
     return ticks + (ticks < UINT32_MAX);
 }
 
-/* The age of the frame before is for those fingers that are still of it. */
+/* The age of the previous frame applies to fingers that still use it. */
 void bilateral_age(
     struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_scene_in *in)
 {
@@ -83,12 +84,12 @@ void bilateral_age(
 static void take(
     struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_scene_in *in)
 {
-    while (s->frame.left > 0) { next(s, cfg); } /* before its time; no filter misses a frame */
+    while (s->frame.left > 0) { next(s, cfg); } /* early: first finish the last one */
     s->worn = 1;
     newest(s, in);
     s->frame.faults =
         exh_glove_believe(&s->glove, &cfg->glove, &in->glove, s->frame.angle_turn_q32);
-    s->glove_faults |= s->frame.faults; /* what is well again, is so when all fingers are seen */
+    s->glove_faults |= s->frame.faults; /* a repaired sensor counts when all fingers are updated */
     s->frame.left = (uint8_t)smaller(cfg->parts, BILATERAL_PARTS);
 }
 

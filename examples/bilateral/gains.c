@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* The rule of gains of this scene: which materials it takes, from wherever they come. */
+/* The rule of gains of this scene: the materials it accepts from any source. */
 #include "bilateral.h"
 
 #define K(v) EXH_Q(v, 1, EXH_Q_K)
 #define B(v) EXH_Q(v, 1, EXH_Q_B)
 
-/* By default: at 2 kHz, and so many times less where the loop is slower. The simulated hand comes
- * to rest on its corners from 90 Hz to 5 kHz (SAFETY.md); the paper's material at 2 kHz is inside,
- * and nearly those of its other rates from 500 Hz on. With little damping a spring is soft. */
+/* Default: a rule for 2 kHz, scaled down for slower loops. The simulated hand comes to rest at its
+ * corners from 90 Hz to 5 kHz (SAFETY.md). The paper's material for 2 kHz obeys it, and nearly
+ * those of its other rates from 500 Hz. With little damping only soft springs are allowed. */
 const struct exh_gains_par bilateral_rule = {
     EXH_Q(2000, 1, 8), 3, 0, {B(0), B(20), B(100)}, {K(5000), K(24000), K(24000)}};
 
@@ -19,8 +19,8 @@ int bilateral_gains_setup(
     return par->own.rule_on ? exh_gains_setup(rule, T) : 0;
 }
 
-/* Who asks for nothing must not be refused: the default of the rows is of 2 kHz. Less damping down
- * to the rule's last knot, and the stiffest wall there that is no stiffer. */
+/* Defaults must not be refused, but the rows' default is for 2 kHz. Lowers the damping to the
+ * rule's last knot, and the stiffness to the largest allowed there. */
 void bilateral_soften(const struct exh_gains_par *rule, struct exh_material_par *m)
 {
     const int32_t first = rule->b_Nspm_q20[0], last = rule->b_Nspm_q20[rule->knots - 1];

@@ -126,7 +126,7 @@ static const struct exh_signal_group param_groups[] = {
 };
 const struct exh_signal_table bilateral_params = {param_groups, LEN(param_groups)};
 
-/* The first group is the paper's, in its order: what a CSV holds. */
+/* The first group is the paper's, in its order, for the CSV. */
 static const struct exh_signal_group output_groups[] = {
     EACH(paper_rows, LEN(paper_rows)),
     EACH(more_rows, LEN(more_rows)),

@@ -4,9 +4,9 @@
 #include "exhand/error.h"
 
 #define SIGNALS    ((uint32_t)(sizeof(struct bilateral_signals) / sizeof(int32_t)))
-#define WAIT_TICKS 100u /* no frame waits longer for more to go with it */
+#define WAIT_TICKS 100u /* longest wait of a frame for others */
 
-/* What is no state, and of damaged memory no pointer or index beyond an array. */
+/* Restores what is no state, and keeps damaged pointers and indices within arrays. */
 static struct exh_trace *of(struct bilateral_trace *t)
 {
     t->of.frame = t->frame;
@@ -43,8 +43,8 @@ static int same(const struct exh_trace_request *a, const struct exh_trace_reques
     return is;
 }
 
-/* Who asks for the same again has heard no answer: the trace goes on. What is refused ends the one
- * before, so that all frames are of the newest request. */
+/* A repeated request means that the answer was lost: the trace continues. A refused request ends
+ * the present trace, so that all frames belong to the newest request. */
 void bilateral_trace_ask(struct bilateral_trace *t, const struct exh_wire_packet *p)
 {
     struct exh_trace_request what = {p->u.trace_ask.every, {0}};
@@ -58,7 +58,7 @@ void bilateral_trace_ask(struct bilateral_trace *t, const struct exh_wire_packet
     t->answer = 1;
 }
 
-/* Frames that have not gone out; those that are not held any more never will. */
+/* Number of frames not sent; frames no longer held are lost. */
 static uint32_t waiting(struct bilateral_trace *t)
 {
     const uint32_t oldest = exh_trace_oldest(&t->of), held = t->of.head - oldest;
@@ -90,7 +90,7 @@ void bilateral_trace_write(struct bilateral *s, const struct bilateral_cfg *cfg,
 {
     struct bilateral_trace *t = &s->wire.trace;
     uint32_t n;
-    if (t->of.what.every == 0 && !t->answer) { return; } /* nobody asked */
+    if (t->of.what.every == 0 && !t->answer) { return; } /* no request */
     if (exh_trace_reads(&t->of)) { bilateral_tell(s, cfg, sig); }
     exh_trace_step(of(t), s->safety.tick, (const int32_t *)(const void *)sig);
     n = waiting(t);

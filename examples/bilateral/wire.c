@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "bilateral.h"
 
-/* In this many exchanges, until planes come and in a silence, and else: a world that missed one
- * hears the next. */
+/* HELLO once in this many exchanges: until planes come and after a silence, and later. A world that
+ * missed one receives the next. */
 #define HELLO_AT_FIRST 8u
 #define HELLO_THEN     128u
 #define US_Q           20
@@ -25,10 +25,10 @@ void bilateral_wire_setup(
 
 static uint32_t now_us(const struct bilateral_wire *s) { return (uint32_t)(s->now_us_q20 >> US_Q); }
 
-/* --- in --- */
+/* --- receiving --- */
 
-/* The planes are as old as the question they answer, at the most. Of a finger that nobody has seen
- * yet, or whose sensors are not believed, none is kept: a distance to it would be a guess. */
+/* Planes are at most as old as the STATE they answer. Planes of a finger with unknown position or
+ * faulty sensors are ignored, since the distance would be a guess. */
 static void take_planes(
     struct bilateral *s, const struct bilateral_cfg *cfg, const struct exh_wire_planes *planes)
 {
@@ -42,12 +42,12 @@ static void take_planes(
         const struct exh_plane plane = exh_wire_plane_of(planes, f);
         if (bilateral_finger_age(s, cfg, k) == UINT32_MAX) { continue; }
         (void)exh_precontact_update(&s->finger[f].precontact, &cfg->finger[f].precontact, &plane,
-            age_ticks); /* a refused one it counts itself */
+            age_ticks); /* it counts a refused one itself */
     }
 }
 
-/* Materials are the world's, and nothing else (authority.h). They are taken at a freeze, by the
- * rule of gains, and the drive's own limit holds beside theirs. */
+/* The world may only set materials (authority.h). They act at the next freeze, within the rule of
+ * gains and the drive's own limits. */
 static struct exh_wire_ack stage(const struct bilateral *s, const struct bilateral_cfg *cfg,
     struct exh_params *params, const struct exh_wire_packet *p)
 {
@@ -64,7 +64,7 @@ void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
     const uint32_t before_us = now_us(w);
     w->now_us_q20 += cfg->wire.tick_us_q20 * (missed + UINT64_C(1));
     if (exh_wire_poll(&w->rx, now_us(w) - before_us, 1000u * (uint32_t)cfg->par->own.quiet_ms)) {
-        w->exchanges = 0; /* perhaps it does not know us any more */
+        w->exchanges = 0; /* perhaps it has lost our session */
     }
     w->age_ticks = bilateral_later(w->age_ticks, missed);
     w->acks = 0;
@@ -74,7 +74,7 @@ void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
         const uint32_t session = w->rx.session;
         const int type = exh_wire_decode(&w->rx, &p, in->byte[i], in->len_B[i]);
         if (w->rx.session !=
-            session) { /* a world that does not know us yet, and has asked for nothing */
+            session) { /* a world without our session, which has requested nothing yet */
             w->exchanges = 0;
             bilateral_trace_stop(&w->trace);
             for (unsigned k = 0; k < bilateral_n(cfg); k++) {
@@ -96,7 +96,7 @@ void bilateral_wire_take(struct bilateral *s, const struct bilateral_cfg *cfg,
     }
 }
 
-/* --- out --- */
+/* --- sending --- */
 
 void bilateral_wire_put(
     struct bilateral_wire *w, struct exh_scene_mail *out, struct exh_wire_packet *p)
@@ -156,14 +156,14 @@ static void put_state(struct bilateral *s, const struct bilateral_cfg *cfg,
     bilateral_wire_put(&s->wire, out, &p);
 }
 
-/* One of the two in a tick, and none in a tick that has to read packets, so that no tick pays for
- * both: they wait, but not beyond the last tick before a state is due again. */
+/* Sends one of the two per tick, and none in a tick that reads packets, so that no tick pays for
+ * both. They wait at most until the last tick before the next state is due. */
 static void put_due(struct bilateral *s, const struct bilateral_cfg *cfg,
     const struct bilateral_signals *sig, struct exh_scene_mail *out)
 {
     struct bilateral_wire *w = &s->wire;
     const int last = w->wait_ticks == 1;
-    if (w->heard && !last && w->tx.seq > 0) { return; } /* a hello comes before all else */
+    if (w->heard && !last && w->tx.seq > 0) { return; } /* a HELLO has priority */
     if (w->due & BILATERAL_HELLO) {
         put_hello(w, &cfg->wire, out);
         w->due &= (uint8_t)~BILATERAL_HELLO;
@@ -179,7 +179,7 @@ void bilateral_write(struct bilateral *s, const struct bilateral_cfg *cfg,
     struct bilateral_wire *w = &s->wire;
     const uint32_t state_every = (uint32_t)cfg->par->own.state_every;
     out->packets = 0;
-    if (w->wait_ticks == 0 || w->wait_ticks >= state_every) { /* set shorter meanwhile */
+    if (w->wait_ticks == 0 || w->wait_ticks >= state_every) { /* interval was shortened */
         const int alone = w->age_ticks == UINT32_MAX || w->rx.open;
         const uint32_t every = alone ? HELLO_AT_FIRST : HELLO_THEN;
         w->wait_ticks = state_every;
@@ -188,7 +188,7 @@ void bilateral_write(struct bilateral *s, const struct bilateral_cfg *cfg,
     }
     if (w->due) { put_due(s, cfg, sig, out); }
     w->wait_ticks--;
-    for (unsigned i = 0; i < w->acks; i++) { /* what has no room is asked for again */
+    for (unsigned i = 0; i < w->acks; i++) { /* an answer without room is requested again */
         struct exh_wire_packet p = {.type = EXH_WIRE_ACK};
         p.u.ack = w->ack[i];
         bilateral_wire_put(w, out, &p);
@@ -216,6 +216,6 @@ void bilateral_wire_bytes(struct exh_bytes *c, struct bilateral_wire *s)
     exh_bytes_u32(c, &s->odd);
     exh_bytes_u8(c, &s->due);
     s->due &= BILATERAL_HELLO | BILATERAL_STATE;
-    s->acks = s->heard = 0; /* none between two ticks */
+    s->acks = s->heard = 0; /* always 0 between two ticks */
     bilateral_trace_bytes(c, &s->trace);
 }

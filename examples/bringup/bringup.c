@@ -3,9 +3,10 @@
 
 void bringup_start(struct bringup *s) { *s = (struct bringup){0}; }
 
-/* --- doubt, while current flows --- */
+/* --- doubt while current flows --- */
 
-/* The monitor's mean over a window against the mean of what was commanded; 1: doubt. Ends it. */
+/* Compares the mean of the monitor over a window with that of the command. 1: doubt. Ends the
+ * window. */
 static int window_off(struct bringup *s, const struct bringup_cfg *cfg)
 {
     const struct bringup_own_par *own = &cfg->par->own;
@@ -53,7 +54,7 @@ static void begin_phase(struct bringup *s, int32_t cnt)
     s->level = 0;
 }
 
-/* The next phase, or the end. A phase behind one that ran goes on with the switch held. */
+/* Starts the next phase, or ends. A phase after one that ran continues with the switch held. */
 static void next_phase(struct bringup *s, const struct bringup_cfg *cfg)
 {
     s->phase++;
@@ -62,8 +63,8 @@ static void next_phase(struct bringup *s, const struct bringup_cfg *cfg)
     if (bringup_phase(cfg->list, s->phase) == NULL) { s->result = EXH_PROBE_DONE; }
 }
 
-/* A phase that asks for the switch waits until it is let go and taken: one that was held before the
- * question is no answer to it. */
+/* A phase that asks for the switch waits until it is released and held again. A switch held before
+ * the question is no answer. */
 static void wait(struct bringup *s, const struct bringup_cfg *cfg, const struct bringup_phase *p,
     uint8_t command, int32_t cnt)
 {
@@ -74,14 +75,14 @@ static void wait(struct bringup *s, const struct bringup_cfg *cfg, const struct 
         begin_phase(s, cnt);
     } else if ((p->ask == BRINGUP_ASK_HOOK && cause & ~(uint32_t)EXH_FAULT_DEADMAN) ||
                (command == EXH_CMD_RUN && s->safety.state == EXH_STATE_OFF)) {
-        s->result = BRINGUP_OFF; /* more than the switch is open */
+        s->result = BRINGUP_OFF; /* more than an open switch */
     } else if (++s->tick >= cfg->wait_ticks) {
         s->result = cause & ~(uint32_t)EXH_FAULT_DEADMAN ? BRINGUP_OFF : BRINGUP_NOBODY;
     }
 }
 
-/* What the box is told: the person's word, where it answers a question; off, where no current is to
- * flow: so letting go of the switch, which every question begins with, is no fault. */
+/* The command to the device. Where the switch answers a question: the person's command. Where no
+ * current may flow: off, so releasing the switch, with which every question starts, is no fault. */
 static uint8_t command_of(const struct bringup *s, const struct bringup_cfg *cfg, uint8_t given)
 {
     const struct bringup_phase *p = bringup_phase(cfg->list, s->phase);
@@ -89,7 +90,7 @@ static uint8_t command_of(const struct bringup *s, const struct bringup_cfg *cfg
     return !s->busy && p->ask != BRINGUP_ASK_NOTHING && !s->let_go ? (uint8_t)EXH_CMD_OFF : given;
 }
 
-/* Does current flow now, or might it? */
+/* 1 if current flows or may flow now. */
 static int needs_run(const struct bringup *s, const struct bringup_cfg *cfg)
 {
     const struct bringup_phase *p = bringup_phase(cfg->list, s->phase);
@@ -97,7 +98,7 @@ static int needs_run(const struct bringup *s, const struct bringup_cfg *cfg)
     return s->busy || p->ask == BRINGUP_ASK_NOTHING;
 }
 
-/* One tick of whatever goes on: the force for it, N q20. */
+/* One tick of the present activity. Returns its force, N q20. */
 static int32_t go_on(
     struct bringup *s, const struct bringup_cfg *cfg, uint8_t command, struct bringup_view v)
 {
@@ -121,7 +122,7 @@ static int32_t go_on(
         r = doubt(s, cfg, p->far, v);
     }
     if (r == EXH_PROBE_BUSY) { r = bringup_step(s, cfg, p, v, &f_N_q20); }
-    /* What is left of a window that a phase cut short, if it is no mere moment. */
+    /* The rest of a window that a phase cut short, if it is long enough. */
     if (r == EXH_PROBE_DONE && s->window > cfg->doubt_ticks / 4 && window_off(s, cfg)) {
         r = BRINGUP_MONITOR;
     }
@@ -142,8 +143,8 @@ static int32_t go_on(
 
 /* --- a tick --- */
 
-/* The finger's axis as the first, and the only one: its drive alone must be ready, and in stage 1
- * none, which gets no enable then. */
+/* Makes the axis of the finger the only one: only its drive must be ready. Stage 1 requires none,
+ * since none is enabled. */
 static uint32_t inputs_of(const struct bringup_own_par *own, uint32_t din)
 {
     const uint32_t drives = ((1u << EXH_FINGERS) - 1u) * EXH_DIN_DRIVE0;
@@ -151,17 +152,17 @@ static uint32_t inputs_of(const struct bringup_own_par *own, uint32_t din)
     return (din & ~drives) | (own->stage == 1 ? (uint32_t)EXH_DIN_DRIVE0 : ready);
 }
 
-/* The gate's frame of that axis onto the finger's place; enables only where it is wanted. */
+/* Moves the gate's frame of that axis to the finger's place. Enables only on request. */
 static void place(struct exh_drive_out *out, int32_t finger, int enable)
 {
     const uint16_t code = out->dac_raw[0];
-    out->dac_raw[0] = out->dac_raw[1]; /* that of 0 A */
+    out->dac_raw[0] = out->dac_raw[1]; /* the code of 0 A */
     out->dac_raw[finger] = code;
     out->enable = (uint8_t)(enable ? (out->enable & 1u) << finger : 0u);
 }
 
-/* In stage 1 the monitor's input may be the D/A's voltage, 32768 codes for 10 V against 3249 for 1:
- * the current that this voltage stands for. */
+/* The current for the monitor's voltage. In stage 1 the D/A may be wired to the monitor input:
+ * 32768 codes for 10 V against 3249 per V. */
 static int32_t monitor_A_q26(const struct bringup_cfg *cfg, int16_t mon_raw)
 {
     if (cfg->par->own.stage > 1) { return exh_drive_monitor_A_q26(&cfg->drive, mon_raw); }
@@ -183,7 +184,7 @@ static void signals(const struct bringup *s, const struct exh_axis_now *now, str
     sig->present = (int32_t)s->safety.present;
 }
 
-/* It is what makes polarity known. */
+/* The result of this scene proves the polarity. */
 #define VOUCHED (EXH_UNTESTED | EXH_UNCALIBRATED | EXH_UNPOLARISED)
 
 void bringup_tick(struct bringup *s, const struct bringup_cfg *cfg, const struct exh_scene_in *in,
@@ -191,7 +192,7 @@ void bringup_tick(struct bringup *s, const struct bringup_cfg *cfg, const struct
 {
     const struct bringup_par *par = cfg->par;
     const int32_t finger = par->own.finger;
-    /* Without track: its phases compare monitor and code themselves, and more closely. */
+    /* No tracking: the phases compare monitor and code themselves, and more tightly. */
     const struct exh_axis axis = {.quad = &s->quad,
         .quad_cfg = &cfg->quad,
         .velocity = &s->vel,
@@ -216,12 +217,12 @@ void bringup_tick(struct bringup *s, const struct bringup_cfg *cfg, const struct
     permit = exh_axis_permit(&s->safety, &cfg->safety, &now, 1, box);
     f.pullback_N_q20 = go_on(s, cfg, command, v);
     live = s->result == EXH_PROBE_BUSY && exh_safety_is_running(&s->safety) && needs_run(s, cfg);
-    if (!live) { permit.mode = EXH_PERMIT_CLOSED; } /* at once, whatever was held */
+    if (!live) { permit.mode = EXH_PERMIT_CLOSED; } /* at once, whatever force was held */
     limits = now.limits | exh_axis_force(&axis, &permit, &f, &i);
     exh_axis_out(&axis, &s->safety, now.cnt, &i, &limits, out);
     s->coded_A_q26 = i.coded_A_q26;
     if (live && (limits & ~(uint32_t)EXH_LIMIT_SLEW)) {
-        s->result = BRINGUP_LIMITED; /* known behind the gate only: its code goes no further */
+        s->result = BRINGUP_LIMITED; /* known only after the gate: its code goes no further */
         s->coded_A_q26 = 0;
         out->dac_raw[0] = (uint16_t)par->drive.dac_zero_raw;
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* First power-up of a box, one finger at a time, as a scene: docs/BRINGUP.md is its manual.
+/* First power-up of a device, one finger at a time, as a scene. docs/BRINGUP.md is its manual.
  *
  *   stage 1  no motors, no drives: rest, encoder turned by hand, inputs, D/A into a meter
  *   stage 2  a dummy load on the drive: rest, small currents, off again
@@ -7,20 +7,20 @@
  *   stage 4  its string: home, then on a spring balance: forces, table; or a known mass: kf
  *   stage 5  one finger, small forces
  *
- * A run is one stage, of phases. A stage that is done prints a number; the next one does not
- * begin without it (parameter `shown`). The number belongs to finger, scales and the limits of the
- * stages so far (crc_limits in setup.c): whoever changes them begins again. The person's word is
- * the dead-man switch, let go and taken behind the question.
+ * A run is one stage with several phases. A finished stage prints a number, which the next stage
+ * requires (parameter `shown`). The number depends on finger, scales and limits of the stages so
+ * far (crc_limits in setup.c), so a change of these requires a new start. The person answers by
+ * releasing and holding the dead-man switch after a question.
  *
- * Any doubt ends it: no current and the drive disabled in the same tick, for good. Current goes
- * through drive, safety and gate, whose table ends at the stage's limit. Doubt is
+ * Any doubt ends the run: no current and the drive disabled in the same tick, permanently. Current
+ * passes drive, safety and gate; the force table ends at the limit of the stage. Reasons for doubt
+ * are
  *
- *   - a fault of safety's, or the switch let go, within a phase that needs it
- *   - the mean of the monitor over `doubt` ms not being the mean commanded
- *   - faster than v_max, for three ticks; farther than `travel` (stage 2: `move`)
- *   - a limit of the drive that acts, but for slew
- *   - what the phase itself checks; what takes too long; nobody who does it
- */
+ *   - a fault of safety, or a released switch in a phase that needs it
+ *   - the mean of the monitor over `doubt` ms differs from the mean commanded
+ *   - faster than v_max for three ticks; farther than `travel` (stage 2: `move`)
+ *   - a limit of the drive acts, except slew
+ *   - a check of the phase itself, a timeout, or no response of the person */
 #ifndef EXAMPLES_BRINGUP_H
 #define EXAMPLES_BRINGUP_H
 
@@ -28,55 +28,55 @@
 
 #include "exhand/exhand.h"
 
-/* Axes of the box; 1 for one that has board A alone (docs/CARDS.md). */
+/* Axes of the device; 1 for a device with board A alone (docs/CARDS.md). */
 #ifndef BRINGUP_FINGERS
 #define BRINGUP_FINGERS EXH_FINGERS
 #endif
 
 #define BRINGUP_STAGES 5
-#define BRINGUP_WEIGHS 6 /* the list of phases of stage 4 with a mass */
-#define BRINGUP_LEVELS 3 /* a third, two thirds and all of a stage's limit */
+#define BRINGUP_WEIGHS 6 /* list of the phases of stage 4 with a mass */
+#define BRINGUP_LEVELS 3 /* a third, two thirds and all of the stage's limit */
 
-/* Why it ended: enum exh_probe_result (DONE: the stage is done), or */
+/* Why a run ended: enum exh_probe_result (DONE: the stage is finished), or */
 enum bringup_result {
-    BRINGUP_OFF = EXH_PROBE_RESULTS, /* the box left RUN, or did not come into it */
+    BRINGUP_OFF = EXH_PROBE_RESULTS, /* the device left RUN, or did not reach it */
     BRINGUP_LIMITED,                 /* a limit of the drive acts */
-    BRINGUP_NOBODY,                  /* nobody did what was asked */
-    BRINGUP_NOT_SHOWN,               /* the stage before was not */
+    BRINGUP_NOBODY,                  /* no response of the person */
+    BRINGUP_NOT_SHOWN,               /* the previous stage was not shown */
     BRINGUP_MONITOR,                 /* the monitor does not show the current commanded */
     BRINGUP_SPEED,
-    BRINGUP_INPUT,   /* an input was not seen to open and to close */
-    BRINGUP_READING, /* the balance does not read what was commanded */
+    BRINGUP_INPUT,   /* an input was not seen to open and close */
+    BRINGUP_READING, /* the balance shows another force than commanded */
     BRINGUP_RESULTS
 };
 
-/* What the person has to do in a phase. */
+/* The action required of the person in a phase. */
 enum bringup_ask {
     BRINGUP_ASK_NOTHING,
-    BRINGUP_ASK_TURN,   /* the encoder out, and back */
+    BRINGUP_ASK_TURN,   /* pull the encoder out and back */
     BRINGUP_ASK_INPUTS, /* open and close every input */
     BRINGUP_ASK_HOLD,   /* hold the dead-man switch */
-    BRINGUP_ASK_HOOK    /* let it go, change what is on the string, hold it again */
+    BRINGUP_ASK_HOOK    /* release it, change the load on the string, hold it again */
 };
 
 struct bringup_own_par {
     int32_t stage, finger, shown;
-    int32_t loop;         /* 1: the D/A is wired to the monitor's input in stage 1 */
-    int32_t kf_NpA_q20;   /* string force per motor current: stages 4 and 5 */
-    int32_t da_max_A_q26; /* limits: of the stages 1, */
+    int32_t loop;                          /* 1: stage 1 has the D/A wired to the monitor input */
+    int32_t kf_NpA_q20;                    /* string force per motor current, stages 4 and 5 */
+    int32_t da_max_A_q26;                  /* limits: of stage 1, */
     int32_t load_max_A_q26, run_max_A_q26; /* 2, 3 */
     int32_t f_max_N_q20, f_finger_N_q20;   /* 4, 5 */
-    int32_t step_A_q26;                    /* polarity: currents rise by this */
+    int32_t step_A_q26;                    /* polarity: step of the current */
     int32_t pol_max_A_q26, home_A_q26;
     int32_t ramp_ps;                /* A/s in stages 1 to 3, N/s above */
-    int32_t zero_A_q26;             /* the monitor at no current: not farther from 0 */
-    int32_t mon_A_q26, mon_percent; /* off what is commanded by no more than both */
-    int32_t read_percent;           /* the balance, likewise */
+    int32_t zero_A_q26;             /* monitor without current: largest offset */
+    int32_t mon_A_q26, mon_percent; /* allowed difference to the command, sum of both */
+    int32_t read_percent;           /* allowed difference of the balance */
     int32_t v_max_mps_q27, v_trip_mps_q27;
     int32_t turn_m_q30, move_m_q30, travel_m_q30, home_min_m_q30, home_max_m_q30;
     int32_t hold_ms, doubt_ms, dwell_ms, stop_ms, time_ms, wait_ms;
-    int32_t mass_kg_q20; /* stage 4: weighs this instead of the balance; 0: does not */
-    int32_t read_N_q20[BRINGUP_LEVELS]; /* of the balance; 0: not yet */
+    int32_t mass_kg_q20; /* stage 4: weighs this mass instead of a balance; 0: no mass */
+    int32_t read_N_q20[BRINGUP_LEVELS]; /* readings of the balance; 0: not yet */
 };
 
 struct bringup_par {
@@ -88,32 +88,32 @@ struct bringup_par {
 
 struct bringup_signals {
     int32_t q_m_q30, v_mps_q27, i_des_A_q26, i_mon_A_q26;
-    int32_t phase, result; /* of the stage; enum bringup_result, 0 while it goes on */
+    int32_t phase, result;                  /* of the stage; enum bringup_result, 0 while running */
     int32_t limits, state, faults, present; /* as in every scene */
 };
 
 struct bringup_cfg {
     const struct bringup_par *par;
-    struct exh_drive_par drive_par; /* with the stage's ramp */
+    struct exh_drive_par drive_par; /* with the ramp of the stage */
     struct exh_quad_cfg quad;
     struct exh_velocity_window_cfg vel;
     struct exh_drive_cfg drive;
     struct exh_safety_cfg safety;
     struct exh_knot to_cur[2];
-    struct exh_probe_cfg polarity; /* its travel and move are everybody's */
+    struct exh_probe_cfg polarity; /* all phases use its travel and move */
     struct exh_home_cfg home;
     struct exh_weigh_cfg weigh;
-    int32_t mass_N_q20; /* the mass's weight */
-    int32_t kf_NpA_q20; /* 1 below stage 4: current stands for force */
+    int32_t mass_N_q20; /* weight of the mass */
+    int32_t kf_NpA_q20; /* 1 below stage 4: current replaces force */
     int32_t level_N_q20[BRINGUP_LEVELS];
-    struct exh_gain looped_A_q26; /* per code of a monitor input that sees the D/A */
+    struct exh_gain looped_A_q26; /* per code of a monitor input wired to the D/A */
     int32_t turn_cnt;
     uint32_t hold_ticks, doubt_ticks, dwell_ticks, stop_ticks, time_ticks, wait_ticks;
-    uint8_t list;            /* of phases: the stage, or BRINGUP_WEIGHS */
-    uint32_t number, before; /* what this stage prints, what it needs */
+    uint8_t list;            /* list of phases: the stage, or BRINGUP_WEIGHS */
+    uint32_t number, before; /* number that this stage prints; that it needs */
 };
 
-/* What there is to tell behind a tick, bits. */
+/* Reports due after a tick, bits. */
 enum bringup_tell { BRINGUP_TELL_START = 1, BRINGUP_TELL_LEVEL = 2, BRINGUP_TELL_PHASE = 4 };
 
 struct bringup {
@@ -124,25 +124,25 @@ struct bringup {
     struct exh_probe probe;
     struct exh_home homing;
     struct exh_weigh weigh;
-    struct exh_mean mon, coded;         /* of what is measured in a phase */
-    int64_t off_A_q26, sum_A_q26;       /* monitor - commanded, and commanded, in this window */
+    struct exh_mean mon, coded;         /* of the measurements in a phase */
+    int64_t off_A_q26, sum_A_q26;       /* monitor - command, and command, in this window */
     int32_t coded_A_q26;                /* in the last tick */
-    int32_t start_cnt, far_cnt, at_cnt; /* of the phase; farthest out; in a dwell */
-    uint32_t tick, window, fast;        /* of phase, window; ticks too fast */
-    uint32_t opened, closed;            /* inputs seen so, bits 0 .. 2 */
-    uint32_t was, steady;               /* how they are, and for how many ticks */
+    int32_t start_cnt, far_cnt, at_cnt; /* of the phase; outermost; in a dwell */
+    uint32_t tick, window, fast;        /* of phase and window; ticks too fast */
+    uint32_t opened, closed;            /* inputs seen in that state, bits 0 .. 2 */
+    uint32_t was, steady;               /* their state, and for how many ticks */
     uint8_t phase, level, result;
-    uint8_t busy;   /* the phase has begun */
-    uint8_t said;   /* that it ended */
-    uint8_t let_go; /* the switch was, since the phase was asked for */
-    /* For tell: */
+    uint8_t busy;   /* the phase has started */
+    uint8_t said;   /* its end was reported */
+    uint8_t let_go; /* the switch was released since the question */
+    /* For bringup_text(): */
     uint8_t tell, told_phase, told_level;
     int32_t tell_A_q26, tell_mon_A_q26, tell_cnt, tell_mps_q27;
     uint16_t code_raw, tell_raw;
     struct exh_mean told_mon, told_coded; /* of the level */
 };
 
-/* What a phase may see of a tick. */
+/* Inputs of a phase in a tick. */
 struct bringup_view {
     int32_t cnt, v_mps_q27, mon_A_q26;
     uint32_t din; /* e-stop, dead-man, ready: bits 0 .. 2 */
@@ -167,14 +167,14 @@ enum bringup_step {
 struct bringup_phase {
     uint8_t stage, ask; /* enum bringup_ask */
     uint8_t step;       /* enum bringup_step */
-    uint8_t hands;      /* 1: hands are at it, the box need not run, no current */
-    uint8_t far;        /* enum bringup_far: how far it may move */
+    uint8_t hands;      /* 1: hands are at the device; no RUN needed, no current */
+    uint8_t far;        /* enum bringup_far: allowed movement */
     const char *name, *text;
 };
-const struct bringup_phase *bringup_phase(unsigned list, unsigned phase); /* NULL: no more */
+const struct bringup_phase *bringup_phase(unsigned list, unsigned phase); /* NULL: no more phases */
 
-/* One tick of it, its result; the force asked for, or the current that stands for it, goes to
- * *f_N_q20. */
+/* One tick of a phase; returns its result. *f_N_q20 receives the requested force, or the current
+ * that replaces it. */
 uint8_t bringup_step(struct bringup *s, const struct bringup_cfg *cfg,
     const struct bringup_phase *p, struct bringup_view v, int32_t *f_N_q20);
 
@@ -185,18 +185,18 @@ void bringup_start(struct bringup *s);
 void bringup_tick(struct bringup *s, const struct bringup_cfg *cfg, const struct exh_scene_in *in,
     struct exh_drive_out *out, struct bringup_signals *sig);
 
-/* "the monitor does not show the current commanded"; never NULL. */
+/* Text for a result, such as "the monitor does not show the current commanded". Never NULL. */
 const char *bringup_result_text(unsigned result);
 
-/* What there is to tell of the last tick, lines with their ends, into text: its length, 0 if
- * nothing. Divides: not in a tick. */
+/* Writes the report of the last tick as lines to text. Returns its length; 0: no report. Divides:
+ * not in a tick. */
 #define BRINGUP_TEXT_B 400
 unsigned bringup_text(
     char text[BRINGUP_TEXT_B], const struct bringup *s, const struct bringup_cfg *cfg);
 
 extern const struct exh_scene exh_scene_bringup;
 
-/* The one instance, for whoever shows it. */
+/* The one instance, for display. */
 const struct bringup *bringup_state(void);
 const struct bringup_cfg *bringup_config(void);
 

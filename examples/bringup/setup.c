@@ -112,7 +112,7 @@ static uint32_t crc_word(uint32_t crc, int32_t v)
     return exh_crc32(crc, byte, sizeof byte);
 }
 
-/* The scene's own limits, each from the first stage on that was run under it. */
+/* The scene's own limits, each from the first stage that uses it. */
 static uint32_t crc_limits(uint32_t crc, int32_t stage, const struct bringup_own_par *own)
 {
     const struct {
@@ -140,7 +140,7 @@ static uint32_t crc_limits(uint32_t crc, int32_t stage, const struct bringup_own
     return crc;
 }
 
-/* What a stage that is done prints: 1 .. 999999, of all that it showed to be right. */
+/* The number that a finished stage prints, 1 .. 999999, from all values that it confirms. */
 static uint32_t number_of(int32_t stage, const struct bringup_par *par)
 {
     const int32_t *const quad = (const int32_t *)(const void *)&par->quad;
@@ -148,14 +148,14 @@ static uint32_t number_of(int32_t stage, const struct bringup_par *par)
     uint64_t rest;
     uint32_t crc = crc_word(crc_word(0, stage), par->own.finger);
     for (size_t i = 0; i < EXH_QUAD_ROWS; i++) { crc = crc_word(crc, quad[i]); }
-    /* Not the person's ceiling, the last two: a stage shows nothing of it. */
+    /* Without the last two, the person's limits: a stage confirms nothing about them. */
     for (size_t i = 0; i < EXH_DRIVE_ROWS - 2; i++) { crc = crc_word(crc, drive[i]); }
     crc = crc_limits(crc, stage, &par->own);
     (void)exh_udiv64(crc, 999999, &rest);
     return (uint32_t)rest + 1;
 }
 
-/* The stage's limit, where the table ends, and its levels. */
+/* The limit of the stage, where the table ends, and its levels. */
 static int setup_levels(struct bringup_cfg *cfg)
 {
     const struct bringup_own_par *own = &cfg->par->own;
@@ -211,8 +211,8 @@ static int setup_motions(struct bringup_cfg *cfg, struct exh_period T)
     return err == 0 ? exh_home_setup(&cfg->home, &home, scale) : err;
 }
 
-/* A mass that half of homing's current might lift, or the stage's limit hardly could, is refused.
- */
+/* Refuses a mass that half of homing's current might lift, or that the stage's limit can hardly
+ * lift. */
 static int setup_weigh(struct bringup_cfg *cfg, struct exh_period T)
 {
     const struct bringup_own_par *own = &cfg->par->own;

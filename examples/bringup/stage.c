@@ -2,8 +2,8 @@
 /* The phases of each stage. */
 #include "bringup.h"
 
-/* Levels' dwell is hold: nothing is measured while the current still rises, in its first quarter.
- */
+/* Levels dwell for `hold`. Measurement starts after the first quarter, when the current no longer
+ * rises. */
 static int measures(const struct bringup *s, const struct bringup_cfg *cfg)
 {
     return s->tick - s->level * cfg->hold_ticks >= cfg->hold_ticks / 4;
@@ -22,7 +22,7 @@ static uint8_t turn(struct bringup *s, const struct bringup_cfg *cfg, struct bri
     return far < cfg->polarity.move_cnt ? EXH_PROBE_STILL : BRINGUP_NOBODY;
 }
 
-/* Each of them open and closed, for as long as contacts bounce. */
+/* Each input must open and close, longer than contact bounce. */
 static uint8_t inputs(struct bringup *s, const struct bringup_cfg *cfg, struct bringup_view v)
 {
     s->steady = v.din == s->was ? s->steady + 1 : 0;
@@ -70,8 +70,7 @@ static uint8_t levels(
     s->mon.sum = s->coded.sum = 0;
     s->mon.n = s->coded.n = 0;
     s->level++;
-    /* A string that is pulled harder gives at least a little: an encoder that saw nothing is none.
-     */
+    /* A string under higher tension stretches a little: an encoder without counts is dead. */
     if (cfg->par->own.stage >= 4 && v.cnt == s->at_cnt) { return EXH_PROBE_STILL; }
     s->at_cnt = v.cnt;
     return s->level < BRINGUP_LEVELS ? EXH_PROBE_BUSY : EXH_PROBE_DONE;
@@ -123,7 +122,7 @@ static uint8_t weigh(
     return s->weigh.result;
 }
 
-/* What the balance read against what was commanded. */
+/* Compares the readings of the balance with the command. */
 static uint8_t table(const struct bringup_cfg *cfg)
 {
     const struct bringup_own_par *own = &cfg->par->own;

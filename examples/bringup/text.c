@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What people read: one line at the end of a phase, and what to do for the next. */
+/* Text for people: one line at the end of a phase, and the action for the next. */
 #include "bringup.h"
 
 struct text {
@@ -12,7 +12,7 @@ static void put(struct text *t, const char *word)
     while (*word != '\0' && t->len < BRINGUP_TEXT_B) { t->to[t->len++] = *word++; }
 }
 
-/* v / 10^places, all its digits. */
+/* v / 10^places with all digits. */
 static void put_int(struct text *t, int64_t v, unsigned places)
 {
     char digit[24];
@@ -29,7 +29,7 @@ static void put_int(struct text *t, int64_t v, unsigned places)
     put(t, &digit[n]);
 }
 
-/* raw 2^-frac in thousandths, the nearest. */
+/* raw 2^-frac in thousandths, rounded to nearest. */
 static int64_t milli(int64_t raw, unsigned frac) { return exh_shr_round(raw * 1000, frac); }
 
 static void put_mA(struct text *t, const char *before, int32_t A_q26)
@@ -46,7 +46,7 @@ static const struct bringup_phase *told(const struct bringup *s, const struct br
 
 /* --- */
 
-/* What is asked for the phase that comes. */
+/* The action for the next phase. */
 static void put_ask(struct text *t, const struct bringup *s, const struct bringup_cfg *cfg)
 {
     const struct bringup_phase *p = bringup_phase(cfg->list, s->phase);
@@ -79,7 +79,7 @@ static void put_level(struct text *t, const struct bringup *s, const struct brin
         put(t, ": code ");
         put_int(t, s->tell_raw, 0);
         put(t, ", meter ");
-        put_int(t, exh_shr_round(off_raw * 322745, 20), 3); /* 1000 / 3249 mV a code */
+        put_int(t, exh_shr_round(off_raw * 322745, 20), 3); /* 1000 / 3249 mV per code */
         put(t, " V");
     } else if (stage >= 4) {
         put(t, ": ");
@@ -121,7 +121,7 @@ static void put_missing(struct text *t, const struct bringup *s)
     put_names(t, name, 3, ~(s->opened & s->closed));
 }
 
-/* Where it stands: the last of the phase. */
+/* The last values of the phase. */
 static void put_values(struct text *t, const struct bringup *s, const struct bringup_cfg *cfg)
 {
     const int turned = told(s, cfg)->ask == BRINGUP_ASK_TURN;
@@ -145,7 +145,7 @@ static void put_values(struct text *t, const struct bringup *s, const struct bri
     put(t, "\n");
 }
 
-/* The line through the balance's readings, where there are some: what kf should be. */
+/* A line through the balance's readings, if any: the suggested kf. */
 static void put_kf(struct text *t, const struct bringup_cfg *cfg)
 {
     struct exh_calib_point point[BRINGUP_LEVELS];
@@ -166,7 +166,7 @@ static void put_kf(struct text *t, const struct bringup_cfg *cfg)
     put(t, " N/A\n");
 }
 
-/* What balances the mass, with friction weighed out, and kf by it. */
+/* The current that balances the mass without friction, and kf from it. */
 static void put_mass(struct text *t, const struct bringup *s, const struct bringup_cfg *cfg)
 {
     const struct exh_calib_point p = exh_weigh_point(&s->weigh, cfg->mass_N_q20);

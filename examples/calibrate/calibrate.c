@@ -88,8 +88,7 @@ EXH_STATIC_ASSERT(calibrate_signals_match_rows,
 
 /* --- set-up --- */
 
-/* Whoever has the parameters in ROM passed no rows: each in its own range, and no step's
- * current beyond i_max. */
+/* Parameters in ROM have passed no row check: tests each range, and that no step exceeds i_max. */
 static int own_ok(const struct calibrate_own_par *own)
 {
     if (!exh_rows_validate(own_rows, COUNT(own_rows), own)) { return 0; }
@@ -97,7 +96,7 @@ static int own_ok(const struct calibrate_own_par *own)
            own->slack_A_q26 <= own->i_max_A_q26;
 }
 
-/* The motions, all bounded by the same few parameters. */
+/* The motions, all limited by the same few parameters. */
 static int setup_motions(
     struct calibrate_cfg *cfg, const struct calibrate_own_par *own, struct exh_probe_scale scale)
 {
@@ -126,8 +125,8 @@ static int64_t force_of(const struct calibrate_par *par, unsigned i)
     return exh_mul_shr(par->mass_kg_q20[i], par->own.gravity_mps2_q20, EXH_Q_FORCE);
 }
 
-/* A mass that does not lift is held fast: the lighter it should be, the sooner it is seen.
- * One that the slack current alone might lift is refused. */
+/* Limits the current to the mass: a mass that does not lift is held fast, and a lighter one is
+ * detected sooner. Refuses a mass that the slack current alone might lift. */
 static int setup_mass(struct exh_weigh_cfg *cfg, const struct calibrate_par *par, unsigned i,
     struct exh_probe_scale scale)
 {
@@ -182,13 +181,13 @@ int calibrate_setup(
 
 /* --- steps --- */
 
-/* what a step may see of a tick */
+/* Inputs of a step in a tick. */
 struct view {
     int32_t cnt, mon_A_q26;
     int16_t mon_raw;
 };
 
-/* Each: one tick of a step, its result; the current asked for goes to *cur_A_q26. */
+/* One tick of a step; returns its result. *cur_A_q26 receives the requested current. */
 typedef uint8_t step_fn(
     struct calibrate *s, const struct calibrate_cfg *cfg, struct view v, int32_t *cur_A_q26);
 
@@ -271,7 +270,7 @@ const char *calibrate_result_text(unsigned result)
                : exh_probe_result_text(result);
 }
 
-/* From here on the person's word counts, not the one that is there already. */
+/* From here on only a new confirmation of the person counts. */
 static void begin_wait(struct calibrate *s, const struct calibrate_cfg *cfg)
 {
     s->busy = s->word = 0;
@@ -279,7 +278,7 @@ static void begin_wait(struct calibrate *s, const struct calibrate_cfg *cfg)
     s->go = cfg->par->own.go;
 }
 
-/* Zero current until the person's word; then the step begins with the next tick. */
+/* Zero current until the person confirms; the step starts in the next tick. */
 static void wait(struct calibrate *s, const struct calibrate_cfg *cfg, int32_t cnt, int run)
 {
     const int32_t go = cfg->par->own.go;
@@ -312,7 +311,7 @@ static int32_t go_on(struct calibrate *s, const struct calibrate_cfg *cfg, struc
     if (r == EXH_PROBE_BUSY) { return cur_A_q26; }
     begin_wait(s, cfg);
     if (r != EXH_PROBE_DONE) {
-        s->result = r; /* step stays: the one that failed */
+        s->result = r; /* step stays at the failed one */
     } else if (++s->step == CALIBRATE_MASS + cfg->masses) {
         s->result = EXH_PROBE_DONE;
     }
@@ -325,7 +324,7 @@ void calibrate_start(struct calibrate *s, const struct calibrate_cfg *cfg)
     begin_wait(s, cfg);
 }
 
-/* It is what makes calibration and polarity known. */
+/* The result of this scene proves calibration and polarity. */
 #define VOUCHED (EXH_UNTESTED | EXH_UNCALIBRATED | EXH_UNPOLARISED)
 
 void calibrate_tick(struct calibrate *s, const struct calibrate_cfg *cfg,
@@ -367,13 +366,13 @@ void calibrate_tick(struct calibrate *s, const struct calibrate_cfg *cfg,
     sig->present = (int32_t)s->safety.present;
 }
 
-/* --- what came out --- */
+/* --- results --- */
 
 void calibrate_points(
     const struct calibrate *s, const struct calibrate_cfg *cfg, struct exh_calib *c)
 {
     const struct calibrate_par *par = cfg->par;
-    /* Who reads the monitor later takes off this code, so the points do it, too. */
+    /* Users of the monitor subtract this code, so the points do as well. */
     const int32_t zero_raw = exh_mean_value(&s->zero_raw);
     const int32_t zero_A_q26 = exh_drive_monitor_A_q26(&cfg->drive, (int16_t)zero_raw);
 
@@ -403,7 +402,7 @@ static struct calibrate state;
 static void defaults(void)
 {
     exh_params_setup(&params, &param_table, (int32_t *)&active, (int32_t *)&staged);
-    /* The monitor's zero is not known yet: what it is off by is no current. */
+    /* The monitor's zero is unknown, so its offset must not count as current. */
     active.track.tol_A_q26 = staged.track.tol_A_q26 = EXH_Q(1, 2, EXH_Q_CUR);
 }
 

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Calibration of one finger as a scene: the paper's first step, with a person who
- * hangs masses on. Steps, in this order, each only after the person said that it is
- * prepared (parameter `go`: a new word for each, given while it waits), each bounded in
- * current and travel, each phase of it in time; the first that fails ends it, with no
- * current from then on:
+/* Calibration of one finger as a scene: the first step of the paper, with a person who hangs on
+ * masses. Each step starts when the person confirms that it is prepared (parameter `go`, set to a
+ * new value while the step waits). Each step is limited in current and travel, each of its phases
+ * in time. The first failed step ends the run, with no current from then on. The steps in order:
  *
  *   zero      no current: the monitor's zero
  *   polarity  a small pull must move the slack string in
@@ -11,10 +10,9 @@
  *   f0        the least current at which it returns at a given speed
  *   mass i    a known force: a point of both tables
  *
- * There is no table yet that could tell a force: the drive's force stands for current
- * here, 1 N for 1 A, in a table that ends at i_max. So all current goes through drive,
- * safety and gate, and none goes beyond the end of that table.
- */
+ * There is no force table yet, so the drive's force represents current, 1 N for 1 A, in a table
+ * that ends at i_max. So all current passes drive, safety and gate, and none exceeds the end of
+ * that table. */
 #ifndef EXAMPLES_CALIBRATE_H
 #define EXAMPLES_CALIBRATE_H
 
@@ -29,38 +27,38 @@ enum calibrate_step {
     CALIBRATE_POLARITY,
     CALIBRATE_HOME,
     CALIBRATE_F0,
-    CALIBRATE_MASS /* the first; one step a mass */
+    CALIBRATE_MASS /* the first mass; one step per mass */
 };
 
-/* What the person has to do before a step. */
+/* The action required of the person before a step. */
 enum calibrate_ask {
-    CALIBRATE_ASK_SLACK, /* draw the string out, take everything off it, let go */
-    CALIBRATE_ASK_MASS   /* stand mass i on something, string taut above it */
+    CALIBRATE_ASK_SLACK, /* draw the string out, unload it, let go */
+    CALIBRATE_ASK_MASS   /* place mass i on a support, string taut above it */
 };
 
-/* Why it ended: enum exh_probe_result (DONE: all of it is done), or */
+/* Why a run ended: enum exh_probe_result (DONE: all steps finished), or */
 enum calibrate_result {
-    CALIBRATE_OFF = EXH_PROBE_RESULTS, /* the box left RUN: see faults */
-    CALIBRATE_LIMITED, /* a limit of the drive acts: current is not what it should be */
-    CALIBRATE_NOBODY,  /* nobody prepared the step */
+    CALIBRATE_OFF = EXH_PROBE_RESULTS, /* the device left RUN: see faults */
+    CALIBRATE_LIMITED,                 /* a limit of the drive acts: the current is wrong */
+    CALIBRATE_NOBODY,                  /* nobody prepared the step */
     CALIBRATE_RESULTS
 };
 
 struct calibrate_own_par {
-    int32_t gravity_mps2_q20; /* where the masses hang */
-    int32_t i_max_A_q26;      /* no step goes beyond */
-    int32_t step_A_q26;       /* currents rise by this */
-    int32_t pol_max_A_q26;    /* polarity: no further than this */
+    int32_t gravity_mps2_q20; /* gravity at the place of use */
+    int32_t i_max_A_q26;      /* largest current of all steps */
+    int32_t step_A_q26;       /* step of the current */
+    int32_t pol_max_A_q26;    /* largest current of polarity */
     int32_t home_A_q26;
-    int32_t slack_A_q26;    /* makes the string of a standing mass taut */
-    int32_t kf_min_NpA_q20; /* no mass gets more current than its force over this */
-    int32_t end_A_q26;      /* tables go on straight to here */
-    int32_t move_m_q30;     /* within a dwell: it moves */
-    int32_t travel_m_q30;   /* limit of all steps but home */
+    int32_t slack_A_q26;    /* makes the string of a supported mass taut */
+    int32_t kf_min_NpA_q20; /* limits the current for a mass to its force divided by this */
+    int32_t end_A_q26;      /* end of the tables */
+    int32_t move_m_q30;     /* movement within a dwell */
+    int32_t travel_m_q30;   /* travel limit of all steps except home */
     int32_t home_min_m_q30, home_max_m_q30;
     int32_t f0_speed_mps_q27;
     int32_t dwell_ms, hold_ms, time_ms, wait_ms;
-    int32_t go; /* this many steps are prepared: step + 1, newly said */
+    int32_t go; /* number of prepared steps: step + 1, set anew */
 };
 
 struct calibrate_par {
@@ -77,8 +75,8 @@ struct calibrate_signals {
     int32_t i_des_A_q26;
     int32_t i_mon_A_q26;
     int32_t step;                           /* enum calibrate_step */
-    int32_t waits;                          /* 1: for the person */
-    int32_t result;                         /* why it ended; 0 while it goes on */
+    int32_t waits;                          /* 1: waits for the person */
+    int32_t result;                         /* why it ended; 0 while running */
     int32_t limits, state, faults, present; /* as in every scene */
 };
 
@@ -101,26 +99,26 @@ struct calibrate {
     struct exh_drive drive;
     struct exh_tracking track;
     struct exh_safety safety;
-    struct exh_mean zero_raw; /* monitor codes at no current */
+    struct exh_mean zero_raw; /* monitor codes without current */
     struct exh_probe polarity, f0;
     struct exh_home home;
     struct exh_weigh weigh[CALIBRATE_MASSES];
     int32_t coded_A_q26; /* in the last tick */
-    int32_t start_cnt;   /* of the step */
+    int32_t start_cnt;   /* at the start of the step */
     uint32_t tick;       /* of the step or the wait */
-    int32_t go;          /* the word that was there when the wait began, or its last */
+    int32_t go;          /* value when the wait began, or the last confirmed */
     uint8_t step, busy, result;
-    uint8_t word; /* the person's word was given in this wait */
-    uint8_t ran;  /* the box was in RUN */
+    uint8_t word; /* 1: confirmed in this wait */
+    uint8_t ran;  /* 1: the device was in RUN */
 };
 
-/* Configuration from parameters. 0 or -EXH_E…; -EXH_E_RATE: a dwell has less than two
- * ticks; -EXH_E_MONOTONE: the masses don't rise; -EXH_E_RANGE: there is none, or a
- * parameter is refused. Divides. */
+/* Makes the configuration from parameters. Returns 0 or -EXH_E_.... -EXH_E_RATE: a dwell has less
+ * than two ticks. -EXH_E_MONOTONE: the masses do not rise. -EXH_E_RANGE: no mass, or a parameter is
+ * refused. Divides. */
 int calibrate_setup(
     struct calibrate_cfg *cfg, const struct calibrate_par *par, struct exh_scene_board board);
 
-/* As at power-on: a word that is there already is none. */
+/* Power-on state: a value of go set before does not count. */
 void calibrate_start(struct calibrate *s, const struct calibrate_cfg *cfg);
 
 /* One tick. */
@@ -129,18 +127,19 @@ void calibrate_tick(struct calibrate *s, const struct calibrate_cfg *cfg,
 
 enum calibrate_ask calibrate_ask(unsigned step);
 
-/* "polarity", "mass"; "went the wrong way", "nobody prepared the step". Never NULL. */
+/* Texts such as "polarity", "mass"; "went the wrong way", "nobody prepared the step". Never
+ * NULL. */
 const char *calibrate_step_text(unsigned step);
 const char *calibrate_result_text(unsigned result);
 
-/* What was measured so far, into points of c (room: c->cap) and its values; whose,
- * when and for how long is the caller's. Divides: not in a tick. */
+/* Writes the measurements so far to c: its points (room for c->cap) and values. The caller sets
+ * device, finger, day and validity. Divides: not in a tick. */
 void calibrate_points(
     const struct calibrate *s, const struct calibrate_cfg *cfg, struct exh_calib *c);
 
 extern const struct exh_scene exh_scene_calibrate;
 
-/* The one instance, for whoever shows it. */
+/* The one instance, for display. */
 const struct calibrate *calibrate_state(void);
 const struct calibrate_cfg *calibrate_config(void);
 

@@ -38,8 +38,8 @@ static struct exh_integrity guard;
 static struct exh_scene_calib calib;
 static struct slot_wire wire[SLOT_INPUTS];
 static const char *unknown;
-static uint8_t runs;     /* init was called, terminate not yet */
-static uint8_t answered; /* the answer of the coming tick is known: a replay */
+static uint8_t runs;     /* 1 between init and terminate */
+static uint8_t answered; /* 1: a replay has set the answer of the coming tick */
 static int32_t answer;
 
 static void defaults(void)
@@ -56,7 +56,7 @@ static int same(const char *a, const char *b)
     return *a == *b;
 }
 
-/* 1: the table has this name. */
+/* Looks up a name in a table. 1: found. */
 static int find(
     const struct exh_signal_table *t, const int32_t *value, const char *name, struct slot_wire *w)
 {
@@ -113,7 +113,7 @@ static int setup(struct exh_scene_board board)
     return err;
 }
 
-/* The recorded answer, or the controller's own. */
+/* The recorded answer, or the controller's. */
 static int32_t ask(void)
 {
     const int32_t f = answered ? answer : slot.step();
@@ -121,8 +121,9 @@ static int32_t ask(void)
     return f;
 }
 
-/* The answer stands for spring and damper; the pull-back force, which the string needs and no wall,
- * is the law's own. No answer is no force, in this tick, and a fault that cuts in the next. */
+/* The answer replaces spring and damper. The pull-back force belongs to the string, not to a wall,
+ * so the law computes it. No answer gives no force in this tick, and a fault that cuts in the
+ * next. */
 static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 {
     struct drop_now now;
@@ -141,8 +142,7 @@ static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
     drop_out(&state.drop, &cfg, &now, out, &signals.drop);
 }
 
-/* What the controller remembers is nobody's to save: its answers are on record, and a replay takes
- * them from there. */
+/* The memory of the controller is not saved. Its answers are logged, and a replay uses them. */
 static void state_bytes(struct exh_bytes *c)
 {
     drop_bytes(c, &state.drop);

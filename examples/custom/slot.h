@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Slot: a controller of your own in the place of the law, behind init, step and terminate.
+/* Slot: a controller of your own instead of the law, with the functions init, step and terminate.
  *
- * What goes in is named: each input is a signal of the slot, or any parameter of the scene, and
- * comes with its row (exhand/signal.h), so a controller in floats scales it by the row's format and
- * one in integers takes it as it is. What comes out is one force; what becomes of it is the scene's
- * business, and a controller can do nothing about it.
- */
+ * It names its inputs: each is a signal of the slot or any parameter of the scene, and comes with
+ * its row (exhand/signal.h). A controller in floats scales it by the row's format; one in integers
+ * uses it as it is. The output is one force. The scene limits it, and the controller cannot
+ * influence that. */
 #ifndef EXAMPLES_SLOT_H
 #define EXAMPLES_SLOT_H
 
@@ -14,25 +13,26 @@
 
 #include <stdint.h>
 
-/* Inputs at the most. */
+/* Largest number of inputs. */
 #define SLOT_INPUTS 32
-/* The answer that is none: not a number, infinite, or the controller said that it failed. */
+/* No answer: not a number, infinite, or the controller reported a failure. */
 #define SLOT_NONE INT32_MIN
 
 struct slot_wire {
     const struct exh_signal *row;
-    const int32_t *value; /* raw, row->frac fraction bits; the scene's, of this tick */
+    const int32_t *value; /* raw, row->frac fraction bits; owned by the scene, of this tick */
 };
 
-/* One controller; an image has one, `slot`. */
+/* One controller. An image has one, named slot. */
 struct slot {
     const char *name;
-    uint32_t rate_Hz;         /* the only one it may run at; 0: any */
-    uint8_t inputs;           /* at most SLOT_INPUTS */
+    uint32_t rate_Hz;         /* its only sample rate; 0: any */
+    uint8_t inputs;           /* number, at most SLOT_INPUTS */
     const char *const *input; /* their names */
-    /* Power-on, again after terminate. The wires, in the order of `input`, stay. 0 or -EXH_E…. */
+    /* Initialises, also again after terminate. The wires, in the order of input, stay. 0 or
+     * -EXH_E_.... */
     int (*init)(const struct slot_wire *wire, struct exh_period T);
-    /* A tick: string force asked for, N q20, or SLOT_NONE. */
+    /* One tick: returns the requested string force, N q20, or SLOT_NONE. */
     int32_t (*step)(void);
     void (*terminate)(void);
 };

@@ -68,7 +68,7 @@ static struct exh_axis axis_of(struct drop *s, const struct drop_cfg *cfg)
         &cfg->watch, &s->track, &cfg->track, &s->drive, &cfg->drive, &s->chatter, &cfg->chatter};
 }
 
-/* Causes that are not the finger's. */
+/* Causes of the device, not of the finger. */
 static uint32_t causes(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene_in *in)
 {
     const int starved = exh_supply_step(&s->supply, &cfg->supply, in->drive.supply_raw, in->missed);

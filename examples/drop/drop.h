@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The identification controller of the paper (its Fig. 4) as a scene: one motor,
- * a virtual wall at q_lim, everything tunable, everything logged. */
+/* The identification controller of the paper (its Fig. 4) as a scene: one motor and a virtual wall
+ * at q_lim. All parameters are adjustable, all signals are logged. */
 #ifndef EXAMPLES_DROP_H
 #define EXAMPLES_DROP_H
 
@@ -10,8 +10,8 @@
 
 /* Rows of the scene's own parameters. */
 struct drop_own_par {
-    int32_t q_lim_m_q30; /* virtual contact, from the first count */
-    int32_t kf_NpA_q20;  /* string force per motor ampere, without a calibration */
+    int32_t q_lim_m_q30; /* virtual contact, relative to the first count */
+    int32_t kf_NpA_q20;  /* string force per motor ampere, if there is no calibration */
 };
 
 #define DROP_OWN_ROWS   2
@@ -21,7 +21,7 @@ extern const struct exh_signal drop_own_rows[DROP_OWN_ROWS];
 extern const struct exh_signal drop_paper_rows[DROP_PAPER_ROWS];
 extern const struct exh_signal drop_more_rows[DROP_MORE_ROWS];
 
-/* Groups of its tables, for scenes that are this one and something more. */
+/* Groups of its tables, for scenes that extend this one. */
 #define DROP_PARAM_N 12
 #define DROP_PARAM_GROUPS \
     {exh_quad_rows, EXH_QUAD_ROWS, 1}, {exh_velocity_rows, EXH_VELOCITY_ROWS, 1}, \
@@ -33,7 +33,7 @@ extern const struct exh_signal drop_more_rows[DROP_MORE_ROWS];
     { \
         exh_chatter_rows, EXH_CHATTER_ROWS, 1 \
     }
-/* The first is the paper's, in its order: what a CSV holds. */
+/* The first group is the paper's, in its order, for the CSV. */
 #define DROP_SIGNAL_N 2
 #define DROP_SIGNAL_GROUPS \
     {drop_paper_rows, DROP_PAPER_ROWS, 1}, { drop_more_rows, DROP_MORE_ROWS, 1 }
@@ -51,7 +51,7 @@ struct drop_par {
     struct drop_own_par own;
     struct exh_calib_set_par calib;
     struct exh_tune_par tune;
-    struct exh_chatter_par chatter; /* off: falls that oscillate are experiments */
+    struct exh_chatter_par chatter; /* off, since experiments include oscillating falls */
 };
 
 /* The paper's signals, then ours, in the order of the table. */
@@ -66,7 +66,7 @@ struct drop_signals {
     int32_t state;    /* enum exh_state */
     int32_t faults;   /* enum exh_fault, latched */
     int32_t present;  /* enum exh_fault: why RUN or CLEAR is refused */
-    int32_t arm_step; /* enum exh_arm: on which arming is, or was refused */
+    int32_t arm_step; /* enum exh_arm: present step of arming, or last refused */
 };
 
 struct drop_cfg {
@@ -94,16 +94,16 @@ struct drop {
     struct exh_safety safety;
     struct exh_supply supply;
     uint8_t broken; /* 1: the guard found a change in configuration; not saved */
-    uint32_t more;  /* enum exh_fault: what a scene around this one raises; not saved */
+    uint32_t more;  /* enum exh_fault raised by an enclosing scene; not saved */
 };
 
-/* Configuration from parameters, and of a calibration of finger 0 if calib has one (NULL: none). 0
- * or -EXH_E…. */
+/* Makes the configuration from parameters, and from a calibration of finger 0 in calib (NULL:
+ * none). Returns 0 or -EXH_E_.... */
 int drop_setup(struct drop_cfg *cfg, const struct drop_par *par, struct exh_scene_board board,
     struct exh_scene_calib *calib);
 
-/* What the first half of a tick hands to the second. Between them a scene may add to the force
- * ledger what acts behind the law. */
+/* Results of the first half of a tick for the second. Between them a scene may change the force
+ * ledger. */
 struct drop_now {
     int32_t cnt;
     struct exh_permit permit;
@@ -112,7 +112,7 @@ struct drop_now {
     uint32_t limits;
 };
 
-/* From the inputs through the law, and from there to the outputs. */
+/* First half: inputs to law. Second half: from there to the outputs. */
 void drop_law(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene_in *in,
     struct drop_now *now, struct drop_signals *sig);
 void drop_out(struct drop *s, const struct drop_cfg *cfg, struct drop_now *now,
@@ -125,7 +125,7 @@ void drop_bytes(struct exh_bytes *c, struct drop *s);
 void drop_tick(struct drop *s, const struct drop_cfg *cfg, const struct exh_scene_in *in,
     struct exh_drive_out *out, struct drop_signals *sig);
 
-/* The memory of the one instance, for who damages it to see what happens. */
+/* Memory of the one instance, for tests that damage it. */
 struct drop *drop_memory(struct drop_cfg **cfg);
 struct exh_integrity *drop_guard(void);
 

@@ -13,7 +13,7 @@ const struct exh_signal glove_own_rows[GLOVE_OWN_ROWS] = {
         "sensors that are there, bits"},
 };
 
-/* Instances: the sensors. What is allowed together glove.h says, and set-up asks. */
+/* Instances: the sensors. glove.h defines valid combinations; set-up checks them. */
 const struct exh_signal glove_cal_rows[GLOVE_CAL_ROWS] = {
     {0x8410, 15, EXH_WHEN_SETUP, INT32_MIN, INT32_MAX, 0, "cal_zero", "", "code of angle 0"},
     {0x8411, 38, EXH_WHEN_SETUP, INT32_MIN, INT32_MAX, 0, "cal_gain", "turn", "angle per code"},

@@ -142,7 +142,7 @@ static struct glove_signals signals;
 static struct glove_cfg cfg;
 static struct glove state;
 
-/* Nothing to drive: the gate stays shut, and makes the frame, as it makes all. */
+/* No drives: the gate stays closed and makes all output frames. */
 #define DAC_ZERO_RAW 32768
 static struct exh_safety shut;
 
@@ -182,7 +182,7 @@ static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 
 static void state_bytes(struct exh_bytes *c)
 {
-    int32_t *held = (int32_t *)&state.sig; /* what the next ticks show again */
+    int32_t *held = (int32_t *)&state.sig; /* repeated in the next ticks */
     exh_glove_serialize(c, &state.glove);
     for (unsigned i = 0; i < SIGNALS; i++) { exh_bytes_i32(c, &held[i]); }
     exh_safety_serialize(c, &shut);

@@ -25,7 +25,7 @@ EXH_STATIC_ASSERT(guarded_par_matches_rows,
     sizeof(struct guarded_par) ==
         sizeof(struct drop_par) + (EXH_PASSIVITY_ROWS + 1 + EXH_GAINS_ROWS) * sizeof(int32_t));
 
-/* 0, or what is wrong with the rule, or that k and b are outside. */
+/* 0, or an error: of the rule, or k and b are outside it. */
 static int ask_rule(const struct guarded_par *par, struct exh_period T)
 {
     const struct exh_contact_par *wall = &par->drop.contact;

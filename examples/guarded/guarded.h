@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The drop scene, guarded: passivity between law and limits. */
+/* The drop scene with a passivity controller between law and limits. */
 #ifndef EXAMPLES_GUARDED_H
 #define EXAMPLES_GUARDED_H
 
@@ -9,18 +9,18 @@ struct guarded_own_par {
     int32_t rule_on; /* 1: k and b outside the rule of gains are refused */
 };
 
-/* Drop's parameters first, then what is added: so names and places of drop's stay. */
+/* Drop's parameters first, so that their names and indices stay; then the additions. */
 struct guarded_par {
     struct drop_par drop;
     struct exh_passivity_par passivity;
     struct guarded_own_par own;
-    struct exh_gains_par gains; /* looked at with rule_on alone */
+    struct exh_gains_par gains; /* used only with rule_on */
 };
 
 struct guarded_signals {
     struct drop_signals drop;
-    int32_t energy_J_q24;    /* taken up by the present contact */
-    int32_t passivity_N_q20; /* the ledger's term: taken away, <= 0 */
+    int32_t energy_J_q24;    /* received by the present contact */
+    int32_t passivity_N_q20; /* passivity of the ledger, <= 0 */
 };
 
 struct guarded_cfg {
@@ -34,13 +34,13 @@ struct guarded {
     struct exh_passivity passivity;
 };
 
-/* Configuration from parameters; calib as drop_setup(). 0 or -EXH_E…; with rule_on also what
- * exh_gains_setup() says of the rule, and -EXH_E_GAINS for k and b outside. */
+/* Makes the configuration from parameters; calib as for drop_setup(). Returns 0 or -EXH_E_.... With
+ * rule_on also errors of exh_gains_setup(), and -EXH_E_GAINS for k and b outside. */
 int guarded_setup(struct guarded_cfg *cfg, const struct guarded_par *par,
     struct exh_scene_board board, struct exh_scene_calib *calib);
 
-/* For whoever stages values of this image's scene, over a link too: as exh_params_stage(), with
- * rule_on as exh_gains_stage() under the rule that set-up took. */
+/* Stages a value of this image's scene, also over a link: as exh_params_stage(), with rule_on as
+ * exh_gains_stage() with the rule of set-up. */
 int guarded_stage(uint16_t id, uint16_t instance, int32_t raw);
 
 /* One tick. */
@@ -50,7 +50,7 @@ void guarded_tick(struct guarded *s, const struct guarded_cfg *cfg, const struct
 /* State through a cursor. */
 void guarded_bytes(struct exh_bytes *c, struct guarded *s);
 
-/* The memory of the one instance, for who damages it to see what happens. */
+/* Memory of the one instance, for tests that damage it. */
 struct guarded *guarded_memory(struct guarded_cfg **cfg);
 
 extern const struct exh_scene exh_scene_guarded;

@@ -82,7 +82,7 @@ const char *identify_result_text(unsigned result)
 
 #define FAST_MS 10
 
-/* At least two, as one may be noise. */
+/* At least two counts, since one may be noise. */
 static int32_t counts_of(int64_t m_q30, int32_t step_m_q42)
 {
     const uint64_t n =
@@ -145,7 +145,7 @@ int identify_setup(
 
 /* --- a tick --- */
 
-/* From here on the person's word counts, not the one that is there already. */
+/* From here on only a new confirmation of the person counts. */
 static void begin_wait(struct identify *s, const struct identify_cfg *cfg)
 {
     s->busy = s->word = 0;
@@ -159,7 +159,7 @@ void identify_start(struct identify *s, const struct identify_cfg *cfg)
     begin_wait(s, cfg);
 }
 
-/* Zero current until the person's word; then the stage begins with the next tick. */
+/* Zero current until the person confirms; the stage starts in the next tick. */
 static void wait(struct identify *s, const struct identify_cfg *cfg, int32_t cnt, int run)
 {
     const int32_t go = cfg->par->own.go;
@@ -189,7 +189,7 @@ static int32_t go_on(struct identify *s, const struct identify_cfg *cfg, int32_t
     if (r == EXH_PROBE_BUSY) { return s->run.cur_A_q26; }
     begin_wait(s, cfg);
     if (r != EXH_PROBE_DONE) {
-        s->result = r; /* stage and part stay: those that failed */
+        s->result = r; /* stage and part stay at the failed ones */
     } else if (++s->run.stage == IDENTIFY_STAGES) {
         s->result = EXH_PROBE_DONE;
     }
@@ -212,7 +212,7 @@ static void signals(const struct identify *s, const struct exh_axis_now *now, ui
     sig->present = (int32_t)s->safety.present;
 }
 
-/* Polarity and calibration are what it finds out. */
+/* The result of this scene gives polarity and calibration. */
 #define VOUCHED (EXH_UNTESTED | EXH_UNCALIBRATED | EXH_UNPOLARISED)
 
 void identify_tick(struct identify *s, const struct identify_cfg *cfg,
@@ -253,7 +253,7 @@ static struct identify state;
 static void defaults(void)
 {
     exh_params_setup(&params, &param_table, (int32_t *)&active, (int32_t *)&staged);
-    /* The monitor's zero is not known yet: what it is off by is no current. */
+    /* The monitor's zero is unknown, so its offset must not count as current. */
     active.track.tol_A_q26 = staged.track.tol_A_q26 = EXH_Q(1, 2, EXH_Q_CUR);
 }
 

@@ -1,39 +1,39 @@
 /* SPDX-License-Identifier: MIT */
-/* The parts of a run: what current each asks for, and what ends it. */
+/* The parts of a run: the current of each, and its end. */
 #include "identify.h"
 
 /* Currents. */
 enum {
     NONE,    /* no current */
-    RISE,    /* from where it is, by the ramp */
-    SINK,    /* and down */
-    PULSE,   /* above what moves the rotor */
-    UP,      /* above what lifts the mass */
-    DOWN,    /* below what lets it sink */
-    HANG,    /* between these */
-    BRAKE,   /* half of HANG: what rises stops */
-    SQUARE,  /* HANG and so much more or less that it moves */
-    RELEASE, /* a small part of what lets it sink */
-    CATCH    /* much above what lifts it */
+    RISE,    /* rises from the present current by the ramp */
+    SINK,    /* falls by the ramp */
+    PULSE,   /* above the current that moves the rotor */
+    UP,      /* above the current that lifts the mass */
+    DOWN,    /* below the current that lets it sink */
+    HANG,    /* between the two */
+    BRAKE,   /* half of HANG, to stop a rising mass */
+    SQUARE,  /* HANG plus or minus enough to move it */
+    RELEASE, /* a small part of the current that lets it sink */
+    CATCH    /* far above the current that lifts it */
 };
 
 /* Ends. */
 enum {
     TIME,
-    INWARD,  /* so far in from where the part began */
-    OUTWARD, /* so far out from the innermost point of the part */
-    ABOVE,   /* so high above where the stage began */
-    TURN,    /* so far in again from the outermost point of the part */
-    STILL    /* the count stands */
+    INWARD,  /* distance in from the start of the part */
+    OUTWARD, /* distance out from the innermost point of the part */
+    ABOVE,   /* height above the start of the stage */
+    TURN,    /* distance in again from the outermost point of the part */
+    STILL    /* the count does not change */
 };
 
-/* What is learned at the end, of the current then. */
+/* Result at the end, from the present current. */
 enum { NOTHING, FREE, LIFTS, SINKS, PULSED };
 
 struct part {
     const char *name;
     uint8_t stage, current, end, far, learns;
-    uint8_t must; /* 1: time that is up is a failure */
+    uint8_t must; /* 1: a timeout is a failure */
     uint16_t ms;
 };
 
@@ -63,8 +63,8 @@ static const struct part part[] = {
 };
 #undef M
 #define PARTS  (sizeof part / sizeof part[0])
-#define RUNOUT 1 /* the slack stage goes round from here, */
-#define FIRST  3 /* the mass's begins here */
+#define RUNOUT 1 /* the slack stage repeats from here, */
+#define FIRST  3 /* the mass stage starts here */
 
 const char *identify_part_text(unsigned p) { return p < PARTS ? part[p].name : 0; }
 unsigned identify_part_stage(unsigned p) { return p < PARTS ? part[p].stage : IDENTIFY_STAGES; }
@@ -81,14 +81,14 @@ static int32_t half_A_q26(const struct identify_run *r)
     return r->up_A_q26 / 2 - r->down_A_q26 / 2;
 }
 
-/* A mass that hangs does not lift faster than half its current a second. */
+/* A hanging mass limits the ramp to half its current per second. */
 static int32_t ramp_A_q26(const struct identify_run *r, const struct identify_cfg *cfg)
 {
     const int32_t slow = (int32_t)exh_mul_shr(r->up_A_q26, cfg->half_per_s_q31, 31);
     return r->up_A_q26 == 0 || cfg->ramp_A_q26 < slow ? cfg->ramp_A_q26 : slow > 0 ? slow : 1;
 }
 
-/* Near an end of the way it leans away from it. */
+/* Near an end of the travel, biases the current away from it. */
 static int32_t lean_A_q26(
     const struct identify_run *r, const struct identify_cfg *cfg, int32_t in_cnt)
 {
@@ -98,7 +98,7 @@ static int32_t lean_A_q26(
                                                   : 0;
 }
 
-/* Flips, and sooner each time. */
+/* Switches, with a shrinking half period. */
 static int32_t square_A_q26(struct identify_run *r, const struct identify_cfg *cfg, int32_t in_cnt)
 {
     const int32_t hang = hang_A_q26(r), amp = half_A_q26(r) + hang / 3;
@@ -152,7 +152,7 @@ static uint32_t ticks_of(
     return p->ms ? exh_ticks_in(p->ms, cfg->T) : r->long_ticks;
 }
 
-/* A pulse that was over soon is followed by a smaller one, and the other way round. */
+/* After a short pulse the next one is smaller, after a long one larger. */
 static void learn(struct identify_run *r, const struct identify_cfg *cfg, const struct part *p)
 {
     const int32_t most = cfg->par->own.i_max_A_q26;
@@ -178,7 +178,7 @@ static void begin_part(struct identify_run *r, const struct identify_cfg *cfg, i
         (cfg->half_ticks + (uint32_t)((uint64_t)r->chance * (2 * cfg->half_ticks) >> 32)) / 2;
 }
 
-/* The next part, DONE behind the stage's last, or why it ends here. */
+/* Starts the next part. DONE after the last of the stage, or the reason for the end. */
 static uint8_t next(struct identify_run *r, const struct identify_cfg *cfg, int32_t cnt)
 {
     const struct identify_own_par *own = &cfg->par->own;

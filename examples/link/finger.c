@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: MIT */
-/* A firmware-style program over the library alone: one finger, one wall, its own loop and board.
+/* A firmware-style program that uses only the library: one finger, one wall, its own loop and
+ * board.
  *
- * The board is played: a finger goes 25 mm out and back in a second, a motor follows its code at
- * once, and a hand holds the dead-man switch. On a real board the functions of "board" touch
- * registers and pins. The program vouches for what it has tried: the library's self-test. It names
- * what it has not: calibration and polarity.
+ * The board is simulated. A finger moves 25 mm out and back in a second, a motor follows its code
+ * without delay, and a hand holds the dead-man switch. On a real board, the functions of "board"
+ * access registers and pins. The program confirms what it has tested: the self-test of the library.
+ * It names what it has not: calibration and polarity.
  *
- * Prints the force at the deepest point and a CRC-32 over all codes that went to the D/A: the same
- * on every CPU, by every compiler and however the library was linked (test/walk/link checks all of
- * them against each other). */
+ * It prints the force at the deepest point and a CRC-32 of all D/A codes. Both are equal on every
+ * CPU, with every compiler and way of linking (test/walk/link compares them). */
 #include "exhand/exhand.h"
 
 #include <stdio.h>
 
-/* --- board: 5 um a count, D/A and monitor of the paper's box --- */
+/* --- board: 5 um per count, D/A and monitor of the paper's device --- */
 
 enum { RATE_Hz = 1000, REST = 1200, TICKS = REST + 1000 };
 
@@ -30,8 +30,8 @@ static int16_t board_monitor(void) /* 1.76 A/V at 3249 codes/V; 1936.5 codes/A *
     return (int16_t)(((int32_t)dac_raw - 32768) * 1049 / 1000);
 }
 
-/* Every contact is normally closed: 1 is healthy. A real board reads five pins here; a line that it
- * does not have must be wired closed, so that the box's builder decides it, not the program. */
+/* Every contact is normally closed: 1 is healthy. A real board reads five pins here. Wire a missing
+ * line closed, so that the builder of the device decides it, not the program. */
 static uint32_t board_inputs(void)
 {
     const int estop_closed = 1, deadman_held = 1, watchdog_quiet = 1, cards_answer = 1, ready = 1;
@@ -72,7 +72,7 @@ static const struct exh_drive_par drive_par = {EXH_Q(10, 1, EXH_Q_FORCE), 1000, 
     EXH_Q(33, 10, EXH_Q_CUR), EXH_Q(33, 10, EXH_Q_CUR), 2700,                         /* A, ms */
     32768, 12184, EXH_Q(324900, 176, EXH_Q_DAC),          /* zero, span, codes/A */
     0, EXH_Q(5164, 10000000, EXH_Q_MON),                  /* zero, A/code */
-    EXH_Q(10, 1, EXH_Q_FORCE), EXH_Q(33, 10, EXH_Q_CUR)}; /* the person's ceiling: N, A */
+    EXH_Q(10, 1, EXH_Q_FORCE), EXH_Q(33, 10, EXH_Q_CUR)}; /* the person's limits: N, A */
 static const struct exh_tracking_par track_par = {EXH_Q(1, 4, EXH_Q_CUR), 20};
 static const struct exh_safety_par safety_par = {1, EXH_Q(1, 1, EXH_Q_FORCE), 50, 500, 15};
 static struct exh_knot knot[2] = {

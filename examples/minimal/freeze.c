@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What set-up makes here, for ../freeze.c to write down. */
+/* The results of set-up here, which ../freeze.c writes. */
 #include "minimal.c"
 
 #include "../freeze.h"

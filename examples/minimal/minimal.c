@@ -23,11 +23,11 @@ static const struct exh_drive_par drive_par = {.f_max_N_q20 = EXH_Q(5, 1, EXH_Q_
     .person_A_q26 = EXH_Q(33, 10, EXH_Q_CUR)};
 static const struct exh_tracking_par track_par = {EXH_Q(1, 4, EXH_Q_CUR), 20};
 static const struct exh_safety_par safety_par = {1, EXH_Q(1, 1, EXH_Q_FORCE), 50, 500, 15};
-/* Its parameters are constants. */
+/* All parameters are constants. */
 #define vouched (EXH_UNTESTED | EXH_UNCALIBRATED | EXH_UNPOLARISED)
 static const int32_t wall_m_q30 = EXH_Q(2, 100, EXH_Q_POS);
 
-#ifdef EXH_FROZEN /* what set-up makes of one period and counter, as constants: ../frozen.h */
+#ifdef EXH_FROZEN /* results of set-up as constants: ../frozen.h */
 #include EXH_FROZEN
 #else
 static struct exh_quad_cfg quad_cfg;
