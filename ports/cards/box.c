@@ -232,7 +232,7 @@ static uint32_t level(const uint8_t *pins, struct place p) { return pins[p.card]
 static uint32_t din(const uint8_t *pins)
 {
     const struct wiring *w = box.wiring;
-    uint32_t bits = EXH_DIN_CARDS | /* whoever failed hands over no frame */
+    uint32_t bits = EXH_DIN_CARDS | /* the failed glove delivers no frame */
                     level(pins, w->estop) * EXH_DIN_ESTOP |
                     level(pins, w->deadman) * EXH_DIN_DEADMAN;
     if (!box.cfg.watchdog || level(pins, w->watchdog)) { bits |= EXH_DIN_WATCHDOG; }

@@ -50,8 +50,8 @@ struct exh_box_config {
     uint8_t din_invert[2]; /* of A, B: input pins 0..3 whose healthy level is 0 */
     uint8_t out_invert[2]; /* output pins 4..7 whose active level is 0, bits 0xF0 */
     uint16_t dac_span_raw; /* codes either side of 0 A that ever go out */
-    uint16_t dac_rest_raw; /* codes either side that a drive that is off may be given, for the
-                            * offset of its input; more is a fault: it is 0 A to nobody else */
+    uint16_t dac_rest_raw; /* codes on either side of zero that a disabled drive may get, to correct
+                            * its input offset; more is a fault */
     struct exh_s526_par s526;
     struct exh_mm32xat_par mm32xat;
 };
@@ -113,9 +113,10 @@ struct exh_box_counts {
  * -EXH_E_IO; -EXH_E_RANGE: the configuration. May be called again. report may be NULL. */
 int exh_box_open(const struct exh_box_config *config, struct exh_box_report *report);
 
-/* As exh_board_read_drive(), …write_drive(), …read_glove(). On an error the outputs are safe
- * before they return -EXH_E_IO, and stay so, whatever is written, until the box is opened anew;
- * exh_box_error() has the cause. -EXH_E_ABSENT: not open, or a glove that is not used. */
+/* As exh_board_read_drive(), exh_board_write_drive() and exh_board_read_glove(). On an error the
+ * outputs become safe before the function returns -EXH_E_IO. They stay so until the box is opened
+ * again, whatever is written; exh_box_error() gives the cause. -EXH_E_ABSENT: not open, or a glove
+ * that is not used. */
 int exh_box_read_drive(struct exh_drive_in *in);
 int exh_box_write_drive(const struct exh_drive_out *out);
 int exh_box_read_glove(struct exh_glove_in *in);

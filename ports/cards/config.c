@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What may stand in the configuration of a box. */
+/* Valid configurations of a box. */
 #include "box.h"
 
 const struct exh_box_config exh_box_default = {

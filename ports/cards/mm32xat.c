@@ -27,7 +27,7 @@ enum { MM_RESET = 0x20, MM_BUSY = 0x80, MM_SINGLE_ENDED = 0x60 };
 enum { MM_10V = 0x08, MM_INTERVAL_SHIFT = 4, MM_WAIT = 0x80 };
 #define MM_ALL_ONES 0xFFu /* an empty port; no register that is looked at here can have it */
 
-/* A scan that never ends is asked for so many times, where time stands still. */
+/* Number of polls for the end of a scan if the clock is stopped. */
 #define ASKED_MAX 1000
 
 static uint8_t in(const struct exh_mm32xat *m, unsigned offset)
@@ -40,7 +40,7 @@ static void out(const struct exh_mm32xat *m, unsigned offset, unsigned value)
     exh_io_out8((uint16_t)(m->base + offset), (uint8_t)value);
 }
 
-/* At least so long; the reads of a status take time where it stands still. */
+/* Waits at least this long. If the clock is stopped, reads of a status register take the time. */
 static void pause_us(const struct exh_mm32xat *m, uint32_t us)
 {
     struct exh_wait w = exh_wait_us(us);
@@ -197,8 +197,8 @@ static int unlike(struct exh_mm32xat *m, unsigned want_empty, struct exh_card_fa
     return 1;
 }
 
-/* So many more. Exactly as many as channels: before the first there is one and nothing
- * overflowed, before the last there is one, after it there is none. */
+/* Reads n more samples, exactly as many as channels. Before the first there is one and no overflow;
+ * before the last there is one; after it there is none. */
 static int pop(struct exh_mm32xat *m, unsigned n, struct exh_card_fault *f)
 {
     const unsigned last = m->par.channels - 1u, end = m->taken + n;

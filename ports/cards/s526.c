@@ -6,8 +6,8 @@
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
-/* So many updates in a row may end without their flag: one may still be under way when the
- * flags are looked at, and one lost to a flag cleared in the same instant. */
+/* Consecutive updates that may end without their flag. One may still run when the flags are read,
+ * and one may be lost when a flag is cleared at the same instant. */
 #define DA_UNSEEN 3
 
 int s526_wait(const struct exh_s526 *s, unsigned flags, uint32_t limit_us, unsigned what,

@@ -38,12 +38,13 @@ struct exh_s526_par {
         .noise_raw = 64 \
     }
 
-/* With turns, a tick does with fewer accesses:
- *  - a scan converts one channel of the mask, the next one at each start (the first scan all);
- *  - of counters the low words alone are read, which latch; the rest follows from the last count,
- *    for steps up to +-32767. A tick looks at one high word or one quadrature error, in turn:
- *    each of both once in 2 * axes ticks. A high word that is another one is a fault;
- *  - lines are written when they change, and each EXH_S526_LINES_EVERY writes. */
+/* With turns, a tick needs fewer accesses:
+ * - A scan converts one channel of the mask, the next one at each start; the first scan converts
+ *   all.
+ * - Only the low words of counters are read, which latches them. The rest follows from the last
+ *   count, for steps up to +-32767. A tick checks one high word or one quadrature error in turn, so
+ *   each of both once in 2 * axes ticks. An unexpected high word is a fault.
+ * - Lines are written when they change, and after each EXH_S526_LINES_EVERY writes. */
 #define EXH_S526_LINES_EVERY 16
 
 /* Nominal codes to this card's, and back. */

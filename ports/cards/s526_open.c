@@ -23,8 +23,8 @@
 #define REF_10V_HI  32767
 #define AD_GAIN_PPM 50000
 
-/* What the mean of a reference cannot tell from nominal: half a code at 0 V, and one and a half
- * at the end of the range, where a nominal 10 V reads one code too few, the range's last. */
+/* Largest deviation that cannot be distinguished from nominal: half a code at 0 V, one and a half
+ * at the end of the range. There a nominal 10 V reads one code too few, the last of the range. */
 #define SAME_ZERO_SUM 5
 #define SAME_GAIN_Q30 (3 << 14)
 
@@ -65,8 +65,8 @@ static void preload(const struct exh_s526 *s, unsigned axis, uint32_t count)
     s526_out(s, s526_counter(axis, S526_CONTROL), S526_LOAD);
 }
 
-/* All are loaded before the first is read, each with another value: neither a counter that
- * stands still nor one that answers for its neighbour passes. */
+/* Loads all counters with different values before it reads the first. So a stopped counter fails,
+ * and so does one that answers for its neighbour. */
 static int test_counters(const struct exh_s526 *s, uint32_t flip, struct exh_card_fault *f)
 {
     static const uint32_t pattern[EXH_S526_AXES] = {0x5A33C5, 0x0FA596, 0xC33C69, 0x3669A0};
@@ -122,7 +122,7 @@ static int ee_word(
     s526_out(s, S526_ISR, S526_EE_DONE);
     s526_out(s, S526_EEC, address << 3 | 5u); /* read */
     err = s526_wait(s, S526_EE_DONE, s->par.ee_wait_us, EXH_CARD_EE_TIMEOUT, address, &isr, f);
-    /* A/D too: a scan of whoever ran before may have ended behind the self-test. */
+    /* Also the A/D: a scan of an earlier program may have ended after the self-test. */
     s526_out(s, S526_ISR, S526_EE_DONE | S526_AD_DONE);
     *word = s526_in(s, S526_EED);
     return err;
@@ -166,7 +166,7 @@ static int32_t told(int64_t q32, int32_t parts)
     return exh_sat32(exh_shr_round(exh_shr_round(q32, 16) * parts, 16));
 }
 
-/* Outside lo..hi: the fault, unless nominal values may stand in; then 1. */
+/* Outside lo..hi: a fault, or 1 if nominal values may replace it. */
 static int check(const struct exh_s526 *s, unsigned what, unsigned at, int64_t q32, int32_t parts,
     int32_t lo, int32_t hi, struct exh_card_fault *f)
 {
@@ -323,7 +323,7 @@ int exh_s526_open(struct exh_s526 *s, uint16_t base, unsigned ad_mask, unsigned 
     if (err == 0) { err = eeprom(s, f); }
     if (err == 0) { err = calibrate(s, f); }
     exh_s526_safe(s, 1);                                    /* with its own codes of 0 V */
-    if (err < 0 && s526_in(s, S526_EEC) == S526_ALL_ONES) { /* it died meanwhile */
+    if (err < 0 && s526_in(s, S526_EEC) == S526_ALL_ONES) { /* the card has failed since */
         return exh_card_fault(f, EXH_CARD_EMPTY, S526_EEC, S526_ALL_ONES, 0, 0);
     }
     return err;

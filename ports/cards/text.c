@@ -64,7 +64,7 @@ static int has_place(unsigned what)
            what == EXH_CARD_FOLLOW;
 }
 
-/* Values of registers are told in hexadecimal. */
+/* Values of registers are printed in hexadecimal. */
 static int is_bits(unsigned what)
 {
     return what == EXH_CARD_SIGNATURE || what == EXH_CARD_REGISTER || what == EXH_CARD_LINES;

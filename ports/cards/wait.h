@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* A wait that ends: by time, and by polls where time stands still. */
+/* A bounded wait: by time, or by polls if the clock is stopped. */
 #ifndef CARDS_WAIT_H
 #define CARDS_WAIT_H
 
 #include "io.h"
 
-/* A poll is an access to the ISA bus, 0.4 us at the least: on a machine whose time runs, time
- * ends a wait; where it stands, this many polls do, after 6 to 30 times as long. */
+/* A poll is an access to the ISA bus of at least 0.4 us. While the clock runs, time ends a wait. If
+ * it is stopped, this number of polls does, after 6 to 30 times as long. */
 #define EXH_WAIT_POLLS_PER_US 16u
 
 struct exh_wait {
@@ -22,9 +22,8 @@ static inline struct exh_wait exh_wait_us(uint32_t limit_us)
 /* Polls from one look at the time to the next, a power of two: a look costs three polls. */
 #define EXH_WAIT_LOOK 8u
 
-/* After a poll that found nothing: is there to be another? Between two looks at the time lies
- * a poll, so whoever was held up in between is not told that the card was. The first poll
- * costs no look at the time. */
+/* Call it after a poll without result: 1 for another poll. There is a poll between two readings of
+ * the time, so a delayed caller does not blame the card. The first poll does not read the time. */
 static inline int exh_wait_more(struct exh_wait *w)
 {
     const uint32_t polls = w->polls++;

@@ -145,7 +145,7 @@ static fmi3Status set(fmi3ValueReference vr, enum unit_type type, double value)
     return err < 0 ? fail("%s: %.17g: not now: before the first step", v.name, value) : fmi3OK;
 }
 
-/* The independent variable, time, stands behind all others. */
+/* The independent variable, time, follows all others. */
 static double time_s(void)
 {
     const struct exh_period T = unit_period();

@@ -9,5 +9,5 @@
 void exh_assert_failed(const char *file, int line)
 {
     (void)fprintf(stderr, "%s: %s:%d: that cannot be\n", unit_name, file, line);
-    for (;;) { *(volatile int *)0 = 0; } /* an importer has no stop of its own */
+    for (;;) { *(volatile int *)0 = 0; } /* an importer offers no way to stop */
 }

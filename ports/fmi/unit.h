@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* A unit: what of ours stands behind the functions of FMI 3.0, the controller or the simulated
- * device. One an FMU.
- *
- * Its variables are a list, made from the tables that everything else is made from; the model
- * description is printed from it (describe.c), and a value reference is the place in it.
- */
+/* A unit: the implementation of the FMI 3.0 functions, either the controller or the simulated
+ * device, one per FMU. Its list of variables comes from the signal tables. describe.c prints the
+ * model description from it, and a value reference is an index into it. */
 #ifndef FMI_UNIT_H
 #define FMI_UNIT_H
 

@@ -19,6 +19,6 @@ void mps2_fault(uint32_t exception); /* on a fresh stack; does not return */
 void mps2_say_open(void);
 void mps2_say(const char *text);
 void mps2_say_u32(uint32_t value);
-void mps2_exit(uint32_t status); /* tells an emulator or debugger; may return where there is none */
+void mps2_exit(uint32_t status); /* ends an emulator or debugger; returns where there is none */
 
 #endif

@@ -36,11 +36,11 @@ void mps2_say_u32(uint32_t value)
     mps2_say(p);
 }
 
-/* Semihosting: a breakpoint that emulators and debuggers answer. Where nobody does it is one more
- * fault, and the processor stays where it is. */
+/* Semihosting: a breakpoint that emulators and debuggers answer. Without one it is a fault, and the
+ * processor stops there. */
 void mps2_exit(uint32_t status)
 {
-    const uint32_t block[2] = {0x20026 /* the program ended by itself */, status};
+    const uint32_t block[2] = {0x20026 /* the program ended normally */, status};
     register uint32_t operation __asm__("r0") = 0x20; /* SYS_EXIT_EXTENDED */
     register const uint32_t *argument __asm__("r1") = block;
     __asm__ volatile("bkpt 0xab" : "+r"(operation) : "r"(argument) : "memory");

@@ -43,8 +43,8 @@ int pc104_board_clock(void)
     return err;
 }
 
-/* Whatever the outputs came up with ends here. What fails is told by exh_board_init(), which opens
- * it all anew. */
+/* Ends the power-on state of the outputs. exh_board_init() opens everything again and reports
+ * errors. */
 void pc104_board_still(void)
 {
     struct exh_box_config config;

@@ -51,7 +51,7 @@ void exh_box_safe(void)
     static uint8_t once;
     if (live && pc104_par.provoke == PC104_PROVOKE_TWICE && !once) {
         once = 1;
-        __asm__ volatile("int $2"); /* does not come back: whoever takes it has to make safe */
+        __asm__ volatile("int $2"); /* does not return: its handler must make the outputs safe */
     }
     if (live) { pc104_say("outputs safe\n"); }
     live = 0;

@@ -9,7 +9,7 @@
 
 #define MB_LOADED      0x2BADB002u /* a multiboot loader was here */
 #define MB_HAS_CMDLINE (1u << 2)
-#define CMDLINE_MAX    1024u /* whoever wrote it: look no further */
+#define CMDLINE_MAX    1024u /* limits the search, whatever the loader wrote */
 
 /* Head of the structure that the loader left; the rest does not concern us. */
 struct multiboot_info {

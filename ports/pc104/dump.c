@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The black box of a scene that has one (SCENE_BOX_B in its scene.mk), and its way out after a
- * fault: behind the outputs, DUMP_TICK_B bytes a tick at most into a queue, from there as fast as
- * the line takes them while the processor waits for the next tick. */
+/* The black box of a scene that has one (SCENE_BOX_B in its scene.mk), and its output after a
+ * fault. After the outputs of a tick, at most DUMP_TICK_B bytes enter a queue. While the processor
+ * waits for the next tick, they leave it as fast as the line allows. */
 #include "pc104.h"
 
 #include "exhand/run/blackbox.h"

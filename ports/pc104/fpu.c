@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The FPU, for a scene that reckons in floats (SCENE_FLOAT in its scene.mk). It is set up once and
- * never saved: no interrupt comes near it, as all but that scene's controller is compiled for
- * general registers alone. */
+/* The FPU, for a scene that uses floats (SCENE_FLOAT in its scene.mk). It is set up once and never
+ * saved. No interrupt uses it, since all code but that scene's controller is compiled for general
+ * registers only. */
 #include "pc104.h"
 
 #define CR0_MP         (1u << 1) /* WAIT heeds TS, which stays clear */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The longest time for which the processor was not ours: a counter is read over and over, as
- * Linux's hwlat does. What firmware takes (SMI), another thread of the core or an emulator's host
- * shows as a gap. Waking from sleep (C-states) does not: tick_wake tells that (load.c). Portable:
+/* Measures the longest time for which the processor was not available: reads a counter repeatedly,
+ * as Linux's hwlat does. Firmware (SMI), another thread of the core or an emulator's host appear as
+ * a gap. Waking from sleep (C-states) does not; tick_wake shows that (load.c). Portable:
  * test/closed/sim/pc104_gap_test.c. */
 #include "pc104.h"
 

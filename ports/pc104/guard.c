@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Memory: all of it at its own address; nothing at page 0 and below the stack, code and constants
- * read-only. What runs over the end of the stack meets the guard page, where the processor
- * cannot even push the fault: that makes a double fault, which has a task and a stack of its own.
- */
+/* Memory: identity mapping without page 0 and the page below the stack; code and constants are
+ * read-only. A stack overflow reaches the guard page, where the processor cannot push the fault.
+ * That causes a double fault, which has its own task and stack. */
 #include "pc104.h"
 
 #include "exhand/error.h"

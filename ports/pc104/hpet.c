@@ -30,7 +30,7 @@ static void put(unsigned reg, uint32_t value) { *(volatile uint32_t *)(BASE + re
 
 uint32_t pc104_hpet_now(void) { return get(COUNTER); }
 
-/* Stands still, or an empty bus: must be found before currents flow. */
+/* Detects a stopped counter or an empty bus, before currents flow. */
 static int counts(void)
 {
     const uint32_t first = get(COUNTER);
@@ -79,8 +79,8 @@ int pc104_hpet_open(struct pc104_timer *t, const char **why)
     return agrees(t->Hz) ? 0 : -EXH_E_IO;
 }
 
-/* The first write sets the accumulator, the second the period: on every chip set, and whatever
- * the counter stands at. It stops for these writes, which no tick has begun to count. */
+/* The first write sets the accumulator, the second the period, on every chip set and at any count.
+ * The counter stops for these writes, which precede the first tick. */
 void pc104_hpet_start(uint32_t first, uint32_t period)
 {
     put(CONF, 0);

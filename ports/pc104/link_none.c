@@ -19,7 +19,7 @@ void pc104_link_dry(void) {}
 
 void pc104_link_report(void) {}
 
-/* Nobody is there. Each port has these of its own: it is copied and read without the others. */
+/* There is no peer. Each port has its own copy, so that it can be read and copied alone. */
 int exh_board_link_send(const void *buf, size_t len_B)
 {
     (void)buf;

@@ -18,7 +18,7 @@
 #define LEAK_S       10u
 #define NS_PER_S     UINT64_C(1000000000)
 
-/* All in counts of the timer until somebody asks. */
+/* All values are counts of the timer until they are printed. */
 static struct {
     uint32_t began, last, least, most, ticks, wake;
     uint32_t skipped; /* ticks, between the one that it slept for and this one */
@@ -92,7 +92,7 @@ const int32_t *pc104_load_signals(void)
 
 /* --- during the run --- */
 
-/* At a low rate so many periods are a long time for a current that nobody looks after. */
+/* At a low rate this many periods would leave a current without supervision for long. */
 static uint32_t hang_ticks(void)
 {
     const uint32_t asked = (uint32_t)pc104_par.hang_ticks;
@@ -167,8 +167,8 @@ void pc104_load_report(void)
 
 /* --- before it --- */
 
-/* The longest of a round of ticks; the least of the rounds, so that what disturbs one of them
- * (an emulator's host, firmware) is left to the overload policy, and what costs every one is in. */
+/* The minimum over rounds of the longest tick. A disturbance of one round (an emulator's host,
+ * firmware) is left to the overload policy; a cost of every round is included. */
 static uint32_t least_of_rounds(void (*once)(uint32_t tick), uint32_t ticks, uint32_t apart)
 {
     uint32_t least = UINT32_MAX, last = pc104_timer_now();
@@ -236,7 +236,7 @@ void pc104_load_scene(const struct exh_scene *sc)
     const struct exh_scene_board board = {{1, rate_Hz}, exh_board_info.enc_bits};
     scene = sc;
     if (pc104_par.budget_us || rate_Hz < 1 || rate_Hz > 20000 || sc->setup(board) < 0) { return; }
-    scene_counts = least_of_rounds(dry_tick, DRY_TICKS, 0); /* exh_loop() sets it up anew */
+    scene_counts = least_of_rounds(dry_tick, DRY_TICKS, 0); /* exh_loop() sets it up again */
     if (scene->link) { scene->link->in->packets = scene->link->out->packets = 0; }
 }
 
@@ -259,8 +259,8 @@ static void say_us(uint32_t counts)
     pc104_say(" us");
 }
 
-/* Ticks of the cards are a period apart, as those of the loop, 0.5 ms at most: what they convert
- * meanwhile is then as far as it will be. */
+/* Ticks of the cards are one period apart, as in the loop, at most 0.5 ms. So conversions have
+ * progressed as far. */
 static uint32_t apart(void)
 {
     const uint32_t period = pc104_timer_counts(), most = pc104_timer_Hz() / 2000;

@@ -42,7 +42,7 @@ static void before(uint32_t tick, struct exh_scene_in *in)
     pc104_scene_before(tick, in);
 }
 
-/* A force over current that nobody believes. */
+/* Reports an implausible ratio of force and current. */
 static void say_far(const struct exh_scene_calib *k)
 {
     say_version(", finger ", k->finger);
@@ -94,7 +94,7 @@ int main(void)
         pc104_load_stop();
         if (err < 0) { say_refused(sc->calib); }
     }
-    pc104_restart_end(); /* also where a card failed: that was told, and is no crash */
+    pc104_restart_end(); /* also after a card failure, which was reported and is no crash */
     pc104_scene_end();
     exh_board_halt(err < 0 ? exh_error_text(err) : "done");
     return 0;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Machine checks: memory, a cache or a bus met an error that it cannot mend. Where CR4.MCE is clear
- * the processor shuts down at one: the machine resets or hangs, and the last codes stand. Where it
- * is set exception 18 comes, which ends as every other does: outputs safe first.
+/* Machine checks: memory, a cache or a bus has an error that it cannot correct. If CR4.MCE is
+ * clear, the processor shuts down: the machine resets or hangs, and the last D/A codes stay. If it
+ * is set, exception 18 occurs and ends as every other: outputs safe first. A bank reports what its
+ * control register enables. They are set up as in Intel's Software Developer's Manual, volume 3,
+ * "Machine-Check Initialization".
  *
- * A bank reports what its control register enables; these are set up as Intel's manual says
- * (Software Developer's Manual, volume 3, "Machine-Check Initialization"). Intel's
- * processors give it to each core and thread, and one that was never started shuts the machine down
- * all the same: so docs/BRINGUP.md wants one of them alone. */
+ * Intel's processors deliver it to each core and thread, and one that was never started shuts the
+ * machine down anyway. So docs/BRINGUP.md requires a single one. */
 #include "pc104.h"
 
 #define CPUID_MCE    (1u << 7)

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* The scene's registers on COM2, by the library's slave: modbus=com2,ADDRESS,BAUD[,write][,remote].
- * Polled once a tick behind the outputs, a few characters at a time. Without it COM2 is untouched.
- *
- * The FIFO of 16 must not overflow between two ticks, nor the answer's run dry, for a gap would end
- * its frame: a baud rate of which a tick has more than 14 characters is refused. How full the
- * transmitter is stands nowhere: it is counted, a little too full. */
+ * Polled once per tick after the outputs, a few characters at a time. Without the option COM2 is
+ * not touched. The FIFO of 16 must not overflow between two ticks, nor run empty during a response,
+ * since a gap would end the frame. So a baud rate with more than 14 characters per tick is refused.
+ * The hardware hides the transmitter's fill level; software counts it, slightly too high. */
 #include "pc104.h"
 
 #include "box.h"
@@ -63,7 +62,7 @@ static void refuse(const char *value, const char *why)
     pc104_halt(PC104_EXIT_OPTION, "option refused: nothing was started");
 }
 
-/* The text up to the next comma into word; what is behind it, or NULL. */
+/* Copies the text up to the next comma to word; returns the rest, or NULL. */
 static const char *word_of(const char *text, char word[12])
 {
     unsigned n = 0;
@@ -247,7 +246,8 @@ static void carry_out(void)
     exh_regs_complete(&regs, 0);
 }
 
-/* Nothing is taken meanwhile: who asked waits for this, and what follows it waits in the FIFO. */
+/* Receives nothing meanwhile: the client waits for this answer, and later bytes wait in the
+ * FIFO. */
 static void send(void)
 {
     const uint8_t status = pc104_in8(COM2(UART_STATUS));
@@ -321,8 +321,8 @@ static void dry_answer(const struct exh_modbus_rtu *asked)
     (void)exh_modbus_rtu_answer(&twin, &regs, answer, sizeof answer);
 }
 
-/* Function 23 reads as much as any, twice, and writes nearly as much as 16: numbers here, in the
- * middle of what may be, so that each is made a raw value anew. */
+/* Function 23 reads as much as any, twice, and writes nearly as much as 16. Its values are
+ * mid-range and new. */
 static void prepare(void)
 {
     static const uint8_t coil[] = {1, 5, 0, EXH_COIL_APPLY, 0xFF, 0};
@@ -361,9 +361,8 @@ static void dry_apply(void)
     exh_params_rollback(params, params->staged, pending);
 }
 
-/* A tick has no more than one of these: a request is answered when no character has come in that
- * tick, none is heard before the answer is out, and of one without an answer the silence behind the
- * next is a tick away. */
+/* A tick does at most one of these. A request is answered in a tick without a character, and none
+ * is received before the answer is sent. Without an answer, the next silence is a tick away. */
 int pc104_modbus_dry(unsigned part)
 {
     const struct exh_regs before = regs;

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Calibrations of fingers as multiboot modules, beside the image: a loader puts files into memory
- * that it was told of (GRUB: module; QEMU: -initrd). They are copied, so that nothing else has to
- * stay where it is. */
+/* Calibrations of fingers as multiboot modules. The loader puts files into memory beside the image
+ * (GRUB: module; QEMU: -initrd). They are copied, so that other memory may be reused. */
 #include "pc104.h"
 
 #include "exhand/calibrate.h"

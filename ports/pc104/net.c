@@ -75,7 +75,7 @@ static uint16_t folded(uint32_t sum)
     return (uint16_t)((sum & 0xFFFFu) + (sum >> 16));
 }
 
-/* Over the addresses, protocol and length, too: of a frame in whose headers they stand. */
+/* Includes addresses, protocol and length, for a frame with complete headers. */
 static uint32_t udp_sum(const uint8_t *frame, size_t udp_len_B)
 {
     return UDP + (uint32_t)udp_len_B + sum_of(frame + I_FROM, 8 + udp_len_B);
@@ -264,7 +264,7 @@ size_t net_datagram(struct net *n, uint8_t *to, uint16_t port, const void *paylo
     put16(to + U_SUM, 0);
     memcpy(to + NET_HEAD_B, payload, len_B);
     sum = folded(udp_sum(to, udp));
-    put16(to + U_SUM, sum == 0xFFFF ? 0xFFFFu : ~(unsigned)sum); /* 0 would say: there is none */
+    put16(to + U_SUM, sum == 0xFFFF ? 0xFFFFu : ~(unsigned)sum); /* 0 would mean "no checksum" */
     return NET_HEAD_B + len_B;
 }
 

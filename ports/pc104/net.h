@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Ethernet, ARP, IPv4 and UDP: as much as one link between two machines needs, and no more. One
- * peer on the same wire, no routes, no fragments, no options, no allocation, no clock of its own.
- * Portable: knows no card. What it is given may be anything; what is not wanted is dropped and
- * counted by its cause. */
+/* Ethernet, ARP, IPv4 and UDP, as much as one link between two machines needs. One peer on the same
+ * wire, no routes, fragments, options, allocation or clock. Portable and independent of the card.
+ * Any input is allowed; unwanted packets are dropped and counted by cause. */
 #ifndef PC104_NET_H
 #define PC104_NET_H
 
@@ -27,12 +26,12 @@ struct net_cfg {
 enum net_drop {
     NET_SHORT,        /* no room for a header */
     NET_LONG,         /* longer than a frame can be */
-    NET_OTHERS,       /* to somebody else's MAC, or to all and not ARP */
+    NET_OTHERS,       /* to another MAC, or a broadcast that is not ARP */
     NET_TYPE,         /* neither IPv4 nor ARP */
     NET_ARP,          /* not one for Ethernet and IPv4, or its sender cannot be */
-    NET_ARP_OTHERS,   /* asks for somebody else */
-    NET_ARP_CONFLICT, /* somebody else has our address */
-    NET_ARP_UNASKED,  /* an answer that nobody asked for */
+    NET_ARP_OTHERS,   /* asks for another host */
+    NET_ARP_CONFLICT, /* another host has our address */
+    NET_ARP_UNASKED,  /* an answer without a request */
     NET_IP,           /* version, header length or length */
     NET_IP_OPTIONS,
     NET_IP_SUM,
@@ -64,7 +63,7 @@ struct net {
     uint8_t begun;
     uint16_t asks, id;
     uint32_t asked_us, heard_us;  /* when */
-    uint8_t asker_mac[NET_MAC_B]; /* whom NET_ANSWER is for */
+    uint8_t asker_mac[NET_MAC_B]; /* destination of NET_ANSWER */
     uint32_t asker_ip;
     struct net_counts counts;
 };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Rings of descriptors in our memory, legacy format: who owns a descriptor stands in it, so that a
- * tick reads no register of the card (a microsecond each), and writes one for all that came and one
- * for each frame that goes. */
+/* Rings of descriptors in memory, legacy format. The descriptor states its owner, so a tick reads
+ * no register of the card (a microsecond each). It writes one for all received frames and one per
+ * sent frame. */
 #include "nic.h"
 
 #include "pc104.h"
@@ -55,7 +55,7 @@ enum {
 #define CTRL_RESET       (1u << 26)
 #define STATUS_UP        (1u << 1)
 #define STATUS_MASTER    (1u << 19)
-#define EECD_READ        (1u << 9) /* what stands in its memory has been read */
+#define EECD_READ        (1u << 9) /* its memory has been read */
 #define MDIO_OURS        (1u << 5)
 #define RCTL_ON          (1u << 1)
 #define RCTL_BROADCAST   (1u << 15)
@@ -79,7 +79,7 @@ struct in {
 };
 #define IN_DONE 1u
 #define IN_END  2u
-#define IN_BAD  0x97u /* on the wire; sums of what is in it are ours to judge */
+#define IN_BAD  0x97u /* on the wire; our code checks the sums inside */
 
 struct out {
     uint32_t at, at_high;
@@ -88,7 +88,7 @@ struct out {
     uint16_t special;
 };
 #define OUT_DONE 1u
-#define OUT_SEND 0xBu /* the end of a packet; put a CRC behind it; say when done */
+#define OUT_SEND 0xBu /* end of packet; append a CRC; report when done */
 
 static volatile struct in in_ring[IN] __attribute__((aligned(128)));
 static volatile struct out out_ring[OUT] __attribute__((aligned(128)));
@@ -151,7 +151,7 @@ static int fails(const char *why)
     return -EXH_E_IO;
 }
 
-/* Other network cards are named: somebody may wonder. */
+/* Prints the names of other network cards for diagnosis. */
 static int find(struct pc104_pci *at)
 {
     struct pc104_pci none = {0, 0, 0, 0};
@@ -216,7 +216,7 @@ static int reset(void)
     if (!becomes(STATUS, STATUS_MASTER, 0, 100000)) { return fails("does not let go of the bus"); }
     put(EXTCNF_CTRL, get(EXTCNF_CTRL) | MDIO_OURS);
     (void)becomes(
-        EXTCNF_CTRL, MDIO_OURS, MDIO_OURS, 10000); /* firmware of its own, if it has any */
+        EXTCNF_CTRL, MDIO_OURS, MDIO_OURS, 10000); /* firmware of its own, if there is any */
     put(CTRL, get(CTRL) | CTRL_RESET);
     pause_us(1000);
     if (!becomes(CTRL, CTRL_RESET, 0, 10000)) { return fails("does not come back from its reset"); }
@@ -366,7 +366,7 @@ void pc104_nic_counts(struct pc104_nic_counts *c)
         counts.gone = status == UINT32_MAX;
         counts.up = !counts.gone && (status & STATUS_UP);
         if (!counts.gone) {
-            counts.missed += get(MPC); /* both begin anew when read */
+            counts.missed += get(MPC); /* both clear when read */
             counts.crc += get(CRCERRS);
         }
     }

@@ -14,7 +14,7 @@ int pc104_nic_open(uint8_t mac[6]);
  * damaged or in pieces, which is counted. After either, *frame is ours until pc104_nic_done(). */
 int pc104_nic_next(const uint8_t **frame);
 void pc104_nic_done(void);
-void pc104_nic_back(void); /* after some of them: the card may fill them anew */
+void pc104_nic_back(void); /* after some frames: the card may refill them */
 
 /* Where the next frame to be sent is to be put, 1514 bytes; NULL: all are under way. */
 uint8_t *pc104_nic_room(void);
@@ -22,7 +22,7 @@ void pc104_nic_send(size_t len_B);
 
 struct pc104_nic_counts {
     uint32_t sent, damaged; /* damaged: not whole, or with errors */
-    uint32_t missed;        /* by the card: nobody had room for them */
+    uint32_t missed;        /* dropped by the card for lack of room */
     uint32_t crc;           /* by the card: damaged on the wire */
     uint8_t gone, up;       /* the card does not answer any more; the cable is up */
 };

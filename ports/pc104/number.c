@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Decimal text to raw values and back, in integers: an image and a host program that are told
- * the same text take the same bits. */
+/* Decimal text to raw values and back, in integers. An image and a host program get the same bits
+ * from the same text. */
 #include "pc104.h"
 
 #include "exhand/error.h"
@@ -40,7 +40,7 @@ static int parse(const char *text, uint64_t *digits, int *exponent)
     return *text == '\0' ? 0 : -EXH_E_UNKNOWN;
 }
 
-/* digits * 10^exponent * 2^frac, rounded half up; 2^62 stands for anything larger. */
+/* digits * 10^exponent * 2^frac, rounded half up; larger values give 2^62. */
 static uint64_t scaled(uint64_t digits, int exponent, unsigned frac)
 {
     const uint64_t too_large = UINT64_C(1) << 62;

@@ -34,7 +34,7 @@ void pc104_options(const struct exh_scene *sc);
  * at most 18 digits), -EXH_E_RANGE (no int32). */
 int pc104_number(const char *text, unsigned frac, int32_t *raw);
 
-/* --- option.c: what may stand on the command line; halts on what may not --- */
+/* --- option.c: the command line; halts on an invalid option --- */
 /* for commissioning: shows on the real box that a failure ends safe */
 enum pc104_provoke {
     PC104_PROVOKE_NONE,
@@ -134,7 +134,7 @@ int pc104_log_take(const void *rec, size_t len_B); /* as exh_board_log() */
 /* --- dump.c: the black box and its way out; dump_none.c: the scene has none --- */
 int pc104_dump_open(void); /* 1: it was asked for; halts where it cannot be */
 void pc104_dump_start(const struct exh_scene *sc, struct exh_scene_board board);
-void pc104_dump_dry(void); /* the next record of a dry tick has a keyframe behind it */
+void pc104_dump_dry(void); /* the next record of a dry tick is followed by a keyframe */
 void pc104_dump_before(uint32_t tick, struct exh_scene_in *in);
 void pc104_dump_after(
     uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out);
@@ -155,7 +155,7 @@ void pc104_hpet_start(uint32_t first, uint32_t counts);
 void pc104_hpet_stop(void);
 int pc104_pit_open(struct pc104_timer *t, const char **why);
 void pc104_pit_load(uint32_t divisor); /* 1 .. 65536: counts down from it, an interrupt at each 0 */
-uint32_t pc104_pit_count(void);        /* as it stands, divisor .. 1 */
+uint32_t pc104_pit_count(void);        /* present count, divisor .. 1 */
 #define PC104_PIT_HZ 1193182u
 
 /* --- second.c: the local APIC's timer, which only watches the first --- */
@@ -211,7 +211,7 @@ void pc104_load_report(void);
 extern const struct exh_signal_table pc104_load_table;
 const int32_t *pc104_load_signals(void); /* values of that table, as they are now */
 
-/* --- guard.c: paging with a guard below the stack; a stack of its own for double faults --- */
+/* --- guard.c: paging with a guard page below the stack; a separate stack for double faults --- */
 void pc104_guard_open(void);
 /* The 4 MiB around it are a card's or the mark's (restart.c), not to be cached: 0, or -EXH_E_RANGE
  * where our memory is. */
@@ -219,7 +219,7 @@ int pc104_guard_device(uint32_t address);
 int pc104_guard_hit(uint32_t address);
 uint32_t pc104_guard_eip(void); /* where the double fault came from */
 
-/* --- link.c: the network card, what comes and goes over it; link_none.c: there is none --- */
+/* --- link.c: the network card and its traffic; link_none.c: no card --- */
 int pc104_link_option(
     const char *name, const char *value); /* 0: not one of its; halts on bad ones */
 void pc104_link_open(
@@ -266,7 +266,7 @@ void pc104_hung(uint32_t eip);
 #define PC104_VECTOR_SPURIOUS 63u
 
 /* --- halt.c --- */
-/* what emulators are told at the end: status 2 * value + 1 */
+/* exit codes for emulators: status 2 * value + 1 */
 enum pc104_exit {
     PC104_EXIT_DONE = 0x10,
     PC104_EXIT_FAILED = 0x11, /* none may look like a failure of the emulator itself, 1 */
@@ -277,7 +277,7 @@ enum pc104_exit {
     PC104_EXIT_OVERLOAD = 0x16,
     PC104_EXIT_TIMER = 0x17
 };
-extern uint8_t pc104_exit_code; /* told at the end of a run that did not end in order; 0: FAILED */
+extern uint8_t pc104_exit_code; /* exit code of a run that did not end in order; 0: FAILED */
 void pc104_halt(uint8_t code, const char *why);
 
 /* --- board.c --- */
@@ -291,7 +291,7 @@ extern const uint32_t pc104_boot_magic;    /* what the loader left in EAX */
 extern const uint32_t pc104_boot_info;     /* and in EBX: physical address */
 extern volatile uint32_t pc104_ticks;      /* interrupts of the timer */
 extern volatile uint32_t pc104_tick_began; /* their number when the tick began */
-extern volatile uint32_t pc104_hang_ticks; /* 0: nobody looks */
-extern volatile uint32_t pc104_spurious;   /* interrupts nobody asked for */
+extern volatile uint32_t pc104_hang_ticks; /* 0: no check */
+extern volatile uint32_t pc104_spurious;   /* spurious interrupts */
 
 #endif

@@ -8,7 +8,7 @@ enum { STATUS_HAS_LIST = 1u << 20, LIST = 0x34, HEADER = 0x0C };
 #define ENABLE       0x80000000u
 #define NOBODY       0xFFFFFFFFu
 #define SEVERAL      (1u << 23) /* functions, in HEADER */
-#define CAPABILITIES 48u        /* more do not fit: whoever has more runs in a circle */
+#define CAPABILITIES 48u        /* the list has no room for more: a longer one is a loop */
 
 static uint32_t address(struct pc104_pci at, unsigned reg)
 {

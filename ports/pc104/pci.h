@@ -24,7 +24,7 @@ int pc104_pci_there(void); /* 1: the ports answer */
 int pc104_pci_next(struct pc104_pci *at);
 uint32_t pc104_pci_get(struct pc104_pci at, unsigned reg);
 void pc104_pci_put(struct pc104_pci at, unsigned reg, uint32_t value);
-/* Where the capability of that number stands; 0: there is none. */
+/* The offset of the capability with this number; 0: none. */
 unsigned pc104_pci_capability(struct pc104_pci at, unsigned number);
 
 #endif

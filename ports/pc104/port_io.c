@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the drivers of the cards stand on: the instructions. (Their clock is in timer.c.) */
+/* Port instructions for the drivers of the cards. (Their clock is in timer.c.) */
 #include "io.h"
 
 #include "cards/io.h"

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* Did the run before this boot end? A mark in memory is set while ticks run and taken away when
- * they end in order; a reset by the watchdog, or by whoever found the box crashed, leaves it.
- * Memory outlives a reset and no power-off; some firmware clears it, and then this boot looks like
- * the first of all: what is certain is the watchdog's own contact (docs/CARDS.md).
+/* Detects whether the run before this boot ended in order. A mark in memory is set while ticks run
+ * and removed at an orderly end. A reset by the watchdog or a person after a crash leaves it.
+ * Memory survives a reset, but no power-off. Some firmware clears it, and then this boot looks like
+ * the first. Only the watchdog's contact is certain (docs/CARDS.md).
  *
- * The mark's page is not cached. A reset drops what caches have not written back, and in a cache as
- * large as the image's data nothing pushes the mark out: it would be lost, or what took it away. */
+ * The page of the mark is not cached, since a reset drops cache lines that are not written back. In
+ * a large cache nothing would push the mark out, so it or its removal would be lost. */
 #include "pc104.h"
 
-/* 14 MiB: above the image and what was loaded behind it, below what firmware and GRUB take, which
- * is memory's upper end. (SeaBIOS clears the lowest 576 KiB at each boot.) */
+/* 14 MiB: above the image and loaded modules, below the memory that firmware and GRUB use at the
+ * upper end. (SeaBIOS clears the lowest 576 KiB at each boot.) */
 #define MARK_AT   0x00E00000u
 #define BELOW_KIB 1024u /* not in mem_upper */
 #define MB_LOADED 0x2BADB002u

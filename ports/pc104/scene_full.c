@@ -81,9 +81,9 @@ static void apply_dry(struct exh_params *p)
     p->locked = locked;
 }
 
-/* Records of a dry tick, which come to nothing but time; every 16th with a keyframe: one for each
- * thing that Modbus may do. What it has staged is applied in the next tick, in which there is no
- * request; what a link has staged, in any. Nobody else stages while the loop runs. */
+/* Records of a dry tick, which only cost time. Every 16th has a keyframe, one for each function of
+ * Modbus. Values that Modbus stages are applied in the next tick, which has no request; values from
+ * a link in any. Nothing else stages while the loop runs. */
 void pc104_scene_dry(const struct exh_scene *sc, uint32_t tick, const struct exh_scene_in *in,
     const struct exh_drive_out *out)
 {
@@ -139,8 +139,8 @@ void pc104_log_flush(void)
     pc104_dump_pause();
 }
 
-/* The step at which the last arming was refused. Where no tick ran it was that of the dry ones, and
- * whatever kept the loop from beginning has been told. */
+/* The step at which the last arming was refused. Without a real tick it belongs to the dry ticks,
+ * and the cause of the failed start has been reported. */
 static void say_refusal(const struct exh_safety *s)
 {
     for (unsigned k = 0; begun && k < EXH_ARMS; k++) {

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Ticks from the HPET, or from the 8254 where there is none or where it is asked for.
- *
- * With the HPET a tick is due when the main counter has passed its instant; the interrupt only
- * wakes the processor. So a missed tick is seen even if its interrupt was lost. The 8254 has no
- * such counter: there the interrupts are the ticks. */
+/* Ticks from the HPET, or from the 8254 if there is none or an option asks for it. With the HPET a
+ * tick is due when the main counter has passed its time; the interrupt only wakes the processor. So
+ * a missed tick is detected even if its interrupt was lost. The 8254 has no such counter; its
+ * interrupts are the ticks. */
 #include "pc104.h"
 
 #include "cards/io.h"
@@ -50,7 +49,7 @@ int pc104_timer_choose(int32_t wanted)
         is_hpet = err == 0;
     }
     if (err < 0 && wanted != PC104_TIMER_HPET) {
-        if (wanted == PC104_TIMER_PIT) { pc104_hpet_stop(); } /* whoever may have put it there */
+        if (wanted == PC104_TIMER_PIT) { pc104_hpet_stop(); } /* set by firmware or a loader */
         err = open_one(pc104_pit_open, "8254");
         is_hpet = 0;
     }
@@ -200,8 +199,8 @@ static uint32_t due(void)
     return n;
 }
 
-/* Ticks that are seen by the counter alone, since the processor did not sleep: then nobody would
- * end one that hangs. */
+/* 1 if only the counter detects ticks, since the processor did not sleep. Then nothing would end a
+ * tick that hangs. */
 static int silent(void)
 {
     static uint32_t in_a_row, interrupts;
@@ -250,7 +249,8 @@ uint32_t pc104_timer_counts(void) { return counts; }
 
 uint32_t pc104_timer_Hz(void) { return timer.Hz; }
 
-/* The 8254 may have begun a period whose interrupt is yet to come: time stands until then. */
+/* The 8254 may have started a period whose interrupt is pending; time does not advance until
+ * then. */
 uint32_t pc104_timer_now(void)
 {
     static uint32_t last_ticks, last_count = UINT32_MAX;
@@ -266,7 +266,7 @@ uint32_t pc104_timer_now(void)
     return ticks * counts + (counts - count);
 }
 
-/* For the drivers' time-outs: free-running; stands at 0 until there is a timer. */
+/* For the drivers' time-outs: free-running; 0 until there is a timer. */
 uint32_t exh_io_time_us(void)
 {
     uint32_t now;

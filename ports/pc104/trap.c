@@ -39,7 +39,7 @@ static void open_pic(void)
     pc104_out8(PIC2, 0x11);
     pc104_out8(PIC1_MASK, IRQ_BASE);
     pc104_out8(PIC2_MASK, IRQ_BASE + 8);
-    pc104_out8(PIC1_MASK, 1u << 2); /* the second one hangs on line 2 */
+    pc104_out8(PIC1_MASK, 1u << 2); /* the second one is connected to line 2 */
     pc104_out8(PIC2_MASK, 2);
     pc104_out8(PIC1_MASK, 1); /* 8086 mode, explicit end of interrupt */
     pc104_out8(PIC2_MASK, 1);
@@ -73,7 +73,7 @@ void pc104_trap_open(void)
 static void stop_first(void)
 {
     exh_board_safe();
-    pc104_log_flush(); /* the last records are the ones that tell why */
+    pc104_log_flush(); /* the last records show the cause */
 }
 
 static const char *name_of(uint32_t vector)

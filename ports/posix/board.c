@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The eleven functions over a simulated device, single-threaded, in virtual time:
- * exh_board_wait() advances the plant to the next tick, hitting every event in
- * between exactly (tick, D/A output, servo sample, what the experimenter does). */
+/* The eleven functions over a simulated device, single-threaded, in virtual time. exh_board_wait()
+ * advances the plant to the next tick and stops exactly at every event between: tick, D/A output,
+ * servo sample, actions of the experimenter. */
 #include "posix.h"
 
 #include "cards.h"
@@ -478,7 +478,7 @@ static int scan(void)
     return sim.cfg.cards.how ? cards_read_glove(sim.frame) : 0;
 }
 
-/* On a line it was on its way for whole ticks, and before the first there is none. */
+/* On a serial line it travels for whole ticks; before the first frame there is none. */
 static uint64_t frame_age(void)
 {
     const uint64_t age = sim.tick - sim.frame_tick;

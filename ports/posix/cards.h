@@ -37,7 +37,7 @@ int cards_read_drive(struct exh_drive_in *in);
 /* 0 or -EXH_E_IO; seen: what the device sees of it. */
 int cards_write_drive(const struct exh_drive_out *out, struct exh_drive_out *seen);
 
-/* code: what stands at the glove's connector, and then what the box read of it. */
+/* code: voltages at the glove's connector on entry, the codes read on return. */
 int cards_read_glove(int16_t code[EXH_GLOVE_SENSORS]);
 
 /* seen: what the device sees then. */

@@ -1,17 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* CyberGlove: what a stock glove of 22 sensors sends on its serial line, byte by byte, into frames.
+/* CyberGlove: decodes the serial bytes of a stock glove with 22 sensors into frames. A frame is 'S'
+ * (streamed) or 'G' (requested), 22 samples 1 .. 255, optionally a status byte, optionally 'e' and
+ * a letter, and 0. It has no checksum. So only its form counts, from the 0 before it to its own. A
+ * frame with a zero sample or another length is discarded, together with a frame that runs into it.
+ * A header among samples starts nothing.
  *
- * A frame: 'S' (streamed) or 'G' (asked for), 22 samples 1 .. 255, perhaps a status byte, perhaps
- * 'e' and a letter, 0. It has no checksum, so one counts as whole only by its form, from the 0
- * before it to its own: what has a zero sample or another length is discarded, and a frame that
- * another runs into goes with it. A header among samples begins nothing. A frame with status that
- * lost a byte looks like one without, its samples shifted. So where the unit has answered that it
- * sends the status, nothing else is taken; where it has not, frames of the form that is not in use
- * are refused until CYBERGLOVE_SURE of them came in a row, the first ones too. What cannot be told:
- * bytes lost from the middle of one frame to the same place of another.
- *
- * No IO, no allocation; any bytes, each in bounded time.
- */
+ * A frame with status that lost a byte looks like one without, with shifted samples. So if the unit
+ * has confirmed that it sends the status, only such frames are accepted. Otherwise frames of the
+ * form not in use are refused until CYBERGLOVE_SURE of them arrive in a row, also at the start. One
+ * error is undetectable: bytes lost from the middle of one frame to the same place of another. No
+ * IO, no allocation; any bytes, each in bounded time. */
 #ifndef CYBERGLOVE_H
 #define CYBERGLOVE_H
 
@@ -52,9 +50,9 @@ struct cyberglove {
 /* The next byte: 1, a whole frame ended with it; 0. */
 int cyberglove_take(struct cyberglove *g, uint8_t byte);
 
-/* A sample 1 .. 255 as the code that the paper's card has where its bridge stands: 1 is -9 V, 255
- * is 9 V, -29491 .. 29491; 232.2 codes a step, rounded to the nearest. So one calibration's units,
- * parameters and limits are those of both. */
+/* A sample 1 .. 255 as a code of the paper's card: 1 is -9 V, 255 is 9 V, -29491 .. 29491. A step
+ * is 232.2 codes, rounded to nearest. So units, parameters and limits of a calibration are equal
+ * for both. */
 int16_t cyberglove_raw(uint8_t sample);
 
 /* "zero sample", ...; never NULL. */

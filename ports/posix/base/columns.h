@@ -24,9 +24,9 @@ struct columns {
 int columns_choose(struct columns *c, const struct exh_scene *sc, const uint8_t *params,
     size_t len_B, int all, int finger, const char *path);
 
-/* NAME_UNIT, and _FINGER or _INDEX behind it where there are several; a comma before each. */
+/* NAME_UNIT, with _FINGER or _INDEX for several instances; a comma before each. */
 void columns_names(FILE *to, const struct columns *c);
-/* A comma and nothing where there is none: none.h. */
+/* Only a comma for a missing value (none.h). */
 void columns_values(FILE *to, const struct columns *c, const int32_t *v);
 
 #endif

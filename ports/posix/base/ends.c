@@ -41,7 +41,7 @@ void ends_begin(void)
     (void)signal(SIGXFSZ, SIG_IGN);
     (void)sigemptyset(&set);
     for (size_t i = 0; i < ENDS; i++) { (void)sigaddset(&set, ends[i]); }
-    (void)sigprocmask(SIG_UNBLOCK, &set, NULL); /* whoever started us may have blocked them */
+    (void)sigprocmask(SIG_UNBLOCK, &set, NULL); /* a parent process may have blocked them */
 }
 
 void ends_note(int sig) { noted = sig; }

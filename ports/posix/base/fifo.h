@@ -5,8 +5,8 @@
 
 #include <stdio.h>
 
-/* As open(), for reading or for writing. A FIFO's other end that is not there within a second, or
- * gives nothing, is told once. A signal that a handler takes ends the wait: EINTR. */
+/* As open(), for reading or writing. Reports once if a FIFO has no other end within a second, or
+ * delivers nothing. A signal with a handler ends the wait: EINTR. */
 int fifo_open(const char *path, int how);
 
 /* As fopen(), to read. */

@@ -39,7 +39,7 @@ int jobs_cores(void)
  * it never misses one and never signals a stranger with a reused number. */
 static volatile sig_atomic_t interrupted;
 static int first_death;                /* a child's status; 0: none died */
-static int no_child;                   /* why the last one was not to be had; an errno */
+static int no_child;                   /* errno of the last failed fork */
 static pid_t child[JOBS_PARALLEL_MAX]; /* 0: free */
 static void (*interrupt_work)(void);
 
@@ -118,7 +118,7 @@ static int launch(const struct jobs *j, const struct handlers *h, int i, int to)
     return pid > 0;
 }
 
-/* Waits for any child: 1 it ended well, 0 it did not, -1 there is none. */
+/* Waits for any child: 1 success, 0 failure, -1 no child. */
 static int reap(const struct handlers *h)
 {
     siginfo_t info;

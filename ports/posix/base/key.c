@@ -19,7 +19,7 @@ static int digit(char c)
     return at ? (int)(at - digits) % 16 : -1;
 }
 
-/* A line's end may stand behind the digits, nothing else. */
+/* Only a line end may follow the digits. */
 static int take(const char *text, size_t n, uint8_t byte[EXH_MAC_KEY_B])
 {
     while (n > DIGITS && (text[n - 1] == '\n' || text[n - 1] == '\r')) { n--; }

@@ -6,8 +6,8 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* The next line without its end, LF, CR or CR LF; a NUL in it becomes '?', so that nothing
- * behind it is lost. 1; 0 after the last; -1 if it does not fit. */
+/* The next line without its end: LF, CR or CR LF. A NUL becomes '?', so that the rest is not lost.
+ * Returns 1, 0 after the last line, -1 if it does not fit. */
 int lines_next(FILE *f, char *to, size_t cap_B);
 
 /* As a terminal shows it and does not obey it: control characters, and bytes that are no UTF-8,

@@ -73,7 +73,7 @@ static uint32_t fill(struct logfile *l)
         const size_t most = left < BUFFER_B - l->filled ? (size_t)left : BUFFER_B - l->filled;
         const ssize_t n = pread(l->fd, l->bytes + l->filled, most, (off_t)(l->at + l->filled));
         if (n < 0 && errno == EINTR) { continue; }
-        if (n <= 0) { /* the disk fails, or somebody cut the file */
+        if (n <= 0) { /* the disk failed, or the file was truncated */
             l->error = n < 0 ? errno : 0;
             l->len = l->at + l->filled;
             break;
@@ -212,7 +212,7 @@ void logfile_rewind(struct logfile *l) { logfile_go(l, &l->begin); }
 static void follow_tick(struct logfile *l, const struct exh_record *r)
 {
     const uint32_t step = r->tick - (uint32_t)l->tick;
-    if (r->type == EXH_RECORD_HEADER) { return; } /* it stands before all ticks */
+    if (r->type == EXH_RECORD_HEADER) { return; } /* it precedes all ticks */
     if (!l->started) {
         l->tick = r->tick;
     } else if (step < UINT32_C(0x80000000)) {

@@ -40,14 +40,14 @@ struct logfile {
     double shown_s; /* when next */
 };
 
-/* Opens the file and reads its header, which words may stand before, as between records of a
- * serial line, finds the scene and checks versions and tables. 0; 2 after a line on stderr that
- * says what is wrong with it; 3: it is not there. */
+/* Opens the file, reads its header, finds the scene, and checks versions and tables. Text may
+ * precede the header and stand between records, as on a serial line. Returns 0, 2 after a line on
+ * stderr with the reason, or 3: no such file. */
 int logfile_open(struct logfile *l, const char *path);
 void logfile_close(struct logfile *l);
 
-/* Its calibrations of fingers, behind the parameters, into the scene; they stay the log's bytes. 0,
- * or 2 after a line on stderr: what is there is none. */
+/* Passes its calibrations of fingers, after the parameters, to the scene; they remain the log's
+ * bytes. 0, or 2 after a line on stderr: invalid calibration. */
 int logfile_calibrations(const struct logfile *l);
 
 /* Where it is; back to there; back to just behind the header. */

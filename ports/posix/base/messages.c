@@ -15,7 +15,7 @@
 
 static struct {
     int on, paced;
-    int shown; /* a line of status stands there */
+    int shown; /* a status line is shown */
     uint32_t lost;
 } words;
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Lines on stderr while a box goes on: written by a thread of their own, so that no tick waits for
- * a terminal that was halted, or a pipe that is full. Before words_begin() and behind words_end()
- * they are written at once. */
+/* Lines on stderr while a box runs. A separate thread writes them, so that no tick waits for a
+ * stopped terminal or a full pipe. Before words_begin() and after words_end() they are written
+ * directly. */
 #ifndef CLI_WORDS_H
 #define CLI_WORDS_H
 

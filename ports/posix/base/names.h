@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* States, faults, limits, arming steps, commands, inputs, fingers: words for people. The short
- * words are the library's where it has them (safety.h); sentences, and the rest, stand here alone,
- * for every command of the host program. */
+/* Names for states, faults, limits, arming steps, commands, inputs and fingers. Short names are the
+ * library's where it has them (safety.h). Sentences and other names are defined here only, for all
+ * commands. */
 #ifndef CLI_NAMES_H
 #define CLI_NAMES_H
 

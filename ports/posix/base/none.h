@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Values that say there is none, such as the distance to a plane that nobody has told of: whatever
- * shows them leaves them out. */
+/* Values that mean "none", such as the distance to a plane not received yet. Outputs leave them
+ * out. */
 #ifndef CLI_NONE_H
 #define CLI_NONE_H
 
@@ -10,10 +10,10 @@
 
 int none_is(const struct exh_signal *row, int32_t raw);
 
-/* raw * 2^-frac; not a number if there is none. */
+/* raw * 2^-frac; not a number for "none". */
 double none_or(const struct exh_signal *row, int32_t raw);
 
-/* A comma and nine digits, or nothing behind it. */
+/* A comma and nine digits, or only a comma for "none". */
 void none_or_cell(FILE *to, const struct exh_signal *row, int32_t raw);
 
 #endif

@@ -50,14 +50,13 @@ int cli_number(const char *text, int whole, double *v);
 /* The versions of the library and its formats, on standard output. */
 void cli_version(void);
 
-/* The name of a value of the simulated device, if this is one; NULL: nobody knows. */
+/* The name of a value of the simulated device if this is one; NULL: unknown. */
 extern const char *(*cli_hint)(const char *name, size_t len);
 
 /* Whether a name is in a list with blanks between. */
 int cli_listed(const char *names, const char *name, size_t len);
 
-/* What stands before a command's name in messages: "exhand"; "" for a program that is one command.
- */
+/* Text before a command's name in messages: "exhand"; "" for a program with one command. */
 extern const char *cli_program;
 
 /* A whole line on stderr, after that and the command that is parsed or runs. One that begins with

@@ -107,7 +107,7 @@ FILE *outfile_open(const char *option, const char *path)
     return f;
 }
 
-/* What it was; it is nobody's any more. */
+/* Removes the entry and returns it. */
 static struct entry taken(FILE *f)
 {
     struct entry e = {.part = {.fd = -1, .slot = -1}, .path = "?"}, *at;

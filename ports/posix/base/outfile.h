@@ -26,9 +26,9 @@ int outfile_close(FILE *f);
 /* The same, and it goes on: more is appended at its name, and other writers are kept away. */
 int outfile_goes_on(FILE *f);
 
-/* It is whole, and the stream behind this descriptor goes on into the next file of that name.
- * Before it takes the name, make_way() moves what is there. The box goes on meanwhile, so nobody
- * waits for the disk. errno, or 0. */
+/* Completes the file; the stream continues in the next file of that name. Before the file gets its
+ * name, make_way() moves an existing one. The box runs on, so no caller waits for the disk. errno,
+ * or 0. */
 int outfile_turn(int fd, int (*make_way)(void));
 
 /* It is not, and will not be. NULL is none. */
@@ -48,8 +48,8 @@ int outfile_dir(const char *dir, const char *name);
 int outfile_write(
     const char *dir, const char *name, void (*write)(FILE *f, const void *ctx), const void *ctx);
 
-/* What pictures.gp of a command begins with: how it is run, and a word to whoever runs it
- * otherwise. Then `plots` is the path of ports/posix/plot. */
+/* Writes the start of a command's pictures.gp: how to run it, and a message if it is run otherwise.
+ * `plots` is then the path of ports/posix/plot. */
 void outfile_pictures(FILE *f, const char *command);
 
 /* An image of at most cap bytes that an option names: its length, or -status after a line on

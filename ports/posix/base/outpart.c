@@ -39,7 +39,7 @@ void outpart_remove_all(void)
     errno = before;
 }
 
-/* Between a file's appearance and its entry, and between its new name and the end of that, nobody
+/* Between creating a file and its entry, and between renaming it and removing the entry, no signal
  * may end this thread. */
 static void no_signals(sigset_t *was)
 {
@@ -50,7 +50,7 @@ static void no_signals(sigset_t *was)
 
 static void signals(const sigset_t *was) { (void)pthread_sigmask(SIG_SETMASK, was, NULL); }
 
-/* < 0: there is none. A parent's that this child has not got is free. */
+/* < 0: none free. A slot of the parent that this child does not have is free. */
 static int take_slot(void)
 {
     static int at_exit;
@@ -132,7 +132,7 @@ int outpart_same(const char *a, const char *b)
 
 /* --- beside --- */
 
-/* Where no file system keeps locks there is none to be had. */
+/* A file system without locks gives none. */
 static int lock_file(int fd, int how)
 {
     int err;
@@ -148,7 +148,7 @@ static int is_named(int fd, const char *name)
     return fstat(fd, &here) == 0 && lstat(name, &there) == 0 && same(&here, &there);
 }
 
-/* What stands there is of a writer that lives, which has it locked, or goes. 0 or an errno. */
+/* Removes a stale file; one of a living writer is locked and stays. 0 or an errno. */
 static int clear_away(const char *part)
 {
     struct stat st;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A file on its way. Until it is whole it stands beside its name, as NAME.part; then it takes the
- * name at once. So what stands at a name is whole, whatever ends the program. */
+/* A file in progress. Until it is complete it has the name NAME.part; then it is renamed
+ * atomically. So a file with its final name is complete, however the program ends. */
 #ifndef CLI_OUTPART_H
 #define CLI_OUTPART_H
 

@@ -29,13 +29,13 @@ int params_write(
     const char *path, const void *image, size_t len_B); /* 0 or an errno, and no line */
 int params_save_file(const char *path, const struct exh_params *p);
 
-/* Stages an image whole or nothing of it. 0, or -EXH_E_… after a line on stderr that begins with
- * `name` and says which value may not be and what may, or both versions and tables, or where it is
- * damaged. */
+/* Stages a whole image or nothing. 0, or -EXH_E_... after a line on stderr that begins with `name`.
+ * The line gives the refused value and its range, or both versions and tables, or the place of the
+ * damage. */
 int params_take(const char *name, struct exh_params *p, const void *image, size_t len_B);
 
-/* Says in one line on stderr, once a process, which values of the person's (EXH_WHEN_PERSON) an
- * image has that was taken without them: those that are others in *p, once all is staged. */
+/* Reports once per process, in one line on stderr, which values of EXH_WHEN_PERSON in an image were
+ * ignored: those that differ in *p after staging. */
 void params_tell_left(
     const char *name, const struct exh_params *p, const void *image, size_t len_B);
 

@@ -5,8 +5,9 @@
 
 #include <pthread.h>
 
-/* Signals are the loop's: this thread gets none but those of its own crash. Blocked, they would end
- * the program without their handlers, and so without its outputs low (gpio.h). 0 or an errno. */
+/* Starts a thread that receives no signals, except those of its own crash: signals belong to the
+ * loop. Handled here, they could end the program without setting the outputs low (gpio.h). 0 or an
+ * errno. */
 int thread_start(pthread_t *thread, void *(*run)(void *), void *ctx);
 
 #endif

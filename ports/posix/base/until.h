@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Until somebody stops it: Ctrl-C and the time. */
+/* Runs until it is stopped: Ctrl-C or a time limit. */
 #ifndef CLI_UNTIL_H
 #define CLI_UNTIL_H
 

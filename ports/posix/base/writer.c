@@ -152,7 +152,7 @@ int writer_put(struct writer *w, const void *bytes, size_t n, double patience_s)
     at = (w->head + w->held) % w->cap_B;
     pthread_mutex_unlock(&w->lock);
     if (!takes) { return error ? -1 : 0; }
-    straight = w->cap_B - at < n ? w->cap_B - at : n; /* nobody else touches what is not held */
+    straight = w->cap_B - at < n ? w->cap_B - at : n; /* no other thread uses the free part */
     memcpy(w->ring + at, bytes, straight);
     memcpy(w->ring, (const uint8_t *)bytes + straight, n - straight);
     pthread_mutex_lock(&w->lock);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A file that is written by a thread of its own, so that who has something to write need not wait
- * for a disk, a pipe or a terminal. */
+/* A file written by a separate thread, so that the caller does not wait for a disk, a pipe or a
+ * terminal. */
 #ifndef CLI_WRITER_H
 #define CLI_WRITER_H
 

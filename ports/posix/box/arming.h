@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Arming, watched by whoever commanded RUN: by a scene's signals state, arm_step and present. */
+/* Reports the progress of arming after a RUN command, from a scene's signals state, arm_step and
+ * present. */
 #ifndef CLI_ARMING_H
 #define CLI_ARMING_H
 

@@ -106,7 +106,7 @@ static void name_dump(char path[DUMPFILE_PATH_B + 12])
     box.dumps++;
 }
 
-/* The whole dump at once: time stands still here. */
+/* Writes the whole dump at once: virtual time does not advance. */
 static void write_dump(void)
 {
     const struct exh_blackbox_is is = exh_blackbox_is();
@@ -187,7 +187,7 @@ static int paced_step(double patience_s)
     }
 }
 
-/* No tick comes any more: what is on its way, and what froze meanwhile. */
+/* After the last tick: finishes the dump in progress, and one that froze since. */
 static void paced_close(void)
 {
     while (paced_step(WAITS_S)) {}

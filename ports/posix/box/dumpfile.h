@@ -24,8 +24,8 @@ void dumpfile_start(const struct exh_scene *sc, struct exh_scene_board board);
 void dumpfile_before(uint32_t tick, struct exh_scene_in *in);
 void dumpfile_after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out);
 
-/* Behind the loop. halted: it ended by an error. How many dumps were written, each told by a line
- * on stderr; -1 if one could not be. */
+/* Call it after the loop. halted: it ended by an error. Returns the number of dumps written, each
+ * reported by a line on stderr; -1 if one failed. */
 int dumpfile_close(int halted);
 
 #endif

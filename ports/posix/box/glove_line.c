@@ -13,7 +13,7 @@
 #include <errno.h>
 #include <string.h>
 
-/* Nobody knows how far this hand goes. */
+/* The range of this hand is unknown. */
 static void nobody(struct exh_glove_cal *cal)
 {
     *cal = exh_glove_cal_default;

@@ -97,7 +97,7 @@ static struct bilateral_finger_is finger_is(const struct bilateral_run_cfg *c, u
     return w;
 }
 
-/* What of the world and this finger is so, whatever anybody was told. */
+/* The true state of world and finger, independent of all messages. */
 static void see_truth(unsigned f, struct bilateral_sample *s, int touches)
 {
     const struct bilateral_finger_is w = finger_is(run.cfg, f);
@@ -139,7 +139,8 @@ static int one_finger(unsigned f)
     return phase != SIM_PATH_DONE;
 }
 
-/* A box that will not run is no experiment, unless somebody else commands it. */
+/* A device that does not reach RUN makes the experiment invalid, unless another client commands
+ * it. */
 static void watch_arming(void)
 {
     const struct bilateral_signals *sig = (const void *)exh_scene_signals(&exh_scene_bilateral);
@@ -354,7 +355,7 @@ int bilateral_run(const struct bilateral_run_cfg *c, struct bilateral_run *r)
     err = exh_loop(&exh_scene_bilateral, c->rate_Hz, &hooks);
     r->dumps = dumpfile_close(err < 0);
     if (err == 0 && r->unarmed) {
-        err = -EXH_E_STATE; /* that was told */
+        err = -EXH_E_STATE; /* already reported */
     } else if (err < 0 && !c->board.cards.quiet && !hand_rule_complain(c->rate_Hz, err) &&
                !images_complain(c->images, &exh_scene_bilateral)) {
         cli_setup_complain(exh_scene_bilateral.params, (double)c->rate_Hz, err);

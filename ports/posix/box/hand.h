@@ -31,7 +31,7 @@ struct bilateral_run_cfg {
     int32_t session; /* of the controller; 0: of the seed, over UDP of the clock */
     int trial;       /* an experiment with gains: no rule of gains, no fault for chatter */
     int keep;        /* keep samples */
-    const struct exh_glove_cal *glove_cal; /* of board.glove_tty; NULL: nobody's */
+    const struct exh_glove_cal *glove_cal; /* of board.glove_tty; NULL: default */
     const struct images *images;       /* calibrations of fingers; NULL, or none: uncalibrated */
     const char *blackbox;              /* dumps go there (dumpfile.h); NULL: no black box */
     const struct exh_loop_hooks *more; /* behind the run's own; NULL: none */
@@ -45,7 +45,7 @@ struct bilateral_sample {
     int32_t approach; /* from 1; 0: at rest between two */
     int32_t holds;    /* pressing */
     double x_m;       /* string, at the finger */
-    /* As it is in the world of this process; NAN where nobody looked. */
+    /* In the world of this process; NAN if not evaluated. */
     double inside_m; /* how far the pad is in something, each 10 ms */
     double touch_m;  /* where c sets: the string at which the pad touches now; -1: nowhere */
 };
@@ -58,7 +58,7 @@ struct bilateral_track {
     double scale;   /* s of the last freeze */
     long freezes;
     long contacts;   /* times that c set */
-    long unfrozen;   /* ticks with c and no q_lim that stands: must stay 0 */
+    long unfrozen;   /* ticks with c but without a frozen q_lim: must stay 0 */
     long refused;    /* planes */
     uint32_t digest; /* CRC of force, current and position from the first freeze on */
     int frozen_yet, c;

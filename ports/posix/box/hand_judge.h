@@ -27,7 +27,7 @@ struct bilateral_contact {
     double off_m;              /* q_lim less where pad and object touch then; NAN: unknown */
     double late_m;             /* so far inside it was */
     double settle_s;           /* < 0: never, or no contact */
-    double rest_s;             /* the same of position within 0.2 mm, F_mon within 1.5 N */
+    double rest_s;             /* as above, for position within 0.2 mm and F_mon within 1.5 N */
     double held_N;             /* F_mon at the end of the hold */
     double f_max_N;            /* F_des */
     double rise_Nps;           /* steepest millisecond of F_mon in the first three */
@@ -57,7 +57,7 @@ struct bilateral_count {
     int contacts, settled, missed, early, late;
     double settle_s;                 /* median of those that settled; over seeds: mean of these */
     struct bilateral_line line;      /* pooled; over seeds: mean, its interval, median of r2 */
-    double settle_lo_s, settle_hi_s; /* 95 % of the mean over seeds; hi 0: there is none */
+    double settle_lo_s, settle_hi_s; /* 95 % interval of the mean over seeds; hi 0: none */
 };
 
 /* Counts contacts c, n of them, and their line. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What the advice for d_lim goes by: how fast a fingertip comes, how late and how exactly it is
- * known. One formula and one set of defaults, for whoever gives that advice. */
+/* Inputs of the advice for d_lim: speed of a fingertip, delay and error of its position. One
+ * formula and one set of defaults for all commands. */
 #ifndef BOX_HAND_NEED_H
 #define BOX_HAND_NEED_H
 

@@ -13,7 +13,7 @@
 #define TRACE_EVERY_S \
     0.5              /* longer than the way there and back: an answer is of the newest request */
 #define HOLDS_S  1.0 /* planes wait so long for the answers to parameters */
-#define QUIET_US 1000000 /* nothing heard for so long: any HELLO begins anew */
+#define QUIET_US 1000000 /* silence after which any HELLO starts a session */
 
 double peer_gap_m(const struct exh_wire_plane *p, const int32_t tip_m_q30[3])
 {

@@ -15,12 +15,12 @@
 
 struct world;
 
-/* A world: walls, one a finger, which all stand still; or what a scene holds. */
+/* A world: static walls, one per finger; or a scene. */
 struct peer_world {
     struct world *scene; /* NULL: the walls */
     struct exh_wire_planes wall;
     double ray_m;          /* walls farther off than this are not seen; 0: all are */
-    double jump_s, jump_m; /* from then on (0: never) walls stand so much nearer */
+    double jump_s, jump_m; /* from then on (0: never) walls are this much nearer */
 };
 
 /* d of a tip, n.(P - tip) + pad, m; of a plane that is none: -1e3. */
@@ -30,8 +30,8 @@ double peer_gap_m(const struct exh_wire_plane *p, const int32_t tip_m_q30[3]);
 void peer_look(const struct peer_world *w, const struct exh_wire_state *in, const struct pace *pace,
     double t_s, struct exh_wire_planes *out);
 
-/* It is there from from_s to until_s, and again, started anew, from again_s on (0: not): else
- * packets to it are lost. It sets the parameters until each was acknowledged. */
+/* It exists from from_s to until_s, and, restarted, from again_s (0: not); otherwise packets to it
+ * are lost. It sets the parameters until each is acknowledged. */
 struct peer_cfg {
     const struct peer_world *world;
     double from_s, until_s, again_s;

@@ -119,7 +119,7 @@ int hand_record_read(struct hand_record *h, const char *path, const char *column
     return err;
 }
 
-/* Least jerk: no more of it than a finger makes by itself. */
+/* Minimum jerk: no more than a finger makes. */
 static double eased(double s) { return s * s * s * (10 - 15 * s + 6 * s * s); }
 
 int hand_record_again(struct hand_record *h)

@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-/* Behind a set-up that ended with err: 1 if it was a material, which is told then; else 0. */
+/* After a failed set-up: 1 if a material caused it, which is then reported; else 0. */
 int hand_rule_complain(uint32_t rate_Hz, int err);
 
 #endif

@@ -21,7 +21,7 @@ void bilateral_defaults(struct bilateral_options *o)
 {
     static const struct run_setting own[] = {
         {"mat_f_max", 40}, /* the paper has no limit but the drive's */
-        {"stuck_time", 0}, /* the simulated hand does not tremble, so it stands as a dead encoder */
+        {"stuck_time", 0}, /* the simulated hand has no tremor, so it looks like a dead encoder */
     };
     memset(o, 0, sizeof *o);
     o->seed = 1;

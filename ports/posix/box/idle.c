@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-/* What counts ticks, and nothing else hangs on. */
+/* Removes counters of ticks, which affect nothing else. */
 static void leave_out_counts(struct drop *s)
 {
     s->safety.tick = 0;

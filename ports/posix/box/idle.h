@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Idle: the rest of a fall that has come to rest is known, and need not be run.
- *
- * Once the device stands still to the last bit (sim/still.h) and a tick has left the controller's
- * state as it was, every further tick of the fall is that one again, but for the noise of the
- * monitor. What that noise reaches, the tracking of the current, must be out of its reach. So
- * nothing is guessed and no digit hangs on it. Scene drop alone, with nobody watching its ticks. */
+/* Idle: skips the rest of a fall at rest, whose result is known. Condition: the device is at rest
+ * to the last bit (sim/still.h), and a tick has left the controller's state unchanged. Every
+ * further tick then repeats, except for the noise of the monitor. Only current tracking sees that
+ * noise, and must be unable to react. So no digit of the results changes. For scene drop only,
+ * without an observer of its ticks. */
 #ifndef CLI_IDLE_H
 #define CLI_IDLE_H
 

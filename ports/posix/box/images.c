@@ -111,7 +111,7 @@ static void say_whose(const struct images *im, const struct exh_scene *sc, int i
         (unsigned long)c.valid_days, (long)sc->params->active[id], (long)sc->params->active[day]);
 }
 
-/* A force over current that nobody believes. */
+/* Reports an implausible ratio of force and current. */
 static void say_far(const struct images *im, const struct exh_scene_calib *k)
 {
     const double scale = 1 << EXH_Q_FORCE;

@@ -70,7 +70,7 @@ static int is_header(const struct exh_record *r)
     return exh_bytes_ok(&c) && exh_period_ok(h.T);
 }
 
-/* As one that stands before record `seq`. */
+/* As the header before record seq. */
 static void keep_header(struct pieces_try *t, const struct exh_record *r, uint32_t seq)
 {
     struct exh_bytes c = exh_bytes_writer(t->header, sizeof t->header);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Pieces of a log that come over UDP, of one box alone. Its address, port and session are those of
- * the first that sends a whole header, or of the peer that is given; whoever else sends is counted,
- * named at the end, and changes nothing. */
+/* Pieces of a log received over UDP from one box. Its address, port and session are those of the
+ * first sender of a complete header, or of a given peer. Other senders are counted and named at the
+ * end; they change nothing. */
 #ifndef CLI_PIECES_H
 #define CLI_PIECES_H
 
@@ -15,7 +15,7 @@
 #define PIECES_TRIES   4u
 #define PIECES_SOURCES 8u
 
-/* Somebody who may be the box: what came on end, until its log has a beginning. */
+/* A possible box: consecutive pieces until its log has a start. */
 struct pieces_try {
     struct sockaddr_in from;
     uint32_t session, number, place; /* of the next piece and byte */
@@ -58,7 +58,7 @@ struct pieces_part {
     uint32_t more_n;
 };
 
-/* peer NULL: whoever sends the first header. key: the caller's, it stays; NULL: none. */
+/* peer NULL: the first sender of a header. key: the caller's, must stay valid; NULL: none. */
 void pieces_open(struct pieces *p, const struct sockaddr_in *peer, const struct exh_mac_key *key);
 /* A datagram as it came: 1, *part is the log's, or 0. */
 int pieces_take(struct pieces *p, const struct sockaddr_in *from, const uint8_t *datagram, size_t n,

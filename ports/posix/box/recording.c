@@ -61,7 +61,7 @@ static int is_none(const char *text)
     return *end == '\0' && (end == text || !isfinite(v));
 }
 
-/* Of a sensor: a number, or NAN and counted where there is none. */
+/* Value of a sensor: a number, or NAN, which is counted. */
 static int is_value(struct reader *in, const char *text, double *v)
 {
     if (is_number(text, v)) { return 1; }
@@ -94,8 +94,8 @@ static int is_word(const char *text)
     return !is_number(text, &ignored) && !is_none(text);
 }
 
-/* Nobody said which columns. A number behind a first word says that this is a row, which must not
- * get lost as if it were a header. */
+/* No columns were given. A number after a first word indicates a row, which must not be taken for a
+ * header. */
 static int first_plain(struct reader *in, int *header)
 {
     const char *first = in->now.field[0], *second = in->now.n > 1 ? in->now.field[1] : "";
@@ -108,7 +108,7 @@ static int first_plain(struct reader *in, int *header)
     return 0;
 }
 
-/* The columns are told. It is a header if they have names, or if the sensors' are words. */
+/* Columns were given. A line is a header if it has their names, or if the sensors are words. */
 static int first_told(struct reader *in, const char *columns, int *header)
 {
     int words = 0, numbers = 0;

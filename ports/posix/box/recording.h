@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* Recording: a glove's rows from a text file.
+/* Recording: a glove's rows from a text file. A row is a line of 22 numbers in the order of the
+ * glove's sensors, with commas, semicolons, blanks or tabs between, and an optional label. Lines
+ * end in LF, CR LF or CR. Empty lines are skipped; those between rows are counted and reported.
  *
- * A row is a line: 22 numbers in the order of the glove's sensors, with commas, semicolons,
- * blanks or tabs between, and a label behind them if you like. Lines end in LF, CR LF or CR;
- * empty ones are no rows; those between rows are counted and said. The first may be a header. If
- * the header begins with t_s, as that of our own CSVs does, the first column is time, whatever
- * follows the 22 is ignored, and a unit at the end of a name (_rad, _deg, _turn) is believed.
- * Columns that were asked for (recording_columns.h) are the sensors, time and label; all others may
- * hold anything. Then every row has as many columns as the first line, and time goes on by no more
- * than ten seconds from row to row.
- * Whole numbers all of them, some beyond pi: A/D codes; else angles in radians.
- * What is not a number there (nan, inf, nothing) is NAN in its row, counted and said.
- */
+ * The first line may be a header. If it begins with t_s, as in our own CSVs, the first column is
+ * time, columns after the 22 are ignored, and a unit at the end of a name (_rad, _deg, _turn)
+ * applies. With selected columns (recording_columns.h), these are the sensors, time and label;
+ * others may contain anything. Then every row has as many columns as the first line, and time rises
+ * by at most ten seconds per row.
+ *
+ * If all are integers and some exceed pi, they are A/D codes, else angles in radians. A value that
+ * is not a number (nan, inf, empty) is NAN in its row, counted and reported. */
 #ifndef CLI_RECORDING_H
 #define CLI_RECORDING_H
 
@@ -31,7 +30,7 @@ struct recording {
 
 /* "-" is standard input. 0, or 2 or 3 after a line on stderr that names file, line and column. */
 int recording_read(struct recording *r, const char *path, const struct recording_ask *ask);
-/* For whoever moves a hand by it: what was no number stays as it was; 0, if it never was one. */
+/* For playback: a missing value keeps the last one, or 0 if there is none. */
 void recording_hold(struct recording *r);
 
 /* Rows a second in the mean by t_s; 0 if that is not known. */

@@ -71,7 +71,7 @@ static int column_of(struct list *l, const char *text, size_t len)
     return 0;
 }
 
-/* One column, or two with '-' between, which may stand in a name, too. 0: no such columns. */
+/* One column, or two with '-' between, which may also be part of a name. 0: no such columns. */
 static int range_of(struct list *l, const char *text, size_t len, int *from, int *to)
 {
     *from = *to = column_of(l, text, len);

@@ -40,7 +40,7 @@ static int skip_blanks(struct recording_text *t, int c)
     return c;
 }
 
-/* Quotes around a field, and blanks behind it. */
+/* Removes quotes around a field, and blanks after it. */
 static void trim(const struct recording_text *t, char *field, size_t n)
 {
     while (n > 0 && is_blank(t, field[n - 1])) { n--; }

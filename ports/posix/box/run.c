@@ -34,7 +34,7 @@ static struct {
     int live;
     int no_memory;
     double mon_gain;
-    int logged;                 /* records cost a third of a run that nobody keeps */
+    int logged;                 /* unused records would cost a third of a run */
     uint32_t last_tick, passed; /* the latter of ticks that the loop had no part in */
     int ran;                    /* the box came to run */
     int all;                    /* every tick is run */
@@ -75,8 +75,8 @@ static void before(uint32_t tick, struct exh_scene_in *in)
 
 static double si(int32_t raw, int frac) { return (double)raw / (double)(INT64_C(1) << frac); }
 
-/* The mass is held until the box runs; one that will not is no experiment, unless somebody else
- * commands it. */
+/* The mass is held until the device is in RUN. A device that does not reach RUN makes the
+ * experiment invalid, unless another client commands it. */
 static void watch_arming(const struct drop_signals *s)
 {
     const enum arming is = arming_is(s->state);
@@ -160,7 +160,7 @@ void run_image_left(const struct run_live *l, const struct exh_params *p)
     if (l->image) { params_tell_left(l->name, p, l->image, l->image_B); }
 }
 
-/* 1: the rate is not the controller's own, and that was told. */
+/* 1: the rate is not the controller's own; this was reported. */
 static int other_rate(const struct run_cfg *c, const struct exh_scene *sc)
 {
     const uint32_t only_Hz = sc == cli_scene_more ? cli_scene_more_rate_Hz() : 0;
@@ -173,7 +173,7 @@ static int other_rate(const struct run_cfg *c, const struct exh_scene *sc)
     return 0;
 }
 
-/* Why set-up refused, as far as the scene can tell; 1: that was told. */
+/* Why set-up refused, as far as the scene knows; 1: reported. */
 static int complain(const struct run_cfg *c, const struct exh_scene *sc)
 {
     if (sc == cli_scene_more && cli_scene_more_unknown()) {
@@ -294,7 +294,7 @@ int run_drop(const struct run_cfg *c, struct run *r)
         err = exh_loop(run.scene, c->rate_Hz, &hooks);
         r->dumps = dumpfile_close(err < 0);
         if (err == 0 && r->refused) {
-            err = -EXH_E_STATE; /* that was told */
+            err = -EXH_E_STATE; /* already reported */
         } else if (err == -EXH_E_RATE) {
             if (!other_rate(c, run.scene)) {
                 cli_complain("rate: %lu Hz (allowed 1..%lu): choose one in that range",
@@ -318,7 +318,7 @@ int run_drop(const struct run_cfg *c, struct run *r)
 
 void run_free(struct run *r)
 {
-    /* The log's view of its arrays is const; they are ours. */
+    /* The log's view of the arrays is const, but we own them. */
     union {
         const void *view;
         void *own;

@@ -18,8 +18,8 @@ struct run_setting {
     double value;
 };
 
-/* A run without an end of its own: nothing is kept of it, its commands come from `more`, and a
- * fault is no reason to stop. */
+/* A run without a time limit: keeps no results, takes its commands from `more`, and does not stop
+ * at a fault. */
 struct run_live {
     int on;
     const void *image; /* of parameters, staged before the settings; NULL: none */

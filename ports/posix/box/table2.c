@@ -76,7 +76,7 @@ static void write_plot(const struct fall_stiffness *s, const char *prefix, struc
     if (fall_write_plot(s, FALL_B, &paths) != FALL_OK) { r->error = 1; }
 }
 
-/* The first fall by itself, for the picture over time. */
+/* The first fall alone, for the picture over time. */
 static void write_fall(const struct fall_log *log, const char *prefix, struct table2_result *r)
 {
     char name[TABLE2_PATH_B];

@@ -33,7 +33,7 @@ struct table2_result {
     double b_same_Npm, a_same_Npm;                    /* 0: none */
     int ci_bounded;
     double resting; /* share of the band's pairs from after the motor's last movement; < 0: none */
-    double reading_Npm[TABLE2_MORE]; /* of whoever judges the run, too; 0: none */
+    double reading_Npm[TABLE2_MORE]; /* additional reading for the judgement; 0: none */
     int falls, oscillating, buzzing, incomplete;
     unsigned faults;
     unsigned long lost;

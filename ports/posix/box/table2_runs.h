@@ -16,7 +16,7 @@ struct table2_runs {
     double rate_Hz, k_Npm, b_Nspm;
     int runs;        /* done */
     int lines;       /* of these, with a stiffness */
-    int places;      /* 1: each run has the wall at a place of its own */
+    int places;      /* 1: each run has its own place of the wall */
     double phase;    /* of the first run, which is written and drawn, */
     double q_lim_m;  /* and its wall */
     unsigned faults; /* of all runs, enum exh_fault; and */

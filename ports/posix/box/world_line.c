@@ -166,7 +166,7 @@ static void went(const struct bilateral_box *box, double now_s)
     }
 }
 
-/* Another process, or somebody else's, at the same address. */
+/* Detects another process at the same address. */
 static void look_who(const struct bilateral_box *box, double now_s)
 {
     struct bilateral_cfg *cfg;
@@ -199,7 +199,7 @@ void world_line_after(const struct bilateral_box *box)
     }
 }
 
-/* --- what is told of it --- */
+/* --- messages --- */
 
 int world_line_heard(void) { return world.accepted != 0; }
 

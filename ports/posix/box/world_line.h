@@ -23,8 +23,8 @@ int world_line_use(const char *given, const char *key, struct posix_line *line);
 void world_line_start(void);
 void world_line_after(const struct bilateral_box *box);
 
-/* Of the run. A packet of a world has come; what is to be told of it now, "" where all is well; and
- * a line of what came in all. */
+/* During a run: whether a world's packet has come; its present problem, "" if none; and a summary
+ * line. */
 int world_line_heard(void);
 const char *world_line_word(void);
 void world_line_print(FILE *f, const struct bilateral_box *box);
