@@ -73,6 +73,14 @@ same:
 doc-names: $(exhand) $(lab)
 	@PYTHONDONTWRITEBYTECODE=1 test/walk/docs/docs.py $(exhand) $(world)
 
+## Check the style of the documents (docs/STYLE.md): sentences, idioms, links, commands, word budgets
+## (ARGS=--stats).
+.PHONY: prose
+prose: $(exhand) $(lab)
+	@PYTHONDONTWRITEBYTECODE=1 test/walk/docs/prose_test.py $(exhand) $(world) 2> $(B)/prose.txt || \
+	    { cat $(B)/prose.txt; exit 1; }
+	@PYTHONDONTWRITEBYTECODE=1 test/walk/docs/prose.py $(ARGS) $(exhand) $(world)
+
 ## Check that no two sources need each other, no room includes what it may not, none is above its
 ## budget.
 .PHONY: structure

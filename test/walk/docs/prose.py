@@ -1,0 +1,200 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""prose.py [--stats | --update] EXHAND WORLD: the documents keep the rules of docs/STYLE.md.
+
+Prints each fault as PAGE:LINE: a sentence or paragraph that is too long, an idiom of prose.tsv, a
+link that leads nowhere, a command or name that the tree does not have (by docs.py), too many words.
+A page may have as many faults as prose.tsv allows it, and none where it allows none. Code and what
+a command generates (between <!-- COMMAND --> and <!-- end -->) is not judged; of a table, words.
+
+--stats prints words and sentences of each page; --update lowers ceilings to today's number.
+Exit status: 0 all pages keep the rules, 1 not. Standard library only.
+"""
+
+import os
+import re
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import docs  # noqa: E402
+
+DATA = "test/walk/docs/prose.tsv"
+SENTENCE, PARAGRAPH = 30, 90 # words; 90 are five lines of 100 columns
+WORD = re.compile(r"[^\W_][\w'’.,·/-]*")
+
+
+class Data:
+    """prose.tsv: idioms, what is allowed by name, and what each page may have."""
+
+    def __init__(self, text):
+        self.idioms, self.allowed, self.pages = [], set(), {}
+        for line in text.splitlines():
+            row = line.split("\t")
+            if row[0] == "idiom":
+                self.idioms.append((re.compile(r"\b(?:%s)\b" % row[1], re.I), row[2]))
+            elif row[0] == "allow":
+                self.allowed.add((row[1], row[2]))
+            elif row[0] == "page":
+                self.pages[row[1]] = (int(row[2]), int(row[3]))
+
+
+def blocks(text):
+    """(kind, [(line number, text)]) of a page: prose, row. Code and generated parts are left out."""
+    block, fenced, made, listed = [], False, False, False
+    for n, line in enumerate(text.split("\n"), 1):
+        if line.startswith("```"):
+            fenced = not fenced
+        made = (made or re.match(r"<!-- (?!end)", line) is not None) and line != "<!-- end -->"
+        item = re.match(r" {0,3}(?:[*+-]|\d+\.)\s", line) is not None
+        listed = item or (listed and (line == "" or line.startswith(" ")))
+        code = fenced or line.startswith(("```", "<")) or (
+            re.match(r" {4}", line) is not None and not (listed and block))
+        if made or code or not line.strip() or line.startswith(("#", "|", "!")) or item:
+            if block:
+                yield "prose", block
+            block = []
+            if made or code or not line.strip():
+                continue
+            if line.startswith("|"):
+                yield "row", [(n, line)]
+                continue
+        block.append((n, line))
+        if line.startswith("#"):
+            yield "head", block
+            block = []
+    if block:
+        yield "prose", block
+
+
+def plain(line):
+    """A line without code, targets of links and marks."""
+    line = re.sub(r"`[^`]*`", "Code", line)
+    line = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", line)
+    return re.sub(r"https?://\S+|[*_|]+", " ", line)
+
+
+def sentences(block):
+    """(line number, words) of each sentence of a paragraph."""
+    text, starts = "", []
+    whole = "\n".join(line for _, line in block)
+    whole = re.sub(r"`[^`]*`", lambda m: "Code" + "\n" * m.group().count("\n"), whole)
+    for k, line in enumerate(whole.split("\n")):
+        starts.append((len(text), block[k][0]))
+        text += plain(line) + " "
+    at = 0
+    for m in list(re.finditer(r"[.!?][)\"”]?\s+(?=[A-Z\"“(])|$", text)):
+        words = WORD.findall(text[at:m.end()])
+        if words:
+            lead = at + len(text[at:]) - len(text[at:].lstrip())
+            yield [n for start, n in starts if start <= lead][-1], words
+        at = m.end()
+
+
+def anchors(text):
+    """What may stand behind # in a link to a page, as GitHub makes it of headings."""
+    heads = re.findall(r"^#+ (.*)$", text, re.M)
+    return {re.sub(r"[^\w -]", "", h.lower()).replace(" ", "-") for h in heads}
+
+
+def headings(path, text):
+    """Links to headings that are not there; docs.py has the pages."""
+    for n, line in enumerate(text.split("\n"), 1):
+        for to, anchor in re.findall(r"\]\(([\w./-]*)#([^)\s]+)\)", line):
+            file = os.path.join(os.path.dirname(path), to)
+            there = docs.read(file) if to and os.path.exists(file) else text
+            if anchor not in anchors(there):
+                yield n, "no such heading: %s#%s" % (to, anchor)
+
+
+def names(path, text, program, world):
+    """What docs.py does not find in the tree, at the first line that has its last word."""
+    for wrong in docs.Page(path, text, program, world).all().wrong:
+        what = wrong[len(path) + 2:]
+        last = what.split()[-1]
+        yield next((n for n, line in enumerate(text.split("\n"), 1) if last in line), 1), what
+
+
+class Page:
+    def __init__(self, path, text, data):
+        self.path, self.text, self.data = path, text, data
+        self.blocks = list(blocks(text))
+        self.lengths = [len(w) for kind, b in self.blocks if kind == "prose"
+                        for _, w in sentences(b)]
+        self.words = sum(len(WORD.findall(plain(line))) for _, b in self.blocks for _, line in b)
+
+    def style(self):
+        for kind, block in self.blocks:
+            if kind == "prose":
+                found = list(sentences(block))
+                for n, words in found:
+                    if len(words) > SENTENCE:
+                        yield n, "a sentence of %d words: %s ..." % (len(words),
+                                                                     " ".join(words[:6]))
+                total = sum(len(w) for _, w in found)
+                if total > PARAGRAPH:
+                    yield block[0][0], "a paragraph of %d words" % total
+            for n, line in block:
+                for idiom, instead in self.data.idioms:
+                    for m in idiom.finditer(plain(line)):
+                        if (self.path, m.group().lower()) not in self.data.allowed:
+                            yield n, '"%s": %s' % (m.group(), instead)
+
+    def budget(self):
+        most = self.data.pages.get(self.path, (0, 0))[0]
+        if self.words > most:
+            yield 1, "%d words, %d at most" % (self.words, most)
+
+    def faults(self, program, world):
+        return sorted([*self.style(), *headings(self.path, self.text), *self.budget(),
+                       *names(self.path, self.text, program, world)])
+
+
+def stats(pages):
+    print("%-44s %6s %9s %5s %7s %4s %6s" %
+          ("page", "words", "sentences", "mean", "longest", ">30", "faults"))
+    for p in pages:
+        n = len(p.lengths)
+        print("%-44s %6d %9d %5.1f %7d %4d %6d" %
+              (p.path, p.words, n, sum(p.lengths) / max(n, 1), max(p.lengths, default=0),
+               sum(k > SENTENCE for k in p.lengths), len(list(p.style()))))
+
+
+def update(text, found):
+    """prose.tsv with the ceiling of each page lowered to the number of its faults."""
+    lines = []
+    for line in text.splitlines():
+        row = line.split("\t")
+        if row[0] == "page" and row[1] in found:
+            row[3] = str(min(int(row[3]), found[row[1]]))
+        lines.append("\t".join(row))
+    return "\n".join(lines) + "\n"
+
+
+def main(args):
+    options = [a for a in args if a.startswith("-")]
+    program, world = ([os.path.abspath(a) for a in args if not a.startswith("-")] + [""] * 2)[:2]
+    os.chdir(docs.ROOT)
+    data = Data(docs.read(DATA))
+    pages = [Page(p, docs.read(p), data) for p in docs.documents()]
+    if "--stats" in options:
+        stats(pages)
+        return 0
+    found, bad = {}, 0
+    for p in pages:
+        faults = p.faults(program, world)
+        found[p.path], most = len(faults), data.pages.get(p.path, (0, 0))[1]
+        if len(faults) > most:
+            bad += 1
+            print("\n".join("%s:%d: %s" % (p.path, n, what) for n, what in faults))
+            print("%s: %d faults, %d allowed" % (p.path, len(faults), most))
+    if "--update" in options:
+        with open(DATA, "w", encoding="utf-8") as f:
+            f.write(update(docs.read(DATA), found))
+    print("prose: %d pages, %d words, %d faults, %d allowed by ceilings: %d pages with more" %
+          (len(pages), sum(p.words for p in pages), sum(found.values()),
+           sum(most for _, most in data.pages.values()), bad))
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""prose_test.py EXHAND WORLD: prose.py reports each planted fault at its line, and nothing of a
+page without faults."""
+
+import os
+import sys
+import unittest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import docs  # noqa: E402
+import prose  # noqa: E402
+
+PROGRAM, WORLD = [os.path.abspath(p) for p in sys.argv[1:3]]
+DATA = "idiom\thangs? on\tdepends on\npage\tdocs/HERE.md\t1000\t0\n"
+LONG = "It has " + "many " * 28 + "words."
+FINE = """# A page
+
+A short sentence. Another one, with [a link](DESIGN.md), `make test` and `exhand drop --rate 90`.
+It is 0.5 mm long, e.g. for the paper. """ + LONG.replace("many ", "", 1) + """
+
+| a table | """ + "word " * 60 + """|
+
+* An item of a list.
+  It goes on here, and hangs
+  over a line.
+
+    """ + "code " * 60 + """
+
+<!-- exhand faults -->
+""" + LONG + """ It hangs on a command.
+<!-- end -->
+"""
+
+
+class Prose(unittest.TestCase):
+    def faults(self, text, data=DATA):
+        return prose.Page("docs/HERE.md", text, prose.Data(data)).faults(PROGRAM, WORLD)
+
+    def one(self, text, line, *words):
+        """The only fault of FINE and this text behind it, line of the text."""
+        found = self.faults(FINE + "\n" + text)
+        self.assertEqual([n for n, _ in found], [FINE.count("\n") + 1 + line], found)
+        for word in words:
+            self.assertIn(word, found[0][1])
+
+    def test_a_page_without_faults(self):
+        self.assertEqual(self.faults(FINE), [])
+
+    def test_a_long_sentence(self):
+        self.one("Short one.\n" + LONG + "\n", 2, "31 words")
+
+    def test_a_long_sentence_over_lines(self):
+        self.one("Short one. " + LONG.replace("many ", "many\n", 9) + " Short.\n", 1, "31 words")
+
+    def test_a_long_sentence_in_an_item(self):
+        self.one("* " + LONG + "\n* Short.\n", 1, "31 words")
+
+    def test_a_long_paragraph(self):
+        self.one("It has five words here.\n" * 18 + "One more.\n", 1, "paragraph of 92")
+
+    def test_an_idiom(self):
+        self.one("First.\nIt hangs on a word.\n", 2, "hangs on", "depends on")
+
+    def test_an_idiom_in_a_table_and_a_heading(self):
+        self.one("| it | hangs on |\n", 1, "hangs on")
+        self.one("## It hangs on\n", 1, "hangs on")
+
+    def test_an_idiom_that_is_allowed(self):
+        self.assertEqual(self.faults("It hangs on.\n", DATA + "allow\tdocs/HERE.md\thangs on\n"), [])
+        self.assertEqual(len(self.faults("It hangs on.\n", DATA + "allow\tREADME.md\thangs on\n")), 1)
+
+    def test_a_link(self):
+        self.one("Short.\n\n[page](no-page.md)\n", 3, "no link to no-page.md")
+        self.one("[heading](STYLE.md#no-such-heading)\n", 1, "no such heading")
+        self.assertEqual(
+            self.faults("[here](#a-head)\n[there](STYLE.md#words-to-avoid)\n\n# A head\n"), [])
+
+    def test_a_target(self):
+        self.one("Short.\nType `make no-target` now.\n", 2, "no target")
+
+    def test_an_option_and_a_command(self):
+        self.one("Short.\n`exhand drop --no-option`\n", 2, "--no-option")
+        self.one("    $ exhand no-command\n", 1, "no-command")
+
+    def test_a_budget(self):
+        found = self.faults(FINE, DATA.replace("1000", "20"))
+        self.assertEqual([n for n, _ in found], [1])
+        self.assertIn("20 at most", found[0][1])
+        self.assertEqual(len(self.faults(FINE, "")), 1) # a page that prose.tsv does not list
+
+    def test_a_ceiling_only_falls(self):
+        rows = "page\ta.md\t9\t5\npage\tb.md\t9\t5\npage\tc.md\t9\t5\n"
+        self.assertEqual(prose.update(rows, {"a.md": 3, "b.md": 8}),
+                         "page\ta.md\t9\t3\npage\tb.md\t9\t5\npage\tc.md\t9\t5\n")
+
+
+if __name__ == "__main__":
+    os.chdir(docs.ROOT)
+    unittest.main(argv=sys.argv[:1])
