@@ -174,7 +174,8 @@ def main(args):
     options = [a for a in args if a.startswith("-")]
     program, world = ([os.path.abspath(a) for a in args if not a.startswith("-")] + [""] * 2)[:2]
     os.chdir(docs.ROOT)
-    data = Data(docs.read(DATA))
+    rows = docs.read(DATA)
+    data = Data(rows)
     pages = [Page(p, docs.read(p), data) for p in docs.documents()]
     if "--stats" in options:
         stats(pages)
@@ -189,7 +190,7 @@ def main(args):
             print("%s: %d faults, %d allowed" % (p.path, len(faults), most))
     if "--update" in options:
         with open(DATA, "w", encoding="utf-8") as f:
-            f.write(update(docs.read(DATA), found))
+            f.write(update(rows, found))
     print("prose: %d pages, %d words, %d faults, %d allowed by ceilings: %d pages with more" %
           (len(pages), sum(p.words for p in pages), sum(found.values()),
            sum(most for _, most in data.pages.values()), bad))
