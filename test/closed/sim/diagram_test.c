@@ -37,7 +37,7 @@ static void both(const char *name, const char *ending, char ours[32768], char th
 TEST(docs_hold_what_is_drawn_now)
 {
     static const char *const name[] = {
-        "overview", "setup", "identification", "principle", "bilateral"};
+        "overview", "setup", "identification", "principle", "bilateral", "whole"};
     static char ours[32768], theirs[32768];
     for (size_t i = 0; i < sizeof name / sizeof name[0]; i++) {
         char id[16] = "";

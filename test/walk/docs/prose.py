@@ -68,7 +68,7 @@ def blocks(text):
 
 def plain(line):
     """A line without code, targets of links and marks."""
-    line = re.sub(r"`[^`]*`", "Code", line)
+    line = re.sub(r"`[^`]*`", "Code", line.lstrip("> "))
     line = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", line)
     return re.sub(r"https?://\S+|[*_|]+", " ", line)
 
