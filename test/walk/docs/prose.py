@@ -97,13 +97,18 @@ def anchors(text):
 
 
 def headings(path, text):
-    """Links to headings that are not there; docs.py has the pages."""
+    """Links to headings that are not there, and words that a table quotes from a page behind its
+    link and that the page does not have; docs.py has the pages."""
     for n, line in enumerate(text.split("\n"), 1):
         for to, anchor in re.findall(r"\]\(([\w./-]*)#([^)\s]+)\)", line):
             file = os.path.join(os.path.dirname(path), to)
             there = docs.read(file) if to and os.path.exists(file) else text
             if anchor not in anchors(there):
                 yield n, "no such heading: %s#%s" % (to, anchor)
+        for to, words in re.findall(r'\]\(([\w./-]+)[^)]*\) \| "(.+)" \|$', line):
+            file = os.path.join(os.path.dirname(path), to)
+            if os.path.exists(file) and words not in " ".join(docs.read(file).split()):
+                yield n, "%s does not say: %s" % (to, words)
 
 
 def names(path, text, program, world):

@@ -76,6 +76,12 @@ class Prose(unittest.TestCase):
         self.assertEqual(
             self.faults("[here](#a-head)\n[there](STYLE.md#words-to-avoid)\n\n# A head\n"), [])
 
+    def test_a_quotation(self):
+        self.one('| what | [page](STYLE.md#style) | "Put two facts in a sentence." |\n', 1,
+                 "does not say")
+        self.assertEqual(
+            self.faults('| what | [page](STYLE.md#style) | "Put one fact in a sentence." |\n'), [])
+
     def test_a_target(self):
         self.one("Short.\nType `make no-target` now.\n", 2, "no target")
 
