@@ -7,7 +7,8 @@ link that leads nowhere, a command or name that the tree does not have (by docs.
 A page may have as many faults as prose.tsv allows it, and none where it allows none. Code and what
 a command generates (between <!-- COMMAND --> and <!-- end -->) is not judged; of a table, words.
 
---stats prints words and sentences of each page; --update lowers ceilings to today's number.
+--stats prints words and sentences of each page; --update lowers ceilings to today's number and
+gives new pages a row.
 Exit status: 0 all pages keep the rules, 1 not. Standard library only.
 """
 
@@ -165,14 +166,15 @@ def stats(pages):
 
 
 def update(text, found):
-    """prose.tsv with the ceiling of each page lowered to the number of its faults."""
-    lines = []
-    for line in text.splitlines():
-        row = line.split("\t")
-        if row[0] == "page" and row[1] in found:
-            row[3] = str(min(int(row[3]), found[row[1]]))
-        lines.append("\t".join(row))
-    return "\n".join(lines) + "\n"
+    """prose.tsv with the ceiling of each page lowered to the number of its faults. A new page gets
+    a row; one that is gone loses its. found: path to (words, faults)."""
+    rows = [line.split("\t") for line in text.splitlines()]
+    old = {row[1]: (int(row[2]), int(row[3])) for row in rows if row[0] == "page"}
+    rows = [row for row in rows if row[0] != "page"]
+    for path, (words, faults) in sorted(found.items()):
+        most, ceiling = old.get(path, (-(-words // 50) * 50, faults - 1)) # less that of no row
+        rows.append(["page", path, str(most), str(min(ceiling, faults))])
+    return "\n".join("\t".join(row) for row in rows) + "\n"
 
 
 def main(args):
@@ -188,7 +190,7 @@ def main(args):
     found, bad = {}, 0
     for p in pages:
         faults = p.faults(program, world)
-        found[p.path], most = len(faults), data.pages.get(p.path, (0, 0))[1]
+        found[p.path], most = (p.words, len(faults)), data.pages.get(p.path, (0, 0))[1]
         if len(faults) > most:
             bad += 1
             print("\n".join("%s:%d: %s" % (p.path, n, what) for n, what in faults))
@@ -197,7 +199,7 @@ def main(args):
         with open(DATA, "w", encoding="utf-8") as f:
             f.write(update(rows, found))
     print("prose: %d pages, %d words, %d faults, %d allowed by ceilings: %d pages with more" %
-          (len(pages), sum(p.words for p in pages), sum(found.values()),
+          (len(pages), sum(p.words for p in pages), sum(n for _, n in found.values()),
            sum(most for _, most in data.pages.values()), bad))
     return 1 if bad else 0
 

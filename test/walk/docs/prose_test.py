@@ -97,8 +97,11 @@ class Prose(unittest.TestCase):
 
     def test_a_ceiling_only_falls(self):
         rows = "page\ta.md\t9\t5\npage\tb.md\t9\t5\npage\tc.md\t9\t5\n"
-        self.assertEqual(prose.update(rows, {"a.md": 3, "b.md": 8}),
-                         "page\ta.md\t9\t3\npage\tb.md\t9\t5\npage\tc.md\t9\t5\n")
+        self.assertEqual(prose.update("# x\n" + rows, {"a.md": (1, 3), "b.md": (12, 8)}),
+                         "# x\npage\ta.md\t9\t3\npage\tb.md\t9\t5\n")
+
+    def test_a_new_page_gets_a_row(self):
+        self.assertEqual(prose.update("# x\n", {"d.md": (51, 3)}), "# x\npage\td.md\t100\t2\n")
 
 
 if __name__ == "__main__":
