@@ -5,7 +5,8 @@
 Prints each fault as PAGE:LINE: a sentence or paragraph that is too long, an idiom of prose.tsv, a
 link that leads nowhere, a command or name that the tree does not have (by docs.py), too many words.
 A page may have as many faults as prose.tsv allows it, and none where it allows none. Code and what
-a command generates (between <!-- COMMAND --> and <!-- end -->) is not judged; of a table, words.
+a command generates (between <!-- COMMAND --> and <!-- end -->) is not judged. A cell of a table is a
+paragraph of up to 40 words a sentence.
 
 --stats prints words and sentences of each page; --update lowers ceilings to today's number and
 gives new pages a row.
@@ -20,7 +21,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import docs  # noqa: E402
 
 DATA = "test/walk/docs/prose.tsv"
-SENTENCE, PARAGRAPH = 30, 90 # words; 90 are five lines of 100 columns
+SENTENCE, CELL, PARAGRAPH = 30, 40, 90 # words; 90 are five lines of 100 columns
 WORD = re.compile(r"[^\W_][\w'’.,·/-]*")
 
 
@@ -139,6 +140,10 @@ class Page:
                 total = sum(len(w) for _, w in found)
                 if total > PARAGRAPH:
                     yield block[0][0], "a paragraph of %d words" % total
+            for cell in block[0][1].replace("\\|", "").split("|") if kind == "row" else ():
+                for n, words in sentences([(block[0][0], cell)]):
+                    if len(words) > CELL:
+                        yield n, "a sentence of %d words in a table" % len(words)
             for n, line in block:
                 for idiom, instead in self.data.idioms:
                     for m in idiom.finditer(plain(line)):

@@ -19,7 +19,7 @@ FINE = """# A page
 A short sentence. Another one, with [a link](DESIGN.md), `make test` and `exhand drop --rate 90`.
 It is 0.5 mm long, e.g. for the paper. """ + LONG.replace("many ", "", 1) + """
 
-| a table | """ + "word " * 60 + """|
+| a table | """ + "word " * 40 + "| " + "word " * 40 + """|
 
 * An item of a list.
   It goes on here, and hangs
@@ -58,6 +58,9 @@ class Prose(unittest.TestCase):
 
     def test_a_long_paragraph(self):
         self.one("It has five words here.\n" * 18 + "One more.\n", 1, "paragraph of 92")
+
+    def test_a_long_sentence_in_a_table(self):
+        self.one("| short | " + "many " * 41 + "|\n", 1, "41 words in a table")
 
     def test_an_idiom(self):
         self.one("First.\nIt hangs on a word.\n", 2, "hangs on", "depends on")
