@@ -3,7 +3,7 @@
  *
  * Each takes the extended count once per tick and returns m/s in q27, saturated at +-16 m/s. In the
  * table, y is the position, T the loop period, D the encoder step. Lag is the steady velocity error
- * divided by the acceleration. `make bench` measures noise, lag and instructions (docs/REPORT.md).
+ * divided by the acceleration. `make bench` measures noise, lag and instructions (docs/TABLES.md).
  * Source: Janabi-Sharifi et al. and Kikuuwe for FOAW; textbooks for the others.
  *
  *   difference  (y[k]-y[k-1])/T              error < D/T       lag T/2

@@ -118,7 +118,7 @@ TEST(a_fall_on_the_wall_of_before_is_soft_and_deep)
     CHECK(value("falls that do not", 0) == 0 && value("falls that do not", 1) == 1 &&
               value("falls that do not", 2) == 0,
         "%s", s.out);
-    said_as_document(&s, "docs/REPORT.md", "exhand drop --preset original");
+    said_as_document(&s, "docs/TABLES.md", "exhand drop --preset original");
     CHECK(said_size(said_path(dir, "original.csv")) > 300 &&
               said_size(said_path(dir, "original.gp")) > 100 &&
               said_size(said_path(dir, "original_0.csv")) > 500 &&
@@ -141,7 +141,7 @@ TEST(a_finger_is_told_of_the_wall_late)
     CHECK(value("contact less", 3) < 1 && value("contact less", 0) < 1, "%s", s.out);
     CHECK(value("deepest", 2) > 2 * value("deepest", 3), "%s", s.out);
     CHECK(value("stiffness", 2) < 2000 && value("stiffness", 3) > 10000, "%s", s.out);
-    said_as_document(&s, "docs/REPORT.md", "exhand bilateral --preset original");
+    said_as_document(&s, "docs/TABLES.md", "exhand bilateral --preset original");
     CHECK(said_size(said_path(dir, "original_0.csv")) > 500 &&
               said_size(said_path(dir, "original.csv")) > 300,
         "%s", dir);

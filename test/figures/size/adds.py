@@ -185,16 +185,16 @@ def all_adds(rows, costs, short, has):
     return adds.rows
 
 
-GOAL_HEAD = ["processor", "set up", "compiled", "text_B", "data_B", "bss_B", "RAM_B",
+GOAL_HEAD = ["processor", "set-up on", "compiled", "text_B", "data_B", "bss_B", "RAM_B",
              "with loop and grip: text_B", "RAM_B", "stack_B", "insn/tick",
-             "of the goal's 3072 B, 256 B"]
+             "share of 3072 B, 256 B"]
 FROZEN = "1000"
 # Where set-up is, how it is compiled, and what make is told.
-GOAL_WAYS = [("there", "-O2", ()), ("there", "-Os", ("O=s",)),
+GOAL_WAYS = [("target", "-O2", ()), ("target", "-Os", ("O=s",)),
              ("frozen", "-O2", ("FROZEN=" + FROZEN, "WHOLE=")),
              ("frozen", "-Os", ("O=s", "FROZEN=" + FROZEN, "WHOLE=")),
-             ("frozen", "as one, -O2", ("FROZEN=" + FROZEN, "WHOLE=-flto -ffat-lto-objects")),
-             ("frozen", "as one, -Os", ("O=s", "FROZEN=" + FROZEN))]
+             ("frozen", "with -flto, -O2", ("FROZEN=" + FROZEN, "WHOLE=-flto -ffat-lto-objects")),
+             ("frozen", "with -flto, -Os", ("O=s", "FROZEN=" + FROZEN))]
 
 
 def worst_stack(at, name):

@@ -18,7 +18,7 @@ into DIR (B/size/costs; OUT in the environment): cost, modules, features, adds a
 
 --short: no variants are built or run: of adds those between scenes, goal for what size.sh has
 built.
---update: the tables of docs/REPORT.md anew, between <!-- costs NAME --> and <!-- end -->.
+--update: the tables of docs/TABLES.md anew, between <!-- costs NAME --> and <!-- end -->.
 Instructions of modules and adds are those of this machine's code, by callgrind: the mean of the
 ticks that size.sh counts. Exit status: 0 ok, 1 the walk over the relocations does not find what the
 linker kept, 2 bad usage, 3 a tool is missing.
@@ -137,7 +137,10 @@ def write_modules(out, rows, costs):
         [table(["bytes", *SCENES], [r for r in bytes_ if r[0] not in nowhere] + [sums]), text[2],
          table(["instructions", *SCENES],
                [r[:1] + ["%.0f" % float(c) if c else "" for c in r[1:]] for r in insn]),
-         "Why, as far as `minimal` goes (the others: `build/size/costs/modules.md`): " + text[3]])
+         "Why each is in `minimal` (other scenes: `build/size/costs/modules.md`):\n",
+         table(["module", "bytes", "of", "shortest way"],
+               [[r[2], r[3], r[6], "`%s`" % r[8]] for r in rows
+                if r[0] == "minimal" and r[1] == port])])
 
 
 def write_features(out, costs):
@@ -163,7 +166,7 @@ def all_costs(rows):
     return costs
 
 
-def update(texts, path="docs/REPORT.md"):
+def update(texts, path="docs/TABLES.md"):
     with open(path, encoding="utf-8") as f:
         page = f.read()
     for name, text in texts.items():
@@ -204,15 +207,15 @@ def main():
     head = ["scene", "port", "text_B", "data_B", "bss_B", "stack_B", "insn_per_tick", "symbols"]
     save(args.out, "cost", head, rows)
     texts["cost"] = (table(head, rows) + "\nLibrary and scene of `minimal` alone, without port, "
-                                         "loop and grip; goal: 3072 B and 256 B (frozen: `make "
-                                         "image FROZEN=1000`):\n\n" + table(GOAL_HEAD, goals))
+                                         "loop and grip. The goal is 3072 B and 256 B. Frozen: "
+                                         "`make image FROZEN=1000`.\n\n" + table(GOAL_HEAD, goals))
     added = all_adds(rows, costs, args.short, has)
     head = ["what", "port", "text_B", "data_B", "bss_B", "insn_per_tick", "how"]
     save(args.out, "adds", head, added)
     bars(args.out, added)
-    texts["adds"] = (table(head, added) + "\nWhat would go from the Cortex-M3 image if nothing "
-                                          "called some modules: they, and all that only they lead "
-                                          "to:\n\n" + features)
+    texts["adds"] = (table(head, added) +
+                     "\nBytes that leave the Cortex-M3 image without a feature: its modules, and "
+                     "what only they call.\n\n" + features)
     for name in ("cost", "adds"):
         with open("%s/%s.md" % (args.out, name), "w", encoding="utf-8") as f:
             f.write(texts[name])

@@ -179,10 +179,11 @@ int bilateral_original(const struct bilateral_options *o)
     }
     if (err) { return err; }
     original_print(&t);
-    printf("\nOriginal: a loop at 90 Hz with the paper's gains for it, a glove of 8 bits (1..255 "
-           "at -9..9 V) whose frame is one late, nothing\n"
-           "that smooths it; contact is frozen by the same law as here. Force less what it should "
-           "be: monitored less demanded in\n"
-           "the same tick, of all ticks in contact.\n");
+    printf(
+        "\n\"Original\" is a loop at 90 Hz with the paper's gains for that rate. Its glove has 8 "
+        "bits (1..255 at -9..9 V),\n"
+        "is one frame late and is not filtered. The same law freezes contacts in both columns.\n"
+        "\"Force less what it should be\" is monitored less demanded force of the same tick, over "
+        "all ticks in contact.\n");
     return o->out ? original_out(o->out, &t, drawn, 2) : 0;
 }

@@ -113,10 +113,11 @@ int drop_original(const struct run_cfg *original, const struct run_cfg *box, con
     for (int k = 0; err == 0 && k < COLUMNS; k++) { err = column(value + k, &c[k], dir, k); }
     if (err) { return posix_interrupted() ? 130 : 1; }
     original_print(&t);
-    printf("\nOriginal: a loop at 90 Hz with the paper's gains for it. Its glove, of 8 bits and a "
-           "frame late, has no part in a fall;\n"
-           "a frame late: were that frame between encoder and motor as well. Force less what it "
-           "should be: monitored less\n"
-           "demanded in the same tick, of all ticks in contact.\n");
+    printf(
+        "\n\"Original\" is a loop at 90 Hz with the paper's gains for that rate. Its glove has no "
+        "part in a fall.\n"
+        "\"A frame late\" adds the frame of the glove as a delay between encoder and motor.\n"
+        "\"Force less what it should be\" is monitored less demanded force of the same tick, over "
+        "all ticks in contact.\n");
     return dir ? original_out(dir, &t, name, COLUMNS) : 0;
 }

@@ -226,15 +226,15 @@ def lists():
 
 
 def bench():
-    """docs/REPORT.md has the instructions of each kernel that `make bench` goes by."""
+    """docs/TABLES.md has the instructions of each kernel that `make bench` goes by."""
     told = {m.group(1): m.groups()[1:]
             for m in re.finditer(r"^    (\w+) +(\d+\.\d\d) .*?(\d+\.\d\d) \|",
-                                 read("docs/REPORT.md"), re.M)}
+                                 read("docs/TABLES.md"), re.M)}
     for name, count, _, _, i686 in (line.split(",")
                                     for line in read(
                                             "test/figures/bench/baseline.csv").splitlines()[2:]):
         yield (told.get(name) == (count, i686),
-               "docs/REPORT.md: %s is %s and %s on i686" % (name, count, i686))
+               "docs/TABLES.md: %s is %s and %s on i686" % (name, count, i686))
 
 
 def main():
