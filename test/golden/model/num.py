@@ -12,7 +12,7 @@ MIN32, MAX32 = -(1 << 31), (1 << 31) - 1
 MIN64, MAX64 = -(1 << 63), (1 << 63) - 1
 
 
-# --- docs/NUMERICS.md: "Numbers" and "Definitions" ---
+# --- docs/NUMERICS.md: "Notation" and "Definitions" ---
 
 def sat32(v):
     return MIN32 if v < MIN32 else MAX32 if v > MAX32 else v

@@ -51,7 +51,7 @@ def on_record(p, was):
     behind = record.unexplained(record.covered(record.reached(), record.sources()),
                                 record.not_proved())
     if not table.is_current():
-        behind.append("docs/NUMERICS.md: its section of proofs is not of counts.txt: make proof "
+        behind.append("docs/PROOFS.md: its tables are not those of counts.txt: run make proof "
                       "ARGS=--table")
     return stale, wrong + ([] if stale else behind), behind if stale else []
 

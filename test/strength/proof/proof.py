@@ -4,7 +4,7 @@
 
 A unit is a file eva/any_UNIT.c, whose first comment says what has to be known of it:
 
-    PROVES: what it is about, a few words            (then what is shown, for docs/NUMERICS.md)
+    PROVES: what it is about, a few words            (then what is shown, for docs/PROOFS.md)
     WP: what WP shows of it                          (may be missing)
     EVA: more options for Eva                        (may be missing)
     WITH: files besides, that it cannot include      (may be missing)
@@ -18,7 +18,7 @@ files of wp/ have. Units that WP judges, too, stand in tools.py.
 
   proof.py [--root DIR] [--out DIR] [--only UNIT,...] [--no-mutants] [--update [--shrink]]
            [--jobs N] [--fresh]
-  proof.py --table      writes its section of docs/NUMERICS.md, from counts.txt and the units
+  proof.py --table      writes the tables of docs/PROOFS.md, from counts.txt and the units
   proof.py --ci         what CI runs: the record is complete and of these sources; what is cheap is
                         proved again
 
@@ -152,7 +152,7 @@ def arguments():
     a.add_argument("--shrink", action="store_true", help="with --update: also where less is proved")
     a.add_argument("--fresh", action="store_true",
                    help="prove again what was proved of the same text")
-    a.add_argument("--table", action="store_true", help="write the section of docs/NUMERICS.md")
+    a.add_argument("--table", action="store_true", help="write the tables of docs/PROOFS.md")
     a.add_argument("--ci", action="store_true", help="the record, and what is cheap")
     return a.parse_args()
 

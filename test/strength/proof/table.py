@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""The section "Proofs" of docs/NUMERICS.md: what is proved, by unit and by file, and what not and
-why."""
+"""The tables of docs/PROOFS.md: what is proved, by unit and by file, and what is not, and why."""
 import os
 import re
 
 import record
 from tools import HERE, WP_PLANTS, read, units
 
-DOC = os.path.join(record.ROOT, "docs", "NUMERICS.md")
+DOC = os.path.join(record.ROOT, "docs", "PROOFS.md")
 BEGIN, END = "<!-- proofs: make proof ARGS=--table -->\n", "<!-- end of proofs -->\n"
 
 
@@ -70,31 +69,30 @@ def text():
     best = record.covered(record.reached(), texts)
     rows = [r for k, r in counts.items() if k in record.rows_wanted()]
     functions = [v for names in best.values() for v in names.values()]
-    out = ["%d properties proved, %d open; %d of %d functions of the library and the scenes are "
-           "reached by at least one unit without an alarm."
+    out = ["%d properties are proved and %d are open. At least one unit reaches %d of %d functions "
+           "of library and scenes without an alarm."
            % (sum(r.proved for r in rows), sum(r.of - r.proved for r in rows),
-              sum(v[0] > 0 for v in functions), len(functions)),
-           "Eva: no undefined behaviour, no overflow, no conversion that loses, in all that the "
-           "unit gives, and the assertions and contracts counted;",
-           "64 and 32 are the width of `long` and of a pointer. Planted: errors put into a copy of "
-           "the code, all told.", "",
-           "| unit | for all inputs and states that are named | proved | planted |",
+              sum(v[0] > 0 for v in functions), len(functions)), "",
+           "## Units", "", "Inputs and states are those that the row names.", "",
+           "| unit | for all inputs and states | proved | planted |",
            "|---|---|---|---|"]
     out += unit_lines(counts)
-    out += ["", "By z3, of expressions, not of the source:", ""]
-    out += ["* `%s`: %s" % line for line in lemma_lines(counts)]
-    out += ["", "By file: functions that a unit reaches, and statements of these that Eva reaches "
-                "of all (a unit's best; others cannot be",
-            "reached, or the unit does not give what would); files with no functions are tables.",
-            "", "| file | functions | statements | units |", "|---|---|---|---|"]
+    out += ["", "## Lemmas", "", "z3 proves these of expressions that repeat the source.", "",
+            "| lemma | statement |", "|---|---|"]
+    out += ["| `%s` | %s |" % (name, what.replace("|", "\\|"))
+            for name, what in lemma_lines(counts)]
+    out += ["", "## Files", "",
+            "Functions that a unit reaches, and the statements of these that Eva reaches, in the "
+            "best unit. A file with no functions holds tables.", "",
+            "| file | functions | statements | units |", "|---|---|---|---|"]
     out += file_lines(best)
-    out += ["", "Not proved, and why:", ""]
+    out += ["", "## Not proved, and why", "", "| file | functions | reason |", "|---|---|---|"]
     for line in read(record.NOT_PROVED).splitlines():
         if line[:1] not in ("#", ""):
             where, _, why = line.partition(": ")
             f, names = where.split(None, 1)
-            names = "" if names == "*" else ", ".join("`%s()`" % n for n in names.split())
-            out.append("* `%s`%s: %s" % (f.replace("lib/", "", 1), names and ", " + names, why))
+            names = "all" if names == "*" else ", ".join("`%s()`" % n for n in names.split())
+            out.append("| `%s` | %s | %s |" % (f.replace("lib/", "", 1), names, why))
     return "\n".join(out) + "\n"
 
 
