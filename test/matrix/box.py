@@ -43,7 +43,7 @@ def kept(path):
 
 
 def document(rows):
-    yield "| target | agree | of | on top of commit |"
+    yield "| target | agree | of | at commit |"
     yield "|---|---|---|---|"
     for r in rows:
         yield "| %s | %s | %s | %s |" % r

@@ -113,14 +113,12 @@ def document(table):
     """The generated part of docs/MATRIX.md."""
     good = [w for w in table.values() if not w[8]]
     modules = len(singles())
-    yield ("%d of %d variants ran, the last on top of commit %s; **%d cells** (module x rate x "
-           "target x compiler x option) of %d modules" % (
+    yield ("%d of %d variants ran, the last at commit %s. **%d cells** of %d modules agree with "
+           "the generator, and %d variants do not." % (
                len(table), sum(len(variants(t)) for t in targets().values()), commit(),
-               sum(int(w[3]) for w in good), modules))
-    yield ("agree with the generator, %d variants do not. Tests passed beside them: %d. All rates "
-           "of all modules together: `%08x`." % (
-               len(table) - len(good), sum(int(w[5]) for w in good),
-               together(expected(1, 2000, 1))))
+               sum(int(w[3]) for w in good), modules, len(table) - len(good)))
+    yield ("%d tests passed with them. The digest of all rates of all modules is `%08x`." % (
+               sum(int(w[5]) for w in good), together(expected(1, 2000, 1))))
     yield ""
     yield "| target | bits | compiler and option | rates, Hz | cells | digest | tests | s |"
     yield "|---|---|---|---|---|---|---|---|"
