@@ -330,15 +330,17 @@ static void print_head(FILE *f)
         fprintf(f, "%s %" PRIu32, r ? r + 1 == rates ? " and" : "," : "", rate_Hz[r]);
     }
     fprintf(f,
-        " Hz. Each fault begins at\nits source so that it is seen in the state of the column. "
-        "Numbers are ticks, "
-        "at the three rates where they differ.\n\n"
-        "- seen: from the first tick that could see it\n"
-        "- **cut**: FAULT, no current and drives disabled in the tick that sees it; it is tick 1\n"
+        " Hz. Each fault begins at\nits source, so that the box sees it in the state of the "
+        "column. "
+        "Numbers are ticks, one for each rate where they differ.\n\n"
+        "- seen: ticks from the first tick that could see it\n"
+        "- **cut**: the tick that sees it (tick 1) goes to FAULT, without current, drives "
+        "disabled\n"
         "- release: RELEASE, then FAULT; the force falls in equal steps and is zero in this tick\n"
-        "- off: stays OFF, or arming ends in OFF; refused: it does not arm, and names the step; "
-        "stays: FAULT, the\n"
-        "  cause latched with the others. –: there is nothing to see, and nothing happens\n\n"
+        "- off: the box stays in OFF, or arming ends in OFF\n"
+        "- refused: the box does not arm and names the step\n"
+        "- stays: the box stays in FAULT and latches the cause with the others\n"
+        "- –: there is nothing to see, and nothing happens\n\n"
         "| fault | what happens | seen |");
     for (unsigned in = 0; in < FAULTS_INS; in++) { fprintf(f, " %s |", title[in]); }
     fprintf(f, "\n|---|---|---|");

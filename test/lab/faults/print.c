@@ -63,13 +63,14 @@ static void print_rules(FILE *f, const struct faults_random *r, int n)
         "not cut", "still enabled", "opened again", "code too far", "current in the motor",
         "branch lost", "not the same from its bytes"};
     int32_t late = 0;
+    fprintf(f, "\n| rule broken | times |\n|---|---|\n");
     for (int k = 0; k < FAULTS_BADS; k++) {
         int32_t sum = 0;
         for (int i = 0; i < n; i++) { sum += r[i].kinds[k]; }
-        fprintf(f, "%s %" PRId32 ", ", rule[k], sum);
+        fprintf(f, "| %s | %" PRId32 " |\n", rule[k], sum);
     }
     for (int i = 0; i < n; i++) { late += r[i].late; }
-    fprintf(f, "not seen in time %" PRId32 ".\n", late);
+    fprintf(f, "| not seen in time | %" PRId32 " |\n", late);
 }
 
 static void print_rate(FILE *f, const struct faults_random *x)
@@ -87,11 +88,11 @@ int faults_print_random(FILE *f, const struct faults_random *r, int n)
     int32_t all = 0, bad = 0;
     int err = 0;
     fprintf(f,
-        "Worst of each rate and scene. Zero: the tick without force, that which saw the cause "
-        "being 1; current\n"
-        "in the motor from that tick on; the steepest fall of a tick over the law's force/R; "
-        "speed and jerk of finger\n"
-        "or mass in the 50 ms behind it, from tick to tick.\n\n"
+        "Each row has the worst case of a rate and a scene.\n\n"
+        "- zero in: the first tick without force; the tick that saw the cause is 1\n"
+        "- none in the motor after: time from that tick to a motor without current\n"
+        "- fall over the law's: steepest fall of a tick over the law's force/R\n"
+        "- released, cut: speed and jerk of finger or mass in the 50 ms after, tick to tick\n\n"
         "| rate | scene | times | gate open | released | zero in | none in the motor after | "
         "held | fall over the law's | released | cut | wrong |\n"
         "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
@@ -102,7 +103,7 @@ int faults_print_random(FILE *f, const struct faults_random *r, int n)
         err |= r[i].err != 0 || (r[i].n >= ENOUGH && r[i].slope < NEAR);
     }
     print_kinds(f, r, n);
-    fprintf(f, "\n%" PRId32 " times: %" PRId32 " wrong. ", all, bad);
+    fprintf(f, "\n%" PRId32 " times: %" PRId32 " wrong.\n", all, bad);
     print_rules(f, r, n);
     for (int i = 0; i < n; i++) {
         if (r[i].err) {

@@ -26,14 +26,14 @@ static const struct row {
     uint8_t when;
     const char *what;
 } step[] = {
-    {EXH_ARM_SELFTEST, EXH_ARM_SELFTEST, 0, ASKED, "a known answer came out wrong"},
-    {EXH_ARM_CALIBRATION, 0, 0, ASKED, "no image of a calibration, and none waived"},
-    {EXH_ARM_POLARITY, EXH_ARM_POLARITY, 0, ASKED, "nothing vouches for it"},
+    {EXH_ARM_SELFTEST, EXH_ARM_SELFTEST, 0, ASKED, "a self-test gives a wrong answer"},
+    {EXH_ARM_CALIBRATION, 0, 0, ASKED, "no calibration is loaded, and none is waived"},
+    {EXH_ARM_POLARITY, EXH_ARM_POLARITY, 0, ASKED, "it is not confirmed"},
     {EXH_ARM_ENCODER, 0, FAULTS_JUMP, ASKED, "the position is lost"},
     {EXH_ARM_DEADMAN, 0, FAULTS_DEADMAN, ASKED, "not held"},
     {EXH_ARM_DEADMAN, 0, FAULTS_ESTOP, ASKED, "held, and another cause: e-stop"},
     {EXH_ARM_SMALL_FORCE, 0, 0, INSIDE, "a finger inside a wall"},
-    {0, EXH_ARM_POLARITY, 0, RISING, "a step before it is lost meanwhile"},
+    {0, EXH_ARM_POLARITY, 0, RISING, "an earlier step fails"},
 };
 #define ROWS (sizeof step / sizeof step[0])
 
@@ -163,9 +163,9 @@ int faults_refusals(FILE *f, uint32_t at_Hz, int parallel)
     fflush(f); /* or each process would say again what is said by now */
     err = jobs_run(&jobs);
     if (err) { return err; }
-    fprintf(f, "\nRUN asked for while a step of arming does not hold, in the same box at the same "
-               "rates: the gate stays shut, nothing is latched.\n\n"
-               "| step | what does not hold | ends in | `arm_step` says |\n|---|---|---|---|\n");
+    fprintf(f, "\nRUN is requested while a step of arming fails, in the same box at the same "
+               "rates. The gate stays closed and nothing is latched.\n\n"
+               "| step | cause | ends in | `arm_step` |\n|---|---|---|---|\n");
     for (size_t i = 0; i < ROWS; i++) {
         const struct refused *at_rates = &r[i * (size_t)a.rates];
         print_row(f, &step[i], at_rates, a.rates);
