@@ -115,15 +115,14 @@ class Adds:
             self.add("one more finger of the full box", port, [0, 0, 0], share["finger"],
                      *self.fingers_on(port))
             self.add("glove: 22 angles", port, costs.without(FEATURES[0][1]), share["glove"],
-                     on and on - off, "its modules, its share of memory; run with a frame in every "
-                                      "tick, and with none")
-            self.add("link to a world with nobody there", port, costs.without(FEATURES[3][1]),
-                     share["link"], on and on - none, "its modules, its share of memory; run with "
-                                                      "states written every fifth tick, and with "
-                                                      "none")
+                     on and on - off, "its modules and memory; run with a frame in every tick, "
+                                      "and with none")
+            self.add("link without a world", port, costs.without(FEATURES[3][1]),
+                     share["link"], on and on - none, "its modules and memory; run with a state "
+                                                      "in every fifth tick, and with none")
             if on:
-                self.add("link: a world that answers", port, [0, 0, 0], 0, world - on,
-                         "planes, and contacts with them; beside nobody there")
+                self.add("link with a world", port, [0, 0, 0], 0, world - on,
+                         "planes, and contacts with them; over a link without a world")
 
     def fingers_on(self, port):
         """(Instructions of one more, how they were seen)."""
@@ -139,7 +138,7 @@ class Adds:
         if None in n:
             return None, how + ": did not run"
         return ((n[-1] - n[0]) / 4,
-                "%s: %s; memory for five is always there" % (how, ", ".join("%.0f" % v for v in n)))
+                "%s: %s; memory is for five" % (how, ", ".join("%.0f" % v for v in n)))
 
     def log(self, has):
         main = ("SCENE_MAIN=test/figures/size/variant.c lib/src/run/deadman.c lib/src/run/log.c "
