@@ -47,7 +47,7 @@ TEST(the_reports_table_is_the_same)
     static const struct {
         const char *here, *report;
     } row[] = {{"\n\"drop\",", "| drop | "}, {"\n\"drop, in turn\",", "| drop, in turn | "},
-        {"\n\"bilateral, a frame at once\",", "| full box, a frame at once | "},
+        {"\n\"bilateral, frame in a tick\",", "| full box, frame in a tick | "},
         {"\n\"bilateral, in turn, frame\",", "| full box, in turn, frame | "},
         {"\n\"bilateral, in turn, part\",", "| full box, in turn, part | "}};
     static char report[200000];
