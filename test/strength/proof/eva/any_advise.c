@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: set-up of pre-contact by figures
- * Any figures, loop rates of a whole number of Hz and of thousandths of it, any threshold: what is advised is within what is refused beyond.
+ * Any figures, loop rates in whole Hz and in thousandths of Hz, any threshold. The advice is
+ * within the range that set-up accepts.
  *
  * EVA: -eva-slevel 20
  * PLANT: lib/src/law/advise.c: d > INT32_MAX || ray > INT32_MAX || -> d > INT32_MAX ||

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: sine and cosine
- * Of every angle: eighth by eighth, the whole eighths by themselves.
+ * Every angle, split into eighths of a turn; the exact eighths separately.
  *
  * PLANT: lib/src/num/sincos.h: exh_from_u32(x << 2) -> x_turn_q32 << 2
  * PLANT: lib/src/num/sincos.h: #define C1_Q32  1324675872 -> #define C1_Q32  (-1324675872)

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: scene bilateral
- * Scene bilateral: a tick and what goes out behind it, for every number of fingers in use (damaged ones too), anything as their
- * places, in any state that its bytes leave, with any frame, glove and command, any packets (none, one, as many as there is room
- * for), any traces (exh_trace_step()'s own text), all other functions of the library keeping to contract.h and contract_box.h; what
- * a tick leaves is a state that a tick takes. Any parameters in their rows.
+ * One tick of scene bilateral and its packets, for every number of fingers, damaged numbers and
+ * places included. Any state read from bytes, frame, glove, command and trace; any packets, up to
+ * as many as fit; any parameters in range. All other library functions keep contract.h and
+ * contract_box.h. The tick leaves a state that the next tick accepts.
  *
  * EVA: -eva-slevel 5 -kernel-warn-key annot:missing-spec=abort
  * WITH: examples/glove/cal.c lib/src/sense/glove_cal.c examples/bilateral/finger.c examples/bilateral/gains.c examples/bilateral/frame.c examples/bilateral/cause.c examples/bilateral/wire.c examples/bilateral/trace.c examples/bilateral/tables.c lib/src/talk/trace.c

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: set-up of scene bilateral
- * Set-up of scene bilateral: each choice of fingers, any parameters, calibrations, any timer that the loop takes: what it makes is what
- * the tick is proved with, every place is a finger, and the first are those in use.
+ * Set-up of scene bilateral: any choice of fingers, parameters, calibrations and timer that the
+ * loop accepts. The configuration is one that unit bilateral assumes. Every place is a finger, and
+ * the fingers in use come first.
  *
  * EVA: -eva-slevel 20 -eva-split-return-function setup:0,bilateral_setup:0,bilateral_finger_setup:0 -kernel-warn-key annot:missing-spec=abort
  * WITH: examples/glove/cal.c lib/src/sense/glove_cal.c examples/bilateral/finger.c examples/bilateral/gains.c examples/bilateral/frame.c examples/bilateral/cause.c examples/bilateral/wire.c examples/bilateral/tables.c

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: bytes
- * Every kind of field through a cursor of any mode (none of the three, too), place and size of buffer: nothing is
- * touched beyond the buffer, and no value is lost on the way. Cursors of a buffer of any size; CRC of any bytes.
+ * Any field through a cursor of any mode, invalid modes included, at any place of any buffer.
+ * Nothing outside the buffer is touched, and no value is lost. Cursors of a buffer of any size;
+ * CRC of any bytes.
  *
  * EVA: -eva-slevel 200
  * PLANT: lib/src/num/bytes.c: at <= c->cap && n <= c->cap - at -> n <= c->cap - at

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: calibration of a finger
- * Any bytes of some lengths as an image, with room for none to two points; any calibration of up to two points judged and compared with
- * anything; those whose points are in range (as it judges: test/module/unit) made into tables of any room and written into buffers of
- * some sizes; lines through any points.
+ * Any bytes of some lengths as an image, with room for none to two points. Any calibration of up
+ * to two points is judged and compared. Calibrations with points in range become tables of any
+ * room and are written into buffers of some sizes. Lines through any points. test/module/unit
+ * shows that the check accepts only points in range.
  *
  * EVA: -eva-slevel 60
  * PLANT: lib/src/bench/calibrate.c: if (h.points > c->cap) { return -EXH_E_SHORT; } -> (void)0;

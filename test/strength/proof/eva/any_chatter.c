@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: chatter
- * A contact that buzzes: set-up of any parameters, any step, a table of three knots with anything in them; the tick in any
- * state that its bytes leave, of any count and current. That a cycle's sum stays within 2^60 is admitted, and shown by z3.
+ * Set-up with any parameters, any step and any table of three knots. A tick in any state read from
+ * bytes, with any count and current. The unit assumes that the sum of a cycle stays within 2^60;
+ * z3 proves that.
  *
  * EVA: -eva-slevel-function exh_chatter_setup:60
  * PLANT: lib/src/safe/chatter.c: s->net_Acnt_q20 = exh_clamp64(s->net_Acnt_q20, SUM_MAX_ACNT); -> (void)0;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: what scenes are judged with
- * The functions of a tick keep to contract.h: given what scenes are shown to give them (called.h), they leave what scenes are
- * shown to do with. That set-ups make such configurations, and bytes such states, unit setup shows.
+ * The functions of a tick keep contract.h. Their inputs are those of called.h, which the units of
+ * the scenes show. Unit setup shows that set-ups make such configurations and that bytes make such
+ * states.
  *
  * PLANT: lib/src/sense/velocity.c: & (EXH_VELOCITY_N - 1u)); -> & EXH_VELOCITY_N);
  * PLANT: lib/src/safe/safety.c: (int64_t)s->share_q30 + cfg->ramp_q30, 0, FULL_Q30) -> (int64_t)s->share_q30 + cfg->ramp_q30, 0, INT32_MAX)

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: force and current
  * Force and current of a finger: any ledger, any permit of exh_safety_step(), any state that
- * exh_drive_serialize() lets pass; a table of three knots with any values that exh_table_setup() lets.
+ * exh_drive_serialize() accepts, any table of three knots that exh_table_setup() accepts.
  *
- * WP: closed: force 0. Open: no force rises above `f_max` or the end of the table. Release: falls in every tick until 0, by no
- * more than `fall` a tick. |current asked| <= `i_peak` for every state and force.
+ * WP: Closed: force 0. Open: no force rises above `f_max` or the end of the table. Release: the
+ * force falls in every tick until 0, by at most `fall` a tick. |current asked| <= `i_peak` for
+ * every state and force.
  *
  * PLANT: lib/src/act/drive.c: exh_wrap_add64(f->spring_N_q20, f->damper_N_q20) -> f->spring_N_q20 + f->damper_N_q20
  */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: scene drop
- * Scene drop: any parameters, set-up for any board and calibrations, and of what it makes a tick in any state that its bytes
- * leave, with any frame, any command, any ticks missed, all functions of the library keeping to contract.h; what a tick leaves is a
- * state that a tick takes.
+ * Scene drop: set-up with any parameters, board and calibrations, then a tick in any state read
+ * from bytes, with any frame, command and missed ticks. All library functions keep contract.h. The
+ * tick leaves a state that the next tick accepts.
  *
  * EVA: -eva-slevel 40 -eva-split-return-function setup:0,drop_setup:0 -kernel-warn-key annot:missing-spec=abort
  * PLANT: examples/drop/drop.c: &of, 1, box); -> &of, 6, box);

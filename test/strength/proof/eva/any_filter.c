@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: low-pass
- * Each kind, with any coefficients and shift (those of damaged memory too), any bits in the states, any input,
- * up to three channels, which know nothing of each other; reset; from any coefficients to any others.
+ * Each kind, with any coefficients and shift, damaged ones included, any state, any input and up
+ * to three channels, which are independent. Reset, and the change from any coefficients to any
+ * others.
  *
  * PLANT: lib/src/sense/filter_low.c: const int64_t p = exh_wrap_add64(s->vel, v); -> const int64_t p = s->vel + v;
  * PLANT: lib/src/sense/filter_low.c: (int64_t)high_word(p) * c -> p * c

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: low-pass, cheap
- * Both kinds, with any coefficients (those of damaged memory too), any bits in the states, any input, up to three
- * channels, which know nothing of each other; reset.
+ * Both kinds, with any coefficients, damaged ones included, any state, any input and up to three
+ * channels, which are independent. Reset.
  *
  * PLANT: lib/src/sense/filter_cheap.c: return (uint64_t)((int64_t)a * b); -> return (uint64_t)(int64_t)(a * b);
  * PLANT: lib/src/sense/filter_cheap.c: exh_from_u64((uint64_t)s->pos + times(v, c)) -> s->pos + (int64_t)v * c

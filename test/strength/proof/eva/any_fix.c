@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: arithmetic
- * fix.h: the arithmetic that the wp/ proofs take for granted, over its whole documented range.
+ * fix.h over its whole documented range. The wp/ proofs rely on this arithmetic.
  *
- * WP: contracts of exh_sat32(), exh_clamp() and exh_clamp32().
+ * WP: Contracts of exh_sat32(), exh_clamp() and exh_clamp32().
  *
  * PLANT: lib/include/exhand/fix.h: ((int64_t)a * b + (INT64_C(1) << (n - 1))) >> n -> ((int64_t)a * b + (INT64_C(1) << n)) >> n
  * PLANT: lib/include/exhand/fix.h: const int64_t hi = (a >> 32) * b; -> const int64_t hi = a * b;

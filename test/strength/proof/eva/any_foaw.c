@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: velocity, foaw
- * The adaptive window: any parameters into set-up; any gains that it can make, any longest window and
- * tolerance (those of damaged memory too), in any state that the bytes leave, of any count.
+ * Set-up of the adaptive window with any parameters. A tick with any gains that set-up can make,
+ * any longest window and tolerance, damaged ones included, in any state read from bytes, with any
+ * count.
  *
  * EVA: -eva-slevel 20
  * PLANT: lib/src/sense/velocity.c: if (s->at > EXH_VELOCITY_N) { s->at = EXH_VELOCITY_N; } -> (void)0;

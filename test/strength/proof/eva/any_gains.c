@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: rule of gains
- * Any rule and any period into set-up. Of a rule that it takes, with any values in the knots that do not
- * count, any k and b asked; and of the way, any two pairs within the rows of k and b, any shift.
+ * Set-up with any rule and any period. With each accepted rule and anything in its unused knots:
+ * any k and b requested, and a step between any two pairs in range, with any shift.
  *
  * PLANT: lib/src/law/gains.c: for (int32_t i = 1; i < rule->knots; i++) -> for (int32_t i = 1; i <= rule->knots; i++)
  * PLANT: lib/src/law/gains.c: !exh_inside(rule->knots, 2, EXH_GAINS_KNOTS) -> !exh_inside(rule->knots, 2, EXH_GAINS_KNOTS + 1)

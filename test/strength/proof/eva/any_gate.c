@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: the gate
- * The gate: any state of the box, any ledger, any output frame, every number of fingers; of the
- * parameters and constants those that exh_drive_setup() lets pass.
+ * Any state of the box, any ledger, any output frame, every number of fingers. Parameters and
+ * constants are those that exh_drive_setup() accepts.
  *
- * WP: every code within `dac_zero` +- `dac_span`, within `i_peak`, within the person's ceiling and within 16 bits; in RELEASE none further from `dac_zero` than in the tick
- * before; a gate that is shut codes `dac_zero` for each finger and enables none; codes of fingers not in use are `dac_zero`;
- * nothing else is written.
+ * WP: Every code is within `dac_zero` +- `dac_span`, `i_peak`, the person's ceiling and 16 bits.
+ * In RELEASE no code is farther from `dac_zero` than in the tick before. A closed gate codes
+ * `dac_zero` for each finger and enables none. Fingers not in use have `dac_zero`. Nothing else is
+ * written.
  *
  * PLANT: lib/src/act/gate.c: (1u << n) - 1u : 0u -> (1u << n) : 0u
  * PLANT: lib/src/act/gate.c: out->enable = 0; -> out->enable = 1;

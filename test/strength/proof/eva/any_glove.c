@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: glove
- * Any codes, in any state that the bytes leave, with a calibration of which only what the tick reads counts: any
- * gain, cross term, end and sensor, a zero within the card; any coefficients, limits and lists (those of damaged memory too).
- * Set-up of any parameters, and of any calibration that is valid. Believed codes, angles and faults afterwards
- * have no range but that of their types; a cause is one of the four. A frame in parts, an empty one among them.
+ * Any codes in any state read from bytes; any gain, cross term, end and sensor, a zero within the
+ * card; any coefficients, limits and lists, damaged ones included. Set-up with any parameters and
+ * any valid calibration. A cause is one of the four. Frames in parts, an empty part included.
  *
  * EVA: -eva-slevel 30
  * PLANT: lib/src/sense/glove.c: cfg->crossed[n] < EXH_GLOVE_SENSORS ? cfg->crossed[n] : 0 -> cfg->crossed[n]

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: calibration of a glove
- * Any bytes of any length into a calibration: what is accepted has its sensors, ends and terms in range, what is
- * refused has no sensor present. Any calibration into judging, for any user, glove and day, and into an image of any size.
+ * Any bytes of any length as a calibration. An accepted one has its sensors, ends and terms in
+ * range; a refused one has no sensor present. Any calibration is judged for any user, glove and
+ * day, and written into a buffer of any size.
  *
  * PLANT: lib/src/sense/glove_cal.c: of >= EXH_GLOVE_SENSORS || -> 0 ||
  * PLANT: lib/src/sense/glove_cal.c: const int64_t gain = s->gain_turnpraw_q38; -> const int32_t gain = s->gain_turnpraw_q38;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: scene glove
- * Scene glove: any parameters and calibration, set-up for any board, a frame or none in any state that its bytes leave, all
- * functions of the library keeping to contract_box.h; the gate with nothing to drive.
+ * Scene glove: set-up with any parameters, calibration and board, then a tick with or without a
+ * frame in any state read from bytes. All library functions keep contract_box.h. The gate has
+ * nothing to drive.
  *
  * EVA: -eva-slevel 40 -eva-split-return-function setup:0,glove_setup:0 -kernel-warn-key annot:missing-spec=abort
  * WITH: examples/glove/cal.c lib/src/sense/glove_cal.c

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: scene guarded
- * Scene guarded, with drop's functions, as scene drop; with a rule of gains and without, values staged by it, and what may be
- * applied.
+ * Scene guarded with the functions of drop, with inputs as for drop. With and without a rule of
+ * gains, including values that the rule stages or refuses.
  *
  * EVA: -eva-slevel 40 -eva-split-return-function setup:0,drop_setup:0,guarded_setup:0,ask_rule:0 -kernel-warn-key annot:missing-spec=abort
  * WITH: examples/drop/drop.c

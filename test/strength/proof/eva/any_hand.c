@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: hand: map and joints
- * Any map into its check; of a map that passes, any sensors into the joints of each finger, and
- * any pulls into those that follow. The DLR/HIT II's own map passes.
+ * Any map is checked. With each accepted map: any sensors for the joints of each finger, and any
+ * pulls of coupled joints. The check accepts the map of the DLR/HIT II.
  *
  * EVA: -eva-slevel 40
  * PLANT: lib/src/sense/hand.c: map->bent[f][j] >= EXH_GLOVE_SENSORS -> map->bent[f + 1][j] >= EXH_GLOVE_SENSORS

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: hand: fingertip and slope
- * Set-up of any bones and parameters; of what it takes, tip and slope at any angles. Here int_fast32_t has 64 bits: that 32 are
- * enough for every value is z3's (smt_hand.py), and that bound is what eva/hand_tip.acsl admits.
+ * Set-up with any bones and parameters, then tip and slope at any angles. int_fast32_t has 64 bits
+ * here. z3 proves that 32 bits are enough (smt_hand.py), and eva/hand_tip.acsl assumes that bound.
  *
  * EVA: -eva-slevel 60
  * PLANT: lib/src/sense/hand.c: b->base_m_q32[i] > BASE_MAX_M_Q32 -> b->base_m_q32[i] > 2 * BASE_MAX_M_Q32

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: guard
- * Areas of 0, 1, 8, 13 and 16 bytes with anything in them, at any place of a round: the tick reads none beyond and
- * leaves a place in the area; with parameters and without, anything in these (any_params.c).
+ * Areas of 0, 1, 8, 13 and 16 bytes with any content, at any place of a round. The tick reads
+ * nothing outside the area. With and without parameters of any content (any_params.c).
  *
  * EVA: -eva-slevel 200
  * PLANT: lib/src/safe/integrity.c: left < EXH_INTEGRITY_B ? left : EXH_INTEGRITY_B -> EXH_INTEGRITY_B

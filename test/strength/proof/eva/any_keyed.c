@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: link with a key
- * Any bytes of any length up to 64, and of none that is too long for a packet, into any state of an end; any packet into buffers
- * of any size. A datagram raises one count; what is handed on lies within it.
+ * Any bytes of any length up to 64, and of none that is too long for a packet, into any state of
+ * one end. Any packet into buffers of any size. A datagram raises one count, and the packet passed
+ * on lies within it.
  *
  * EVA: -eva-slevel 30
  * PLANT: lib/src/talk/keyed.c: if (len_B < EXH_WIRE_OVERHEAD) { return refuse(&s->damaged, EXH_E_SHORT); } -> (void)0;

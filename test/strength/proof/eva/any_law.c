@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: contact law
- * The contact law: any state, position and velocity, parameters in their ranges. The law without memory, and the force that it commands:
- * 0 .. 100 N.
+ * The contact law: any state, position and velocity, with parameters in range. The law without
+ * memory, whose commanded force is 0 .. 100 N.
  *
  * PLANT: lib/include/exhand/contact.h: (uint32_t)pos - (uint32_t)turn -> (uint32_t)(pos - turn)
  * PLANT: lib/src/law/contact.c: exh_diff_sat32(pos_m_q30, lim_m_q30) -> pos_m_q30 - lim_m_q30

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: loop and switch
- * The loop and the dead-man switch: a board that answers anything, of any timer and any ticks missed, whose calls fail at any time and
- * leave then what they were to fill; a scene with glove, link, parameters and words and one without any, which asserts what it is
- * given; the place of an assertion, of a name of any length.
+ * The loop and the dead-man switch. The board answers anything, with any timer and missed ticks,
+ * and its calls may fail at any time without filling their results. One scene has glove, link,
+ * parameters and words; another has none and asserts its inputs. The place of an assertion, with a
+ * name of any length.
  *
  * EVA: -kernel-warn-key annot:missing-spec=abort
  * PLANT: lib/src/run/loop.c: while (in->packets < EXH_SCENE_PACKETS) { -> while (in->packets <= EXH_SCENE_PACKETS) {

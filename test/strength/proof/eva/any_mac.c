@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: tag
- * Any key, any bytes of 0 to 32: nothing beyond them is read, nothing overflows.
+ * Any key, any bytes of length 0 to 32. Nothing outside them is read, and nothing overflows.
  *
  * EVA: -eva-slevel 40
  * PLANT: lib/src/talk/mac.c: for (; len_B >= 8; len_B -= 8, p += 8) -> for (; len_B >= 7; len_B -= 8, p += 8)

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: scene minimal
- * Scene minimal: set-up for any board, and of what it makes a tick in any state, with any frame, any command, any ticks missed, all
- * functions of the library keeping to contract.h; what a tick leaves is a state that a tick takes.
+ * Scene minimal: set-up for any board, then a tick in any state, with any frame, command and
+ * missed ticks. All library functions keep contract.h. The tick leaves a state that the next tick
+ * accepts.
  *
  * EVA: -eva-slevel 40 -eva-split-return-function setup:0 -kernel-warn-key annot:missing-spec=abort
  * PLANT: examples/minimal/minimal.c: &now, 1, box); -> &now, 0, box);

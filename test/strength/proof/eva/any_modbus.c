@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: Modbus
- * Any bytes as a request, of lengths up to 12 and of the longest; those that write many of ten counts, whatever the map of
- * registers says: nothing is read beyond the request, nothing written beyond an answer of 253 bytes, and no more asked of the
- * map than has room in these.
+ * Any bytes as a request, of lengths up to 12 and of the longest; writes of many registers have
+ * ten counts. The map of registers answers anything. Nothing is read outside the request or
+ * written outside an answer of 253 bytes, and the map is asked for no more than fits.
  *
  * EVA: -eva-slevel 60
  * PLANT: lib/src/talk/modbus.c: if (n < 1 || n > READ_BITS) { return -EXH_MODBUS_VALUE; } -> (void)0;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: serial line of Modbus
- * Any byte, any silence, in any state of a line whose frame is at most as long as what stops it; set-up of any address and
- * rate; an answer to any request that is ready, whatever the map says.
+ * Any byte and any silence, in any state of a line whose frame is not too long. Set-up with any
+ * address and rate. An answer to any complete request, with any answer of the map.
  *
  * EVA: -eva-slevel 40
  * PLANT: lib/src/talk/modbus_rtu.c: if (u->len_B < EXH_MODBUS_ADU_B) { -> {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: speed, standing
- * Speed and stand-still of a finger: any state, any constants, any input.
+ * Speed and standstill of a finger: any state, any constants, any input.
  *
  * PLANT: lib/src/safe/motion.c: exh_clamp(*vel_mps_q27, -most, most) -> *vel_mps_q27
  */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: texts
- * Names and texts of any number: of states, triggers, faults, limits, steps of arming, errors, what is wrong with a sensor or with a
- * calibration.
+ * Names and texts for any number: states, triggers, faults, limits, steps of arming, errors, and
+ * the faults of a sensor or a calibration.
  *
  * PLANT: lib/src/safe/safety_names.c: k < EXH_LIMITS ? -> k <= EXH_LIMITS ?
  * PLANT: lib/src/num/error.c: code <= -EXH_E_COUNT || -> code < -EXH_E_COUNT ||

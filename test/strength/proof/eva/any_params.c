@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: parameters
- * Anything in the rows of a table (four groups), in both arrays and in what is kept beside them, damaged or not: look,
- * apply, stage, put, drop and take back; any index, any value. A step towards any goal by any shift. Set-up of any time and
- * period. Images of any bytes and three lengths, a keyframe of any bytes; both written into buffers of some sizes.
+ * Anything in the rows of a table with four groups, in both arrays and in the data beside them,
+ * damaged or not. Look-up, apply, stage, put, drop and restore with any index and value. A step
+ * towards any goal with any shift. Set-up with any time and period. Images of any bytes in three
+ * lengths, a keyframe of any bytes, and both written into buffers of some sizes.
  *
  * EVA: -eva-slevel 10 -eva-min-loop-unroll 16
  * PLANT: lib/src/num/params.c: const uint32_t i = p->at < p->count ? p->at : 0; -> const uint32_t i = p->at;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: energy
- * Passivity of a finger: any state that exh_passivity_serialize() lets pass, any count, any ledger of a law, any
- * current; a table of three knots with any values that exh_table_setup() lets.
+ * Passivity of a finger: any state that exh_passivity_serialize() accepts, any count, ledger and
+ * current, any table of three knots that exh_table_setup() accepts.
  *
  * PLANT: lib/src/law/passivity.c: = exh_clamp64(e, ENERGY_MAX_NCNT_Q20); -> = e;
  */

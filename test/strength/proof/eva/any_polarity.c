@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: arming's pull
- * The small pull of arming: any state, any constants, any count: no force above what was asked for. Set-up of any parameters.
+ * The small pull of arming: any state, constants and count. No force exceeds the requested one.
+ * Set-up with any parameters.
  *
  * PLANT: lib/src/safe/polarity.c: exh_clamp(force, 0, cfg->pull_N_q20) -> (int32_t)force
  */

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: pre-contact
- * Told any plane of any age, in any state that the bytes leave, any fingertip, slope, string and age; ticks missed.
- * Parameters in their rows, read at every tick; set-up of any. What is left is again such a state: the phase one of the
- * four, the planes none or with a unit normal (by eva/precontact.acsl).
+ * Any plane of any age, in any state read from bytes, with any fingertip, slope, string, age and
+ * missed ticks. Parameters in range, read at every tick; set-up with any parameters. The tick
+ * leaves such a state again: the phase is one of the four, and each plane is none or has a unit
+ * normal (eva/precontact.acsl).
  *
  * EVA: -eva-slevel 300
  * PLANT: lib/src/law/precontact.c: s->phase > EXH_PRECONTACT_FROZEN || -> 0 ||

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: probe, home, weigh
- * Set-up of any parameters and any scale; what a configuration that it takes is, is stated, and every such one is ticked: in any
- * state, at any count, with any currents. What is asked is within the current it is bounded by, a result one of the seven.
+ * Set-up with any parameters and any scale states the range of accepted configurations. Each of
+ * these runs a tick in any state, at any count, with any currents. The requested current is within
+ * its bound, and the result is one of the seven.
  *
  * EVA: -eva-slevel 60
  * PLANT: lib/src/bench/probe.c: s->cur_A_q26 = exh_clamp(next, 0, EXH_PROBE_CUR_MAX_A_Q26); -> s->cur_A_q26 = (int32_t)next + cfg->end_A_q26;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: quadrature
- * Lines, index and counter in any state that their bytes leave, of any sample; any count to metres; set-up
- * of any parameters, any period and any width: what it takes is a jump of a quarter of the counter at most.
+ * Lines, index and counter in any state read from bytes, with any sample. Any count to metres.
+ * Set-up with any parameters, period and width accepts a jump of at most a quarter of the counter.
  *
  * EVA: -eva-auto-loop-unroll 300 -eva-slevel 800
  * PLANT: lib/src/sense/quad.c: s->ab &= 3; -> (void)0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: quantizer
- * Any parameters into set-up; what it takes, in any state, of any input.
+ * Set-up with any parameters; a tick with accepted ones, in any state, with any input.
  *
  * PLANT: lib/src/sense/quantizer.c: par->bits > 24 -> par->bits > 32
  * PLANT: lib/src/sense/quantizer_tick.h: (uint32_t)x - (uint32_t)value : -> (uint32_t)(x - value) :

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: records
- * Any bytes of some lengths as a record, whatever length they tell; one begun and ended through a cursor that writes, reads or
- * measures, anywhere; header and event through any.
+ * Any bytes of some lengths as a record, whatever length they claim. A record begun and ended
+ * anywhere through a cursor that writes, reads or measures. Header and event through any cursor.
  *
  * EVA: -eva-slevel 100
  * PLANT: lib/src/talk/record.c: len_B < end + 4 -> len_B < end

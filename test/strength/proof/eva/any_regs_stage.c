@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: register map, written
- * Each address of the blocks that can be written, and behind their ends, of a map of two tables of eight values and a trace of
- * two frames with anything in them, staged or commanded: one register, two, all, and one more, of any bytes. Any coils; what
- * is staged handed on, forgotten, taken; commands of anything. A value never leaves the table's own range.
+ * The map of unit regs, written: one register, two, all and one more, of any bytes, at each
+ * address of the writable blocks and after their ends, staged or commanded. Any coils. Staged
+ * values are passed on, dropped and taken; commands of any content. No value leaves the range of
+ * its table.
  *
  * EVA: -eva-slevel 100 -eva-slevel-function block:1000 -eva-slevel-merge-after-loop exh_regs_validate,write_all -eva-split-return-function judge:0,written:0,from_float:0
  * PLANT: lib/src/talk/regs_stage.c: if ((uint32_t)at + n > EXH_COILS) { return EXH_MODBUS_ADDRESS; } -> (void)0;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: ring of records
- * Set-up of any size. Memory of the least size and of one that is no power of two, in any state that a put leaves (parts within
- * it, the head within it): a record of any type and of some lengths, the longest that fits and one more among them; two
- * after one another. Read from the oldest, or from any place, with anything in the memory; the record found goes out in
+ * Set-up of any size. Memory of the least size and of a size that is no power of two, in any state
+ * that a put leaves. A put of one or two records of any type and of some lengths, the longest that
+ * fits and one more included. Reads from the oldest or from any place, with any memory content, in
  * pieces of any size.
  *
  * EVA: -eva-slevel 100 -eva-slevel-function main:3000

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: state of the box
- * The state of the box: any bit pattern of it, any input.
+ * The state of the box: any bit pattern, any input.
  *
  * PLANT: lib/src/safe/safety.c: if (!sane(s)) { -> if (0) {
  */

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: self-test
- * Whatever memory and machine make of the operands (they are volatile: any value), no undefined behaviour; the answer is one
- * of its enumeration. The filter's set-up is any, as is
- * the sine (any_angle.c).
+ * Any value of the operands, which are volatile. No undefined behaviour, and the answer is one of
+ * its enumeration. Set-up of the filter is any, and so is the sine (any_angle.c).
  *
  * EVA: -eva-slevel 100
  * PLANT: lib/src/safe/selftest.c: k < sizeof want / sizeof want[0] -> k <= sizeof want / sizeof want[0]

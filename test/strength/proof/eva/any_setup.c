@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: set-up and bytes of the output path
- * Set-up of force and current, passivity, state of the box, tracking, speed: any parameters, loop rates in
- * thousandths of Hz; tables of up to three knots with anything in them, judged and inverted. States of any bytes, and what
- * they become is within what the ticks are proved for. Frames of any bytes; the monitor by any table that is taken.
+ * Set-up of force and current, passivity, state of the box, tracking and speed, with any
+ * parameters and rates in thousandths of Hz. Tables of up to three knots with any content, judged
+ * and inverted. States of any bytes become states within the range that the tick units assume.
+ * Frames of any bytes; the monitor with any accepted table.
  *
  * EVA: -eva-slevel 12 -eva-slevel-function setup_i2t:60,exh_passivity_setup:60
  * PLANT: lib/src/act/drive.c: s->i2t_q32 > INT64_MAX / 2) { s->i2t_q32 = INT64_MAX / 2; } -> 0) { s->i2t_q32 = 0; }

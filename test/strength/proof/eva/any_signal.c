@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: tables of signals
- * Tables of up to three groups, of up to four rows each and any number of instances, with anything in the rows: any
- * index, any id; their CRC.
+ * Tables of up to three groups, of up to four rows each and any number of instances, with anything
+ * in the rows. Any index, any id, and the CRC of the table.
  *
  * EVA: -eva-slevel 200
  * PLANT: lib/src/num/signal.c: for (; i >= grp->rows; k++) -> for (; i > grp->rows; k++)

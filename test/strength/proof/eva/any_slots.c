@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: slots
- * Anything in both slots, of sizes around the least and one of 40 bytes, whatever they say of their length; what is to be
- * saved next, of images of some lengths and of any, in buffers of some sizes.
+ * Anything in both slots, of sizes around the least and one of 40 bytes, whatever length they
+ * claim. The next save of images of some lengths and any content, in buffers of some sizes.
  *
  * EVA: -eva-slevel 300
  * PLANT: lib/src/talk/slots.c: if (len_B > slot_B - EXH_SLOT_B(0)) { return -EXH_E_SHORT; } -> (void)0;

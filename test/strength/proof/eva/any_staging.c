@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: staging of gains
- * Any rule that set-up takes, a table of four groups with anything in its rows and in both arrays, any id, instance and value: staged
- * or refused, looked for, led, dropped, and a step of all walls on their way.
+ * Any rule that set-up accepts, a table of four groups with anything in its rows and both arrays,
+ * any id, instance and value. Values are staged or refused, looked up, led and dropped, and all
+ * walls take a step.
  *
  * EVA: -eva-slevel 10 -eva-min-loop-unroll 8
  * PLANT: lib/src/law/gains.c: k < 0 || b < 0 || exh_gains_ok -> k < 0 || exh_gains_ok

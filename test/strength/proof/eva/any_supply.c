@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: supply
- * Set-up of any parameters and period; the tick with any limits, any code, any ticks missed, in any state.
+ * Set-up with any parameters and period. A tick with any limits, code and missed ticks, in any
+ * state.
  *
  * PLANT: lib/src/act/supply.c: most >= INT16_MAX || least > most -> least > most
  * PLANT: lib/src/act/supply.c: if (!exh_period_ok(T)) { return -EXH_E_RATE; } -> (void)0;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: trace
- * Memory of 2, 8 and 128 frames with anything in it, five signals, any state as the bytes leave it, any trace asked for, any
- * values; passed on between any two states. Set-up of any number of frames and signals.
+ * Memory of 2, 8 and 128 frames with any content, five signals, any state read from bytes, any
+ * requested trace, any values. Frames passed on between any two states. Set-up with any number of
+ * frames and signals.
  *
  * EVA: -eva-slevel 200
  * PLANT: lib/src/talk/trace.c: t->what.index[i] >= t->signals -> t->what.index[i] > t->signals

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: current tracking
- * Current tracking: any state, any tolerance in range, any monitor, any code.
+ * Any state, any tolerance in range, any monitor, any code.
  *
- * WP: met: the count starts anew; else it rises; told when it is reached; the band holds what was coded.
+ * WP: A monitor within the band restarts the count. Any other raises it, and the fault is raised
+ * at its limit. The band holds the coded current.
  *
  * PLANT: lib/src/act/tracking.c: (int64_t)s->hi_A_q26 + cfg->tol_A_q26 -> s->hi_A_q26 + cfg->tol_A_q26
  */

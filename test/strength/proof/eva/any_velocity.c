@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: velocity, all but foaw
- * Difference and window, pole, track: any parameters into its set-up; with a step > 0, tables and shares as set-up leaves them,
- * in any state that its bytes leave, of any count. A state is afterwards within what bytes leave.
+ * Difference and window, pole, track: set-up with any parameters. A tick with a step > 0, tables
+ * and shares that set-up leaves, in any state read from bytes, with any count. The tick leaves
+ * such a state again.
  *
  * PLANT: lib/src/sense/velocity.c: & (EXH_VELOCITY_N - 1u)); -> );
  * PLANT: lib/src/sense/velocity.c: s->at %= EXH_VELOCITY_N; -> (void)0;

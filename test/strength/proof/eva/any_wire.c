@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: wire
- * Any bytes of any length as a datagram, into a receiver in any state that its bytes leave; time that passes. Any packet into
- * buffers of any size; what came as a plane, and as a parameter of any table of ten values.
+ * Any bytes of any length as a datagram, into a receiver in any state read from bytes. Time that
+ * passes. Any packet into buffers of any size. Received planes, and received parameters of any
+ * table of ten values.
  *
  * EVA: -eva-slevel 20
  * PLANT: lib/src/talk/wire.c: !exh_bytes_ok(&c) || (len_B != whole_B && len_B != whole_B + EXH_WIRE_SEAL_B) -> !exh_bytes_ok(&c)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: reciprocal
- * exh_recip_q24() of each of its arguments, 1/8 .. 8: the result is within 1/8 .. 8 again.
+ * exh_recip_q24() of each of its arguments, 1/8 .. 8. The result is within 1/8 .. 8 again.
  *
  * PLANT: lib/include/exhand/fix.h: i < 3 -> i < 1
  * PLANT: lib/include/exhand/fix.h: unsigned shift = 3; -> unsigned shift = 4;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: length of (sin, cos)
- * Of each distance from a whole quarter, an eighth of a turn at most, on either side: the square of the length
- * is 1 within 2^-27; and -x has -sin and cos, but at the eighth itself, where the two have changed places. All
- * other angles have these two, swapped or negated (test/module/prop/angle_test.c).
+ * Each distance from a whole quarter, up to an eighth of a turn, on either side. The square of the
+ * length is 1 within 2^-27. -x has -sin and cos, except at the eighth itself, where the two change
+ * places. All other angles swap or negate these two (test/module/prop/angle_test.c).
  *
  * PLANT: lib/src/num/sincos.h: #define S3_Q37  (-4930933) -> #define S3_Q37  (-4930033)
  * PLANT: lib/src/num/sincos.h: #define C1_Q32  1324675872 -> #define C1_Q32  1324675972
