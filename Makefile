@@ -180,7 +180,8 @@ $(boot): $(image) $(PORT_ISO) FORCE
 
 # --- the folders' own parts; a later one may use what an earlier one defines -----------------
 
-include ports/posix/world/world.mk ports/posix/posix.mk ports/fmi/fmi.mk
+include ports/posix/world/world.mk ports/posix/posix.mk ports/fmi/fmi.mk \
+    ports/python/python.mk
 include test/test.mk $(foreach d,closed golden matrix fuzz strength device image \
     figures,test/$d/$d.mk)
 include test/figures/bench/bench.mk test/check.mk test/walk/walk.mk

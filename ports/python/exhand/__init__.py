@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: MIT
+"""exhand: kernels, logs, wire and registers of the exhand haptic library.
+
+All values are in SI units, and a name carries its unit where it is not obvious. This is software:
+it is no safety function, and it does not replace an emergency stop.
+"""
+from importlib.metadata import version
+
+from .kernels import Contact, Counter, LowPass, Quadrature, Velocity
+from .log import Damage, Log
+
+__version__ = version("exhand")
+__all__ = ["Contact", "Counter", "Damage", "Log", "LowPass", "Quadrature", "Velocity"]
