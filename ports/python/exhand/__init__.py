@@ -8,6 +8,8 @@ from importlib.metadata import version
 
 from .kernels import Contact, Counter, LowPass, Quadrature, Velocity
 from .log import Damage, Log
+from .wire import Plane, State, World
 
 __version__ = version("exhand")
-__all__ = ["Contact", "Counter", "Damage", "Log", "LowPass", "Quadrature", "Velocity"]
+__all__ = ["Contact", "Counter", "Damage", "Log", "LowPass", "Plane", "Quadrature", "State", "Velocity",
+           "World"]

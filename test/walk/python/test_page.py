@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+"""What ports/python/README.md prints runs as it is printed."""
+import os
+import re
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+PAGE = Path(__file__).parents[3] / "ports/python/README.md"
+PATH = os.pathsep.join([str(Path(os.environ["EXHAND"]).parent), str(Path(sys.executable).parent),
+                        os.environ["PATH"]])
+
+
+def sections():
+    """(title, blocks) of those with code; a block is indented lines."""
+    for part in re.split(r"^## ", PAGE.read_text(), flags=re.M)[1:]:
+        blocks = re.findall(r"(?:^    .*\n(?:\n(?=    [ )]))*)+", part, re.M)
+        yield part.splitlines()[0], [re.sub(r"^    ", "", b, flags=re.M) for b in blocks]
+
+
+CODE = {title: blocks for title, blocks in sections() if blocks and title != "Install"}
+
+
+def test_the_page_has_what_is_run():
+    assert len(CODE) >= 5 and any(len(b.splitlines()) <= 10 for bs in CODE.values() for b in bs)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("page")
+
+
+@pytest.mark.parametrize("title", CODE)
+def test_section(title, folder):
+    env, background = {**os.environ, "PATH": PATH}, []
+    try:
+        for block in CODE[title]:
+            if block.startswith("import"):
+                run = [sys.executable, "-c", block]
+            elif block.rstrip().endswith("&"):
+                words = block.split()[:-1]
+                background.append(subprocess.Popen(words, cwd=folder, env=env,
+                                                   stdout=subprocess.DEVNULL))
+                time.sleep(0.5)
+                continue
+            else:
+                run = block.split()
+            done = subprocess.run(run, cwd=folder, env=env, capture_output=True, text=True)
+            assert done.returncode == 0, done.stderr
+    finally:
+        for p in background:
+            p.terminate()
+            p.wait()
+    found = re.search(r"largest force: (\S+) N", done.stdout)
+    assert not found or float(found.group(1)) > 0.5
