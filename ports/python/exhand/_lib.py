@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 lib = c.CDLL(str(Path(__file__).with_name("_exhand.so")))
 Rate = Union[int, float, Fraction]
-(FILTER_CFG_B, FILTER_B, VELOCITY_B, COUNTER_B, LINES_B, LAW_B,
- RX_B) = (c.c_uint32 * 7).in_dll(lib, "door_B")
+(FILTER_CFG_B, FILTER_B, VELOCITY_B, COUNTER_B, LINES_B, LAW_B, RX_B, LIMITER_CFG_B,
+ LIMITER_B) = (c.c_uint32 * 9).in_dll(lib, "door_B")
 
 _p, _i, _u, _n = c.c_void_p, c.c_int32, c.c_uint32, c.c_size_t
 for _name, _result, *_args in (
@@ -33,6 +33,11 @@ for _name, _result, *_args in (
         ("door_records", _n, _p, _n, _p, _p, _p, _n),
         ("door_wire", c.c_int, _p, c.c_char_p, _n),
         ("exh_wire_poll", c.c_int, _p, _u, _u),
+        ("door_limiter", None, _p, _p, _p, _p, _n),
+        ("exh_limiter_setup", c.c_int, _p, _p),
+        ("exh_limiter_limit_name", c.c_char_p, c.c_uint),
+        ("exh_limiter_cause_name", c.c_char_p, c.c_uint),
+        ("exh_limiter_field_name", c.c_char_p, c.c_uint),
         ("exh_state_name", c.c_char_p, c.c_uint),
         ("exh_fault_name", c.c_char_p, c.c_uint),
         ("exh_signal_crc", _u, _p),
@@ -65,13 +70,18 @@ def fixed(x: ArrayLike, frac: int, what: str) -> NDArray[np.int32]:
     raw = np.rint(np.asarray(x, dtype=np.float64) * 2.0 ** frac)
     if not np.all((raw >= -2.0 ** 31) & (raw < 2.0 ** 31)):
         raise ValueError("%s: %s (allowed: %g to %g): no number, or too large for its format" %
-                         (what, x, -2.0 ** (31 - frac), 2.0 ** (31 - frac)))
+                         (what, np.asarray(x), -2.0 ** (31 - frac), 2.0 ** (31 - frac)))
     return raw.astype(np.int32, order="C")
+
+
+def real(raw: NDArray[Any], frac: int) -> NDArray[np.float64]:
+    """Integers with `frac` fraction bits in their unit, exact."""
+    return np.asarray(raw * 2.0 ** -frac, np.float64)
 
 
 def period(rate_Hz: Rate) -> tuple[int, int]:
     """The period in seconds as a ratio of two integers, as the library wants it."""
     if not 1 <= rate_Hz <= 20000:
-        raise ValueError("rate_Hz: %s (allowed: 1 to 20000)" % rate_Hz)
+        raise ValueError("rate_Hz: %r (allowed: 1 to 20000)" % rate_Hz)
     rate = Fraction(rate_Hz).limit_denominator(10 ** 5)
     return rate.denominator, rate.numerator

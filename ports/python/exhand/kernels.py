@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._lib import (COUNTER_B, FILTER_B, FILTER_CFG_B, LAW_B, LINES_B, VELOCITY_B, Rate, at, checked,
-                   fixed, lib, memory, period)
+                   fixed, lib, memory, period, real)
 
 Q_POS, Q_VEL, Q_FORCE, Q_K, Q_B, Q_STEP = 30, 27, 20, 10, 20, 42
 
@@ -100,7 +100,7 @@ class Counter:
         a = _counts(cnt, "cnt")
         pos = np.empty_like(a)
         lib.door_position(self._step, at(a), at(pos), a.size)
-        return pos * 2.0 ** -Q_POS
+        return real(pos, Q_POS)
 
 
 class Velocity:
@@ -135,7 +135,7 @@ class Velocity:
         a = _counts(cnt, "cnt")
         vel = np.empty_like(a)
         lib.door_velocity(self._v, at(a), at(vel), a.size)
-        return vel * 2.0 ** -Q_VEL
+        return real(vel, Q_VEL)
 
 
 class Contact:
@@ -169,7 +169,7 @@ class Contact:
         i = self._inputs(pos_m, vel_mps, wall_m)
         out = np.empty((len(i), 4), np.int64)
         lib.door_contact(self._law, at(i), at(out), len(i))
-        newton = out[:, :3] * 2.0 ** -Q_FORCE
+        newton = real(out[:, :3], Q_FORCE)
         return dict(spring=newton[:, 0], damper=newton[:, 1], pullback=newton[:, 2],
                     touching=out[:, 3].astype(bool))
 
@@ -179,4 +179,4 @@ class Contact:
         i = self._inputs(pos_m, vel_mps, wall_m)
         out = np.empty(len(i), np.int32)
         lib.door_force(self._law, at(i), at(out), len(i))
-        return out * 2.0 ** -Q_FORCE
+        return real(out, Q_FORCE)

@@ -13,7 +13,7 @@ import ctypes as c
 import numpy as np
 from numpy.typing import NDArray
 
-from ._lib import at, lib
+from ._lib import at, lib, real
 from .signals import FINGERS, SCENES, Scene, Signal
 
 if TYPE_CHECKING:
@@ -154,8 +154,9 @@ class Log:
         found = {"t_s": self.t_s}
         for name, i, s in self._chosen(all):
             v = self.raw[:, i]
-            found[name] = np.where(v == _NONE[s.id], np.nan, v * 2.0 ** -s.frac) \
-                if s.id in _NONE else v * 2.0 ** -s.frac
+            found[name] = real(v, s.frac)
+            if s.id in _NONE:
+                found[name][v == _NONE[s.id]] = np.nan
         return found
 
     def units(self, all: bool = False) -> dict[str, str]:

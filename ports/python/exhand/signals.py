@@ -66,7 +66,8 @@ def _read(k: int, of_params: int) -> tuple[tuple[Signal, ...], int]:
 
 
 def _scenes() -> dict[str, Scene]:
-    found, glove = {}, c.c_int32()
+    found: dict[str, Scene] = {}
+    glove = c.c_int32()
     while (name := lib.door_scene(len(found), c.byref(glove))) is not None:
         outputs, crc = _read(len(found), 0)
         found[name.decode()] = Scene(name.decode(), outputs, _read(len(found), 1)[0], crc,

@@ -61,7 +61,7 @@ class State:
 
 
 def _mask(bits: int) -> NDArray[np.bool_]:
-    return bits >> np.arange(len(FINGERS)) & 1 == 1
+    return np.array([bits >> k & 1 == 1 for k in range(len(FINGERS))])
 
 
 def _unless(raw: NDArray[Any], none: int) -> NDArray[np.float64]:

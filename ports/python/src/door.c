@@ -11,6 +11,7 @@
 #include "exhand/contact.h"
 #include "exhand/error.h"
 #include "exhand/exhand.h"
+#include "exhand/limiter.h"
 
 #include <stddef.h>
 #include <stdio.h>
@@ -60,10 +61,11 @@ struct law {
     struct exh_contact s;
 };
 
-/* Bytes of: a filter's set-up, one channel, velocity, counter, decoder, law, receiver. */
+/* Bytes of: a filter's set-up, one channel, velocity, counter, decoder, law, receiver, limiter's
+ * set-up and state. */
 const uint32_t door_B[] = {sizeof(struct exh_filter_cfg), sizeof(struct exh_filter),
     sizeof(struct velocity), sizeof(struct counter), sizeof(struct exh_quad_ab), sizeof(struct law),
-    sizeof(struct exh_wire_rx)};
+    sizeof(struct exh_wire_rx), sizeof(struct exh_limiter_cfg), sizeof(struct exh_limiter)};
 
 int door_filter_setup(
     struct exh_filter_cfg *cfg, int32_t order, int32_t fc_Hz_q16, uint32_t num, uint32_t den)
@@ -231,4 +233,12 @@ int door_wire(struct exh_wire_rx *rx, const uint8_t *packet, size_t len_B)
 {
     struct exh_wire_packet p;
     return exh_wire_decode(rx, &p, packet, len_B);
+}
+
+/* --- the limiter --- */
+
+void door_limiter(struct exh_limiter *s, const struct exh_limiter_cfg *cfg,
+    const struct exh_limiter_in *in, struct exh_limiter_out *out, size_t n)
+{
+    for (size_t k = 0; k < n; k++) { exh_limiter_step(s, cfg, in + k, out + k); }
 }

@@ -8,12 +8,13 @@ import sys
 from pathlib import Path
 
 import exhand
-from exhand import modbus, signals
+from exhand import limiter, modbus, signals
 
 ROOT = Path(__file__).parents[3]
 CC = shlex.split(os.environ.get("CC", "cc"))
 LAYOUTS = [("exh_signal", signals.Row), ("exh_signal_group", signals.Group),
-           ("exh_signal_table", signals.Table), ("exh_regs_row", modbus._Row)]
+           ("exh_signal_table", signals.Table), ("exh_regs_row", modbus._Row),
+           ("exh_limiter_in", limiter.In), ("exh_limiter_out", limiter.Out)]
 
 
 def test_codes_are_those_of_examples_link(tmp_path):
@@ -30,14 +31,19 @@ def test_codes_are_those_of_examples_link(tmp_path):
 
 def test_layouts_are_those_of_the_c_compiler(tmp_path):
     wanted, text = [], ["#include <stddef.h>", "#include <stdio.h>", '#include "exhand/exhand.h"',
-                        '#include "exhand/regs.h"', "#define SAY(x) printf(\"%zu\\n\", x)",
-                        "int main(void)", "{"]
+                        '#include "exhand/limiter.h"', '#include "exhand/regs.h"',
+                        "#define SAY(x) printf(\"%zu\\n\", x)", "int main(void)", "{"]
     for name, layout in LAYOUTS:
         text.append("SAY(sizeof(struct %s));" % name)
         wanted.append(ctypes.sizeof(layout))
         for field, *_ in layout._fields_:
             text.append("SAY(offsetof(struct %s, %s));" % (name, field))
             wanted.append(getattr(layout, field).offset)
+    for k, field in enumerate(limiter.FIELDS):
+        text.append("SAY(offsetof(struct exh_limiter_par, %s) / sizeof(int32_t));" % field)
+        wanted.append(k)
+    text.append("SAY(sizeof(struct exh_limiter_par) / sizeof(int32_t));")
+    wanted.append(len(limiter.FIELDS))
     source, program = tmp_path / "layout.c", tmp_path / "layout"
     source.write_text("\n".join([*text, "SAY((size_t)EXH_HEADS);", "SAY((size_t)EXH_COILS);",
                                  "return 0;", "}", ""]))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What ports/python/README.md prints runs as it is printed."""
+"""What ports/python/README.md and README.md print in Python runs as it is printed."""
 import os
 import re
 import subprocess
@@ -9,23 +9,27 @@ from pathlib import Path
 
 import pytest
 
-PAGE = Path(__file__).parents[3] / "ports/python/README.md"
+ROOT = Path(__file__).parents[3]
 PATH = os.pathsep.join([str(Path(os.environ["EXHAND"]).parent), str(Path(sys.executable).parent),
                         os.environ["PATH"]])
 
 
-def sections():
+def sections(page):
     """(title, blocks) of those with code; a block is indented lines."""
-    for part in re.split(r"^## ", PAGE.read_text(), flags=re.M)[1:]:
+    for part in re.split(r"^## ", (ROOT / page).read_text(), flags=re.M)[1:]:
         blocks = re.findall(r"(?:^    .*\n(?:\n(?=    [ )]))*)+", part, re.M)
         yield part.splitlines()[0], [re.sub(r"^    ", "", b, flags=re.M) for b in blocks]
 
 
-CODE = {title: blocks for title, blocks in sections() if blocks and title != "Install"}
+CODE = {title: blocks for page in ("ports/python/README.md", "README.md")
+        for title, blocks in sections(page) if any(b.startswith("import") for b in blocks) or
+        "exhand-mcap" in str(blocks)}
 
 
 def test_the_page_has_what_is_run():
-    assert len(CODE) >= 5 and any(len(b.splitlines()) <= 10 for bs in CODE.values() for b in bs)
+    assert len(CODE) >= 7
+    for title in ("A limiter from Python", "A limiter in ten lines", "A world in ten lines"):
+        assert len(CODE[title][-1].strip().splitlines()) <= 10
 
 
 @pytest.fixture(scope="module")
@@ -50,6 +54,8 @@ def test_section(title, folder):
                 run = block.split()
             done = subprocess.run(run, cwd=folder, env=env, capture_output=True, text=True)
             assert done.returncode == 0, done.stderr
+            for words in re.findall(r"^print\(.*\) +# prints (.*)$", block, re.M):
+                assert done.stdout.strip() == words
     finally:
         for p in background:
             p.terminate()
