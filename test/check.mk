@@ -49,7 +49,8 @@ check:
 # These run built images and programs, one core each, as many at a time as there are cores.
 check_runs := boot-run hil-short nic-run contract-run two-run fmi-run picture
 # Of these a core is mostly one's, or waits.
-check_waits := doc-names prose kill-short doc attacks-short attacks-image-short stress-short same \
+check_waits := python-run doc-names prose kill-short doc attacks-short attacks-image-short \
+               stress-short same \
                fmt-check
 # A core is enough for each of these for most of its time.
 check_single := size bench structure report-test

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""arm.py [INCIDENT...] [--out DIR]: a teleoperated joint whose leader fails, without and with a limiter.
+"""arm.py [INCIDENT...] [--out DIR]: a joint whose leader fails, without and with a limiter.
 
-The follower is one simulated joint with a drive of 5 Nm; the leader's messages come 100 times a second,
-the loop runs 1000 times a second. "Before" is what is often written by hand: a clamp, and the last
-message until another comes. "After" sends the same messages through exhand.Limiter.
+The follower is one simulated joint with a drive of 5 Nm. The leader's messages come 100 times a
+second, the loop runs 1000 times a second. "Before" is what is often written by hand: a clamp, and
+the last message until another comes. "After" sends the same messages through exhand.Limiter.
 
     jump    the first position is 1 rad away, and after 1.5 s the leader is 2.5 rad elsewhere
     stall   an object stops the joint, and the leader goes on
@@ -35,7 +35,7 @@ TORQUE = dict(kind="effort", effort_max=1.0, effort_up=20, effort_down=40, relea
 
 
 class Joint:
-    """Inertia 0.02 kg m2, friction, ends at 2.5 rad, an object; a drive that takes what it is given."""
+    """Inertia 0.02 kg m2, friction, ends at 2.5 rad, an object; a drive with its own limit."""
 
     def __init__(self, object_rad):
         self.q = self.speed = self.torque = 0.0
@@ -127,15 +127,16 @@ def main():
         print("%-9s highest speed    torque    at the end   first cause" % name)
         told("before", before, [])
         speed, torque, last = told("after", after, said)
-        wrong |= torque > MOST or (speed > 1.1 * PLACE["vel_max"] if name == "jump" else last > 0.01)
+        fast = name == "jump" and speed > 1.1 * PLACE["vel_max"]
+        wrong |= torque > MOST or fast or (name != "jump" and last > 0.01)
         path = args.out / name
         with open("%s.csv" % path, "w", encoding="ascii") as f:
-            f.write("t_s" + "".join(",%s_%s" % (c, w) for w in ("before", "after") for c in
-                                    ("message", "sent", "q_rad", "speed_radps", "torque_nm")) + "\n")
+            f.write("t_s" + "".join(",%s_%s" % (c, w) for w in ("before", "after") for c in (
+                "message", "sent", "q_rad", "speed_radps", "torque_nm")) + "\n")
             for b, a in zip(before, after):
                 f.write(",".join("%.6g" % v for v in (*b, *a[1:])) + "\n")
         picture(path, name, place)
-    return wrong
+    return int(wrong)
 
 
 if __name__ == "__main__":

@@ -12,5 +12,5 @@ from .log import Damage, Log
 from .wire import Plane, State, World
 
 __version__ = version("exhand")
-__all__ = ["Contact", "Counter", "Damage", "Limiter", "Log", "LowPass", "Plane", "Quadrature", "State", "Velocity",
-           "World"]
+__all__ = ["Contact", "Counter", "Damage", "Limiter", "Log", "LowPass", "Plane", "Quadrature",
+           "State", "Velocity", "World"]

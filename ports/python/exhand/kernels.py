@@ -122,7 +122,8 @@ class Velocity:
         windows = (1, 2, 4, 8, 16)
         if method == "window" and par not in windows:
             raise ValueError("par: a window of %s ticks: give 1, 2, 4, 8 or 16" % par)
-        a = windows.index(int(par)) if method == "window" else par if method == "foaw" else par * 1e6
+        a = (windows.index(int(par)) if method == "window" else
+             par if method == "foaw" else par * 1e6)
         if not 0 <= a <= 1e6:
             raise ValueError("par: %s (allowed: 0 to 1 s, or 1 to 16 ticks)" % par)
         self._v = memory(VELOCITY_B)
@@ -146,8 +147,9 @@ class Contact:
 
     def __init__(self, k_Npm: float, b_Nspm: float, f0_N: float = 0, f0_band_m: float = 0,
                  hyst_m: float = 0):
-        rows = (("k_Npm", k_Npm, 1e6, Q_K), ("b_Nspm", b_Nspm, 1e3, Q_B), ("f0_N", f0_N, 20, Q_FORCE),
-                ("f0_band_m", f0_band_m, 0.01, Q_POS), ("hyst_m", hyst_m, 0.01, Q_POS))
+        rows = (("k_Npm", k_Npm, 1e6, Q_K), ("b_Nspm", b_Nspm, 1e3, Q_B),
+                ("f0_N", f0_N, 20, Q_FORCE), ("f0_band_m", f0_band_m, 0.01, Q_POS),
+                ("hyst_m", hyst_m, 0.01, Q_POS))
         for name, value, most, _ in rows:
             if not 0 <= value <= most:
                 raise ValueError("%s: %s (allowed: 0 to %g)" % (name, value, most))

@@ -50,7 +50,7 @@ _UNITS = (("_milli", "", 1e3), ("_ms", "_s", 1e3), ("_us", "_s", 1e6))
 
 
 def micro(x: float) -> int:
-    """Nearest millionth, half away from 0; NaN and infinity are NONE; beyond 2147 its sign's end."""
+    """Nearest millionth, half away from 0; NaN and infinity are NONE; limited at +-2147."""
     if not math.isfinite(x):
         return NONE
     return max(-2 ** 31 + 1, min(2 ** 31 - 1, int(x * 1e6 + math.copysign(0.5, x))))
@@ -137,12 +137,12 @@ class Limiter:
     def step(self, now_s: float, command: float, pos: float = math.nan, vel: float = math.nan,
              effort: float = math.nan, age_s: float = 0.0, deadman: bool = False,
              run: bool = True) -> Step:
-        """One step. now_s: a clock that only rises, any origin. command: by kind; NaN and infinity are the
-        cause not_a_number. pos, vel, effort: measured. age_s: of the command, infinite if there
-        never was one. run: is to run; else it is to be off."""
+        """One step. now_s: a clock that only rises, any origin. command: by kind; NaN and infinity
+        are the cause not_a_number. pos, vel, effort: measured. age_s: of the command, infinite if
+        there never was one. run: is to run; else it is to be off."""
         age = age_s * 1e6
-        i = In(round(now_s * 1e6) & 0xFFFFFFFF, micro(command), micro(pos), micro(vel), micro(effort),
-               round(age) if 0 <= age < 2 ** 32 - 1 else 2 ** 32 - 1, deadman, run)
+        i = In(round(now_s * 1e6) & 0xFFFFFFFF, micro(command), micro(pos), micro(vel),
+               micro(effort), round(age) if 0 <= age < 2 ** 32 - 1 else 2 ** 32 - 1, deadman, run)
         o = self._out
         lib.door_limiter(self._state, self._cfg, c.byref(i), c.byref(o), 1)
         return Step(o.send * 1e-6, bool(o.enable), STATES[o.state], _words(o.limits, LIMITS),

@@ -103,7 +103,8 @@ class Log:
 
     def _read_frames(self, data: NDArray[np.uint8], records: NDArray[np.uint64],
                      ticks: NDArray[np.int64], of: Scene) -> None:
-        f, glove = self.fingers, [("glove_new", "u1"), ("glove_age", "<u2"), ("glove_raw", "<i2", 22)]
+        f = self.fingers
+        glove = [("glove_new", "u1"), ("glove_age", "<u2"), ("glove_raw", "<i2", 22)]
         frame = np.dtype([("enc_raw", "<u4", f), ("mon_raw", "<i2", f), ("supply_raw", "<i2"),
                           ("din", "<u4"), *(glove if of.has_glove else []),
                           ("dac_raw", "<u2", f), ("enable", "u1"), ("alive", "u1"),

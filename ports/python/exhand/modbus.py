@@ -28,8 +28,8 @@ def _rows(name: str, n: int) -> list[tuple[str, str]]:
 HEAD = dict((name, (2 * i, kind)) for i, (name, kind) in
             enumerate(_rows("exh_regs_head_row", _HEADS)))
 COILS = [name for name, _ in _rows("exh_regs_coil_row", _COILS)]
-_EXCEPTIONS = {1: "no such function", 2: "no such register", 3: "refused: value, or not allowed now",
-               4: "the box failed", 6: "busy: ask again"}
+_EXCEPTIONS = {1: "no such function", 2: "no such register",
+               3: "refused: value, or not allowed now", 4: "the box failed", 6: "busy: ask again"}
 
 
 class ModbusError(OSError):

@@ -24,7 +24,8 @@ cp -R ports/python/. LICENSE lib "$tree"
 for s in $scenes; do cp -R "examples/$s" "$tree/examples"; done
 "$venv/bin/python" -m build --outdir "$dir/dist" "$tree" >"$dir/build.txt" 2>&1 ||
     { tail -n 30 "$dir/build.txt" | cut -c 1-300; exit 1; }
-grep -E '\.[ch]:[0-9]+:.*warning:' "$dir/build.txt" && { echo "python: a warning: see $dir/build.txt" >&2; exit 1; }
+grep -E '\.[ch]:[0-9]+:.*warning:' "$dir/build.txt" &&
+    { echo "python: a warning: see $dir/build.txt" >&2; exit 1; }
 "$venv/bin/pip" install -q --force-reinstall --no-deps "$dir"/dist/*.whl
 EXHAND=$(realpath "$B/posix/exhand") "$venv/bin/python" -m pytest -q -p no:cacheprovider \
     test/walk/python "$@"

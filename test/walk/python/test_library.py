@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The library in the wheel: its codes are those of every way to link, its layouts the compiler's."""
+"""The library in the wheel: its codes are those of every way to link, its layouts C's."""
 import ctypes
 import os
 import shlex

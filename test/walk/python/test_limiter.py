@@ -78,7 +78,8 @@ def test_micro():
     (ValueError, "effort_max: 0", lambda: make(effort_max=0)),
     (ValueError, "uses: ..switch", lambda: exhand.Limiter("effort", uses=("switch",), **PAR)),
     (ValueError, "kind: torque", lambda: exhand.Limiter("torque", **PAR)),
-    (ValueError, "uses: \\(", lambda: exhand.Limiter("position", pos_min=-1, pos_max=1, vel_max=1, acc_max=1, **PAR))])
+    (ValueError, "uses: \\(", lambda: exhand.Limiter("position", pos_min=-1, pos_max=1,
+                                                        vel_max=1, acc_max=1, **PAR))])
 def test_refusals_name_the_argument(error, words, make_it):
     with pytest.raises(error, match=words):
         make_it()
