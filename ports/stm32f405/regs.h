@@ -161,9 +161,10 @@
 #define GPIO_PUPDR        0x0Cu
 #define GPIO_IDR          0x10u
 #define GPIO_ODR          0x14u
-#define GPIO_BSRR         0x18u /* bit n sets, bit 16 + n clears */
-#define GPIO_AFRL         0x20u /* 4 bits a pin, 0 .. 7 */
-#define GPIO_AFRH         0x24u /* 8 .. 15 */
+#define GPIO_BSRR         0x18u                          /* bit n sets, bit 16 + n clears */
+#define GPIO_AFRL         0x20u                          /* 4 bits a pin, 0 .. 7 */
+#define GPIO_AFRH         0x24u                          /* 8 .. 15 */
+#define GPIO_BASE(port)   (BASE_GPIOA + 0x400u * (port)) /* 0 .. 3: A .. D */
 #define RESET_GPIOA_MODER 0xA8000000u
 #define RESET_GPIOB_MODER 0x00000280u
 #define RESET_GPIOA_PUPDR 0x64000000u

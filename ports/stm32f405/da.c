@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: MIT */
+/* The D/A: a DAC81408, eight channels of 16 bits and +-10 V, on SPI2. At power-on its outputs are
+ * off; its registers then hold -10 V of a bipolar range, so zero is written before any channel is
+ * switched on, and the pin CLR, low from reset on, holds outputs at zero until the first codes are
+ * in. Register map, 24-bit frames and SPI mode 1: as public drivers for this family have them; what
+ * CLR and a reset do is from memory of the data sheet and to be measured first
+ * (docs/STM32F405.md). */
+#include "stm.h"
+
+#include "exhand/error.h"
+
+#define POLLS      2000u
+#define CHANNELS   8u
+#define QUARTER    1u /* 42 MHz / 4 */
+#define RESET_CODE 0xAu
+#define SILENT_MAX 3u
+/* 3276.8 codes/V of ours for 3249 of the library's */
+#define SCALE_Q16 66097
+
+static uint16_t written[EXH_FINGERS]; /* codes of ours in the D/A */
+static uint8_t asked;                 /* 1 + the channel that the next frame brings back */
+static uint8_t turn, wrong, cleared;
+
+/* Both ways; *back is what came. 0 or -EXH_E_IO. */
+static int frame(uint32_t out, uint32_t *back)
+{
+    uint32_t in = 0;
+    int err = 0;
+    PIN_LOW(DA_SYNC);
+    for (int shift = 16; shift >= 0; shift -= 8) {
+        uint32_t n = 0;
+        *(volatile uint8_t *)((uintptr_t)BASE_SPI2 + SPI_DR) = (uint8_t)(out >> shift);
+        while (n < POLLS && !(REG(BASE_SPI2, SPI_SR) & SPI_SR_RXNE)) { n++; }
+        if (n == POLLS) { err = -EXH_E_IO; }
+        in = in << 8 | (REG(BASE_SPI2, SPI_DR) & 0xFFu);
+    }
+    PIN_HIGH(DA_SYNC);
+    if (back) { *back = in; }
+    return err;
+}
+
+static int put(uint32_t at, uint32_t value) { return frame(at << 16 | value, NULL); }
+
+static int get(uint32_t at, uint32_t *value)
+{
+    const int err = frame(DA_READ | at << 16, NULL);
+    return err < 0 ? err : frame(0, value);
+}
+
+static void open_spi(void)
+{
+    REG(BASE_RCC, RCC_APB1ENR) |= RCC_APB1ENR_SPI2EN;
+    (void)REG(BASE_RCC, RCC_APB1ENR);
+    REG(BASE_SPI2, SPI_CR1) = 0;
+    REG(BASE_SPI2, SPI_CR1) =
+        SPI_CR1_CPHA | SPI_CR1_MSTR | PUT(SPI_CR1_BR, QUARTER) | SPI_CR1_SSI | SPI_CR1_SSM;
+    REG(BASE_SPI2, SPI_CR1) |= SPI_CR1_SPE;
+    (void)REG(BASE_SPI2, SPI_DR); /* nothing of before is taken for an answer */
+}
+
+/* Zero is in every channel before one is on. */
+static void set_up(void)
+{
+    (void)put(DA_GENCONFIG, DA_GEN_REF);
+    (void)put(DA_SYNCCONFIG, DA_SYNC_ALL);
+    (void)put(DA_DACRANGE0, DA_RANGE_10V);
+    (void)put(DA_DACRANGE1, DA_RANGE_10V);
+    for (unsigned i = 0; i < CHANNELS; i++) { (void)put(DA_DAC(i), DA_ZERO); }
+    (void)put(DA_TRIGGER, DA_LDAC);
+    (void)put(DA_DACPWDWN, DA_ON_0_TO_4);
+}
+
+int stm_da_open(void)
+{
+    uint32_t id = 0, zero = 0;
+    PIN_LOW(DA_CLR);
+    PIN_HIGH(DA_SYNC);
+    cleared = 1;
+    asked = wrong = turn = 0;
+    open_spi();
+    (void)put(DA_TRIGGER, RESET_CODE);
+    stm_delay_us(5000);
+    (void)put(DA_SPICONFIG, DA_SPI_RUN);
+    if (get(DA_DEVICEID, &id) < 0 || (id & 0xFFFFu) >> 2 != DA_ID) { return -EXH_E_ABSENT; }
+    set_up();
+    for (unsigned i = 0; i < EXH_FINGERS; i++) { written[i] = DA_ZERO; }
+    if (get(DA_DAC(0), &zero) < 0 || (zero & 0xFFFFu) != DA_ZERO) { return -EXH_E_ABSENT; }
+    return 0;
+}
+
+static uint16_t code_of(uint16_t raw)
+{
+    const int32_t d = ((int32_t)raw - 32768) * SCALE_Q16;
+    const int32_t whole = (int32_t)DA_ZERO + (d + (d < 0 ? -32768 : 32768)) / 65536;
+    return (uint16_t)(whole < 0 ? 0 : whole > 65535 ? 65535 : whole);
+}
+
+/* What the frame before the first of this tick had asked for comes back with it. */
+static void compare(uint32_t back)
+{
+    if (asked == 0) { return; }
+    wrong = (uint8_t)((back & 0xFFFFu) == written[asked - 1] ? 0
+                      : wrong < SILENT_MAX                   ? wrong + 1
+                                                             : wrong);
+}
+
+int stm_da_silent(void) { return wrong == SILENT_MAX; }
+
+int stm_da_write(const uint16_t raw[EXH_FINGERS])
+{
+    int err = 0;
+    for (unsigned i = 0; i < EXH_FINGERS; i++) {
+        const uint16_t code = code_of(raw[i]);
+        uint32_t back;
+        err |= frame(DA_DAC(i) << 16 | code, &back);
+        if (i == 0) { compare(back); }
+        written[i] = code;
+    }
+    err |= put(DA_TRIGGER, DA_LDAC);
+    if (cleared) { /* zero until now; what it shows on the way is what was just loaded */
+        PIN_HIGH(DA_CLR);
+        err |= put(DA_TRIGGER, DA_LDAC);
+    }
+    cleared = 0;
+    err |= frame(DA_READ | DA_DAC(turn) << 16, NULL);
+    asked = (uint8_t)(turn + 1u);
+    turn = (uint8_t)(turn + 1u == EXH_FINGERS ? 0 : turn + 1u);
+    return err ? -EXH_E_IO : 0;
+}
+
+/* By the pin alone: SPI may be what is broken, or in the middle of a frame. */
+void stm_da_clear(void)
+{
+    PIN_LOW(DA_CLR);
+    cleared = 1;
+}
