@@ -122,7 +122,7 @@ static void report(void)
     stm_say_u32(missed_in_all);
     stm_say(" missed, ");
     stm_say_u32(enabled);
-    stm_say(" with a drive on\nfrom read to write, 1/84 us: ");
+    stm_say(" with a drive on\nfrom read to write, counts of TIM5: ");
     stm_say_u32(scene_min);
     stm_say(" .. ");
     stm_say_u32(scene_max);
@@ -132,14 +132,13 @@ static void report(void)
     stm_box_report();
 }
 
-/* Emulators end here, where there is no chip: semihosting. A breakpoint that nobody answers would
- * be a fault. Others see the loop, by its name. */
+/* Emulators without the chip end here: semihosting. A breakpoint that nobody answers would be a
+ * fault. Others see the loop of stm_halted(). */
 static void end_emulation(uint32_t status)
 {
     const uint32_t block[2] = {0x20026 /* the program ended by itself */, status};
     register uint32_t operation __asm__("r0") = 0x20; /* SYS_EXIT_EXTENDED */
     register const uint32_t *argument __asm__("r1") = block;
-    if (stm_clock() != STM_CLOCK_NONE) { return; }
     __asm__ volatile("bkpt 0xab" : "+r"(operation) : "r"(argument) : "memory");
 }
 
@@ -162,7 +161,9 @@ void exh_board_halt(const char *why)
     if (run) { report(); }
     stm_say(why);
     stm_say("\n");
-    end_emulation(stm_same(why, "done") ? EXIT_DONE : exit_status);
+    if (stm_clock() == STM_CLOCK_NONE) {
+        end_emulation(stm_same(why, "done") ? EXIT_DONE : exit_status);
+    }
     stm_halted();
 }
 

@@ -17,9 +17,9 @@ RATE           ?= 0
 TICKS          ?= $(if $(SCENE_MAIN),0,$(if $(filter none,$(BOX)),2000,0))
 PORT_MAIN      := ports/stm32f405/main.c lib/src/run/deadman.c
 PORT_SRC        = $(addprefix ports/stm32f405/,start.c clock.c pins.c say.c uart.c watchdog.c \
-                  log.c link.c board.c $(box_$(BOX)) \
+                  log.c link.c mem.c board.c $(box_$(BOX)) \
                   $(if $(SCENE_MAIN),,$(if $(SCENE_ROM),scene_rom.c,scene_full.c slot.c modbus.c))) \
-                  ports/mps2/mem.c $(if $(SCENE_MAIN)$(SCENE_ROM),,lib/src/run/log.c)
+                  $(if $(SCENE_MAIN)$(SCENE_ROM),,lib/src/run/log.c)
 PORT_CFLAGS    := -mcpu=cortex-m4 -mthumb -mfloat-abi=soft -ffreestanding
 PORT_LDFLAGS   := -mcpu=cortex-m4 -mthumb -nostdlib -static -Wl,--build-id=none
 PORT_LDSCRIPT  := ldscripts/stm32f405.ld
@@ -39,3 +39,14 @@ $(stm_wiring): ports/stm32f405/wiring.tsv ports/stm32f405/wiring.awk
 	@awk -v want=h -f ports/stm32f405/wiring.awk $< >$@ || { rm -f $@; exit 1; }
 $(patsubst %.c,$(B)/stm32f405/$(SCENE)/%.o,$(filter ports/stm32f405/%,$(PORT_SRC) $(PORT_MAIN))): \
     $(stm_wiring)
+
+# What flashing tools take, and how, behind `make image`.
+.PHONY: stm-flash
+image: | stm-flash
+stm-flash: all
+	@$(OBJCOPY) -O binary $(image) $(image:.elf=.bin)
+	@$(OBJCOPY) -O ihex $(image) $(image:.elf=.hex)
+	@echo "never run on hardware: read docs/STM32F405.md before you flash; motors disconnected"
+	@echo "openocd -f interface/stlink.cfg -f target/stm32f4x.cfg -c 'program $(image) verify reset exit'"
+	@echo "st-flash --reset write $(image:.elf=.bin) 0x08000000"
+	@echo "dfu-util -a 0 -s 0x08000000:leave -D $(image:.elf=.bin)"

@@ -4,7 +4,7 @@
 # run.sh IMAGE
 # Exit status: 0 the image said "done", 1 it did not (or took too long), 2 bad usage, 3 no QEMU,
 # 5 processor exception.
-# Environment: QEMU_FLAGS (virtual time, 16 ns an instruction: 2.7 cycles of 168 MHz), TIMEOUT_s
+# Environment: QEMU_FLAGS (virtual time, 64 ns an instruction: 10.8 cycles of 168 MHz), TIMEOUT_s
 # (60), MACHINE (netduinoplus2).
 set -u
 
@@ -21,7 +21,7 @@ fi
 # shellcheck disable=SC2086 # a list of words
 timeout "${TIMEOUT_s:-60}" "$qemu" -M "${MACHINE:-netduinoplus2}" -kernel "$1" -display none \
     -serial null -serial stdio -monitor none -semihosting-config enable=on,target=native \
-    ${QEMU_FLAGS--icount shift=4,sleep=off} </dev/null
+    ${QEMU_FLAGS--icount shift=6,sleep=off} </dev/null
 status=$?
 case $status in
 0 | 5) exit $status ;;

@@ -60,6 +60,8 @@ boot-run:
 	@$(boot_run)
 
 contract_images := mps2/minimal mps2/contract mps2/contract_slow mps2/contract_fast mps2/overflow \
+                   stm32f405/minimal stm32f405/contract stm32f405/contract_slow \
+                   stm32f405/contract_fast stm32f405/overflow \
                    pc104/contract pc104/contract_slow pc104/overflow template/contract
 # Scene minimal frozen, and frozen for another rate than it runs at; and a digest of what it codes,
 # frozen and not. TICKS is the same for all, so that none is compiled anew for another.
@@ -82,8 +84,9 @@ contract-built:
 	    $(MAKE) --no-print-directory $(if $(V),,-s) PORT=mps2 SCENE=minimal $$i $(frozen_digest) \
 	    all || exit; done
 	@for i in $(contract_images); do \
-	    $(MAKE) --no-print-directory $(if $(V),,-s) PORT=$${i%/*} SCENE=$${i#*/} CARDS=none all || \
-	    exit; done
+	    $(MAKE) --no-print-directory $(if $(V),,-s) PORT=$${i%/*} SCENE=$${i#*/} CARDS=none BOX=none \
+	    all || exit; done
+	@$(MAKE) --no-print-directory $(if $(V),,-s) PORT=stm32f405 SCENE=minimal all
 contract_run = test/port/contract.sh $(B)
 contract-run:
 	@$(contract_run)

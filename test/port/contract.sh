@@ -44,6 +44,15 @@ run mps2/minimal-frozen-1000-digest 0 "^$(grep -a '^digest' "$out" | tr -d '\r')
 run mps2/contract 0 "$off"
 run mps2/overflow 5 "$off"
 run mps2/overflow 5 '^processor exception 3$'
+# Without BOX=none: nothing of the chip is there but processor, UART and timers. Each is named.
+for part in clock: D/A: A/D: 'device not found$'; do
+    run stm32f405/minimal 1 "^(part )?$part"
+done
+run stm32f405/contract-none 0 "$passed"
+run stm32f405/contract_slow-none 0 "$passed"
+QEMU_FLAGS="-icount shift=3,sleep=off" run stm32f405/contract_fast-none 0 "$passed"
+run stm32f405/minimal-none 0 '^ticks 2000 run, 0 missed, 1[0-9]{3} with a drive on$'
+run stm32f405/overflow-none 5 "$off"
 run pc104/contract-none 0 "$passed" ticks=0
 run pc104/contract_slow-none 0 "$passed" ticks=0
 run pc104/overflow-none 5 'stack' ticks=0
