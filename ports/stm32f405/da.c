@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* The D/A: a DAC81408, eight channels of 16 bits and +-10 V, on SPI2. At power-on its outputs are
- * off; its registers then hold -10 V of a bipolar range, so zero is written before any channel is
- * switched on, and the pin CLR, low from reset on, holds outputs at zero until the first codes are
- * in. Register map, 24-bit frames and SPI mode 1: as public drivers for this family have them; what
- * CLR and a reset do is from memory of the data sheet and to be measured first
- * (docs/STM32F405.md). */
+/* The D/A: a DAC81408, eight channels of 16 bits and +-10 V, on SPI2. At power-on its channels are
+ * off, and its registers hold -10 V of a bipolar range. Low on the pin CLR makes buffers and
+ * outputs zero, whatever else is going on; a resistor holds it low over a reset (TI SLASER3A,
+ * "Clear DAC Operation": a bipolar range is cleared to its middle). Frames of 24 bits, SPI mode 1,
+ * the register map: as public drivers for this family have them. */
 #include "stm.h"
 
 #include "exhand/error.h"
@@ -19,7 +18,8 @@
 
 static uint16_t written[EXH_FINGERS]; /* codes of ours in the D/A */
 static uint8_t asked;                 /* 1 + the channel that the next frame brings back */
-static uint8_t turn, wrong, cleared;
+static uint8_t turn, wrong;
+static volatile uint8_t cleared; /* CLR is low */
 
 /* Both ways; *back is what came. 0 or -EXH_E_IO. */
 static int frame(uint32_t out, uint32_t *back)
@@ -58,21 +58,31 @@ static void open_spi(void)
     (void)REG(BASE_SPI2, SPI_DR); /* nothing of before is taken for an answer */
 }
 
-/* Zero is in every channel before one is on. */
-static void set_up(void)
+/* Zero is in every channel before one is on, and is read back. CLR goes up for that, while all
+ * channels are off: it may keep codes out. Its edge makes them zero once more. */
+static int set_up(void)
 {
+    uint32_t zero = 0;
+    int bad = 0;
     (void)put(DA_GENCONFIG, DA_GEN_REF);
     (void)put(DA_SYNCCONFIG, DA_SYNC_ALL);
     (void)put(DA_DACRANGE0, DA_RANGE_10V);
     (void)put(DA_DACRANGE1, DA_RANGE_10V);
+    PIN_HIGH(DA_CLR);
     for (unsigned i = 0; i < CHANNELS; i++) { (void)put(DA_DAC(i), DA_ZERO); }
     (void)put(DA_TRIGGER, DA_LDAC);
-    (void)put(DA_DACPWDWN, DA_ON_0_TO_4);
+    PIN_LOW(DA_CLR);
+    for (unsigned i = 0; i < EXH_FINGERS; i++) {
+        written[i] = DA_ZERO;
+        bad |= get(DA_DAC(i), &zero) < 0 || (zero & 0xFFFFu) != DA_ZERO;
+    }
+    if (!bad) { (void)put(DA_DACPWDWN, DA_ON_0_TO_4); }
+    return bad ? -EXH_E_ABSENT : 0;
 }
 
 int stm_da_open(void)
 {
-    uint32_t id = 0, zero = 0;
+    uint32_t id = 0;
     PIN_LOW(DA_CLR);
     PIN_HIGH(DA_SYNC);
     cleared = 1;
@@ -82,10 +92,7 @@ int stm_da_open(void)
     stm_delay_us(5000);
     (void)put(DA_SPICONFIG, DA_SPI_RUN);
     if (get(DA_DEVICEID, &id) < 0 || (id & 0xFFFFu) >> 2 != DA_ID) { return -EXH_E_ABSENT; }
-    set_up();
-    for (unsigned i = 0; i < EXH_FINGERS; i++) { written[i] = DA_ZERO; }
-    if (get(DA_DAC(0), &zero) < 0 || (zero & 0xFFFFu) != DA_ZERO) { return -EXH_E_ABSENT; }
-    return 0;
+    return set_up();
 }
 
 static uint16_t code_of(uint16_t raw)
@@ -106,9 +113,15 @@ static void compare(uint32_t back)
 
 int stm_da_silent(void) { return wrong == SILENT_MAX; }
 
+/* Where CLR was low its registers are zero, so it goes up before the codes that it would keep
+ * out. */
 int stm_da_write(const uint16_t raw[EXH_FINGERS])
 {
     int err = 0;
+    if (cleared) {
+        cleared = asked = 0;
+        PIN_HIGH(DA_CLR);
+    }
     for (unsigned i = 0; i < EXH_FINGERS; i++) {
         const uint16_t code = code_of(raw[i]);
         uint32_t back;
@@ -117,11 +130,6 @@ int stm_da_write(const uint16_t raw[EXH_FINGERS])
         written[i] = code;
     }
     err |= put(DA_TRIGGER, DA_LDAC);
-    if (cleared) { /* zero until now; what it shows on the way is what was just loaded */
-        PIN_HIGH(DA_CLR);
-        err |= put(DA_TRIGGER, DA_LDAC);
-    }
-    cleared = 0;
     err |= frame(DA_READ | DA_DAC(turn) << 16, NULL);
     asked = (uint8_t)(turn + 1u);
     turn = (uint8_t)(turn + 1u == EXH_FINGERS ? 0 : turn + 1u);

@@ -42,8 +42,7 @@ END {
     if (bad) { exit 1 }
     if (want == "h") { print "" }
     if (want != "dot") { exit }
-    split("encoders;monitors, supply;glove multiplexers;D/A;enables, relay;stops, ready;serial lines",
-        what, ";")
+    split("encoders;monitors, supply;glove;D/A;enables, relay;stops, ready;serial lines", what, ";")
     for (i = 1; i <= parts; i++) {
         print " " order[i] " [label=\"{" order[i] " " what[i] "|" at[order[i]] "}\"];"
     }
