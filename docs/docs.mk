@@ -42,6 +42,11 @@ diagrams: $(lab)
 	done
 	$(Q)$(lab) diagram test/lab/diagram/geometry.svg > docs/geometry.svg
 
+## Write the pins of docs/STM32F405.md, table and picture, of wiring.tsv (ARGS=--check: compare).
+.PHONY: wiring
+wiring:
+	@ports/stm32f405/wiring.sh $(ARGS)
+
 ## Write the table of docs/CARDS.md: every misbehaviour of a card in every phase of its driver.
 .PHONY: cards
 cards: $(lab)
