@@ -18,7 +18,8 @@ TICKS          ?= $(if $(SCENE_MAIN),0,$(if $(filter none,$(BOX)),2000,0))
 PORT_MAIN      := ports/stm32f405/main.c lib/src/run/deadman.c
 PORT_SRC        = $(addprefix ports/stm32f405/,start.c clock.c pins.c say.c uart.c watchdog.c \
                   log.c link.c mem.c board.c $(box_$(BOX)) \
-                  $(if $(SCENE_MAIN),,$(if $(SCENE_ROM),scene_rom.c,scene_full.c slot.c modbus.c))) \
+                  $(if $(SCENE_MAIN),,$(if $(SCENE_ROM),scene_rom.c, \
+                  scene_full.c slot.c modbus.c))) \
                   $(if $(SCENE_MAIN)$(SCENE_ROM),,lib/src/run/log.c)
 PORT_CFLAGS    := -mcpu=cortex-m4 -mthumb -mfloat-abi=soft -ffreestanding
 PORT_LDFLAGS   := -mcpu=cortex-m4 -mthumb -nostdlib -static -Wl,--build-id=none
@@ -47,6 +48,7 @@ stm-flash: all
 	@$(OBJCOPY) -O binary $(image) $(image:.elf=.bin)
 	@$(OBJCOPY) -O ihex $(image) $(image:.elf=.hex)
 	@echo "never run on hardware: read docs/STM32F405.md before you flash; motors disconnected"
-	@echo "openocd -f interface/stlink.cfg -f target/stm32f4x.cfg -c 'program $(image) verify reset exit'"
+	@echo "openocd -f interface/stlink.cfg -f target/stm32f4x.cfg" \
+	    "-c 'program $(image) verify reset exit'"
 	@echo "st-flash --reset write $(image:.elf=.bin) 0x08000000"
 	@echo "dfu-util -a 0 -s 0x08000000:leave -D $(image:.elf=.bin)"

@@ -6,13 +6,13 @@ BEGIN {
     split("up none down", pulls, " ")
     for (i in pulls) { pull[pulls[i]] = toupper(pulls[i]) }
     if (want == "h") {
-        print "/* Made from ports/stm32f405/wiring.tsv: X(net, port, pin, mode, function, pull, high) */"
+        print "/* Made of wiring.tsv: X(net, port, pin, mode, function, pull, high) */"
         printf "#define WIRING(X)"
     } else if (want == "md") {
         print "| connector | net | pin | function | mode | pull | what |\n|--|--|--|--|--|--|--|"
     } else {
-        print "digraph wiring {\n rankdir=LR; node [shape=record, fontname=\"DejaVu Sans\", fontsize=10];"
-        print " edge [arrowhead=none, color=gray50, fontname=\"DejaVu Sans\", fontsize=8];"
+        print "digraph wiring {\n rankdir=LR; ranksep=2.5; edge [arrowhead=none, color=gray50];"
+        print " node [shape=record, fontname=\"DejaVu Sans\", fontsize=10];"
     }
 }
 /^#/ || $1 == "pin" { next }
@@ -29,7 +29,8 @@ NF != 7 || $1 !~ /^P[A-D][0-9]+$/ || $3 !~ /^(AF[0-9]+|analog|in|out1?)$/ || !($
     at[part] = at[part] (at[part] == "" ? "" : "|") "<" $4 "> " $5 " " $4
     fn = $2 == "GPIO" ? ($3 == "in" ? "input" : "output") : $2
     chip = chip (chip == "" ? "" : "|") "<" $4 "> " $1 " " fn
-    edges = edges " " part ":" $4 " -> chip:" $4 ";\n"
+    edges = edges (parts < 4 ? part ":" $4 ":e -> chip:" $4 ":w;\n" : \
+        "chip:" $4 ":e -> " part ":" $4 ":w;\n")
 }
 want == "h" {
     port = index("ABCD", substr($1, 2, 1)) - 1
@@ -44,7 +45,7 @@ END {
     if (want != "dot") { exit }
     split("encoders;monitors, supply;glove;D/A;enables, relay;stops, ready;serial lines", what, ";")
     for (i = 1; i <= parts; i++) {
-        print " " order[i] " [label=\"{" order[i] " " what[i] "|" at[order[i]] "}\"];"
+        print " " order[i] " [label=\"" order[i] " " what[i] "|" at[order[i]] "\"];"
     }
-    print " chip [label=\"{STM32F405RG|" chip "}\"];\n" edges "}"
+    print " chip [label=\"STM32F405RG|" chip "\"];\n" edges "}"
 }

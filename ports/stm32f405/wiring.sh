@@ -22,4 +22,6 @@ if [ "${1:-}" = --check ]; then
 fi
 command -v dot >/dev/null 2>&1 || { echo "dot: not found: install graphviz" >&2; exit 3; }
 cat "$work/page" >"$page"
-awk -v want=dot -f "$here/wiring.awk" "$here/wiring.tsv" | dot -Tsvg >docs/stm32f405.svg
+awk -v want=dot -f "$here/wiring.awk" "$here/wiring.tsv" | dot -Tsvg |
+    awk '/^<svg/ { on = 1 } !on || /^<!--/ { next }
+        { printf "%s%s", $0, /^<\/(g|svg)>$/ ? "\n" : " " }' >docs/stm32f405.svg

@@ -19,6 +19,7 @@
 #          seen by a timer of 25 MHz (bilateral: 32 ns, to 2); the dearest tick, nothing moving.
 #          minimal once more as minimal-frozen-1000 (make FROZEN=1000): scene and library set up and
 #          linked as one program.
+#   stm32f405  the image for drives: bytes and stack alone.
 #
 # Environment: MAKE (make), B (build). A missing cross compiler, emulator or valgrind
 # leaves "-" in the table and says so.
@@ -225,7 +226,7 @@ counted_m()
 # row SCENE PORT TEXT DATA BSS STACK INSTRUCTIONS
 row()
 {
-    printf '%-19s %-8s %8s %6s %6s %8s %12s %8s\n' "$@" "$(wc -l <"$b/symbols.txt")"
+    printf '%-19s %-9s %8s %6s %6s %8s %12s %8s\n' "$@" "$(wc -l <"$b/symbols.txt")"
 }
 
 posix_row()
@@ -284,6 +285,21 @@ mps2_row()
     row "$1" mps2 $bytes "$stack" "$(counted_m "$1")"
 }
 
+# The image for drives, linked of its parts, so that the stack can be told; not run: what runs it is
+# no part of this. Its symbols of the library are those of mps2.
+stm32f405_row()
+{
+    cross=arm-none-eabi-
+    command -v "${cross}gcc" >/dev/null 2>&1 || return 0
+    build stm32f405 "$1" "CROSS=$cross" "CC=${cross}gcc" PORT_WHOLE=
+    library_symbols stm32f405 "$1" "${cross}nm" >"$b/symbols.txt"
+    bytes=$("${cross}size" "$b/stm32f405/$1.elf" | awk 'NR == 2 { print $1, $2, $3 }')
+    stack=$(stack stm32f405 "$1" "${cross}objdump")
+    stack_fits stm32f405 "$1" "$stack" "${cross}nm"
+    # shellcheck disable=SC2086 # three numbers
+    row "$1" stm32f405 $bytes "$stack" -
+}
+
 mkdir -p "$b"
 [ $# -gt 0 ] || set -- minimal drop guarded custom glove bilateral bringup calibrate
 : >"$b/table.txt"
@@ -293,10 +309,11 @@ for scene in "$@"; do
         posix_row "$scene"
         pc104_row "$scene"
         mps2_row "$scene"
+        stm32f405_row "$scene"
         if [ "$scene" = minimal ]; then mps2_row minimal-frozen-1000; fi
     } >>"$b/table.txt"
 done
-printf '%-19s %-8s %8s %6s %6s %8s %12s %8s\n' scene port text_B data_B bss_B stack_B \
+printf '%-19s %-9s %8s %6s %6s %8s %12s %8s\n' scene port text_B data_B bss_B stack_B \
     insn/tick symbols
 cat "$b/table.txt"
 [ "$failed" = no ]
