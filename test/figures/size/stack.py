@@ -9,7 +9,7 @@ exh_loop_hooks), so an indirect call is taken to reach any function whose addres
 of any object; but one in the log (exh_log_*, lib/src/run/log.c) only what a scene's own table or a
 tap's (struct exh_log_tap tap) points to: it calls the scene's state() and the tap, while the loop's
 hooks call the log; likewise one in the black box, which asks the scene to show its signals, and in
-pc104's modbus, which asks the scene what is allowed; one in scene custom only what its slot points
+pc104's and stm32f405's modbus, which asks the scene what is allowed; one in scene custom only what its slot points
 to; and one in calibrate_tick() only what its own table of
 steps points to. A function whose address is taken only by code is not seen: give it a table.
 Functions without a graph (assembler, the C library) count as nothing and are named.
@@ -27,8 +27,8 @@ BYTES = re.compile(r'(\d+) bytes \(([^)]*)\)')
 SECTION = re.compile(r'RELOCATION RECORDS FOR \[([^]]*)\]')
 RELOCATION = re.compile(r'^[0-9a-f]+ +R_\S+ +(\S+)')
 INDIRECT = '__indirect_call'
-LOG = re.compile(r'(^|:)(exh_log_|exh_blackbox_|pc104_modbus_)|'
-                 r'(^|/)(log|blackbox|pc104/modbus)\.c:')
+LOG = re.compile(r'(^|:)(exh_log_|exh_blackbox_|pc104_modbus_|stm_modbus_)|'
+                 r'(^|/)(log|blackbox|pc104/modbus|stm32f405/modbus)\.c:')
 # Callers that call by some tables only: (caller, the tables' sections). The first that fits is
 # taken.
 ONLY = ((re.compile(r'(^|/)custom\.c:'), re.compile(r'\.slot$')),
