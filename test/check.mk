@@ -50,8 +50,7 @@ check:
 check_runs := boot-run hil-short nic-run contract-run two-run fmi-run picture
 # Of these a core is mostly one's, or waits.
 check_waits := python-run doc-names prose kill-short doc attacks-short attacks-image-short \
-               stress-short same \
-               fmt-check
+               stress-short same fmt-check
 # A core is enough for each of these for most of its time.
 check_single := size bench structure report-test
 .PHONY: hil-short picture bits
