@@ -130,3 +130,13 @@ modbus-image: all
 	@$(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=drop CARDS=none all
 	@$(MAKE) --no-print-directory $(if $(V),,-s) PORT=pc104 SCENE=guarded CARDS=none all
 	@B=$(B) test/image/pc104/modbus.sh $(ARGS)
+
+# --- the STM32F405 ---
+
+stm_dir := test/image/stm32f405
+
+## Compare the register numbers of the STM32F405 port with those of two register crates.
+.PHONY: stm32f405-regs
+stm32f405-regs:
+	@python3 $(stm_dir)/crate.py check $(stm_dir)/crate.tsv ports/stm32f405/regs.h
+	@python3 $(stm_dir)/crate.py planted $(stm_dir)/crate.tsv ports/stm32f405/regs.h
