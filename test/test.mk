@@ -6,7 +6,7 @@ san       := -fsanitize=address,undefined -fno-sanitize-recover=all
 # Folders with long tests come first.
 test_dirs := golden closed/sim module/prop closed/world module/slot device/gpio device/serial \
              device/cards device/emu \
-             image/pc104 port module/frozen module/unit
+             image/pc104 image/stm32f405 port module/frozen module/unit
 test_src  := $(foreach d,$(test_dirs),$(wildcard test/$(d)/*_test.c))
 test_name  = $(notdir $(patsubst %/,%,$(dir $(1))))/$(patsubst %_test.c,%,$(notdir $(1)))
 test_bin  := $(foreach s,$(test_src),$(B)/test/$(call test_name,$s)_test)
@@ -53,6 +53,11 @@ $(eval $(call tests,golden,$(B)/posix,$(golden_src:%.c=$(B)/posix/%.o) $(posix_l
 # Registers of the emulated cards; the bus and the glove's line have tests of their own.
 emu_src := $(wildcard ports/posix/emu/[!bc]*.c)
 $(eval $(call tests,device/emu,$(in_san),$(san_support) $(emu_src:%.c=$(in_san)/%.o)))
+
+# Models of an STM32F405's parts, without a processor.
+stm_models := $(addprefix test/image/stm32f405/,bus.c core.c rcc.c flash.c port.c tim.c adc.c dma.c \
+              serial.c iwdg.c da.c)
+$(eval $(call tests,image/stm32f405,$(in_san),$(san_support) $(stm_models:%.c=$(in_san)/%.o)))
 
 # Drivers of the cards, over a bus that a test scripts.
 cards_src := $(wildcard ports/cards/*.c)
