@@ -8,6 +8,7 @@
 #define HIL_H
 
 #include "chips.h"
+#include "image.h"
 
 #include <stdint.h>
 #include <stdio.h>
@@ -100,9 +101,6 @@ void hil_broke(struct hil *h, const char *format, ...);
 
 /* --- image.c: the ELF file --- */
 int hil_load(struct hil *h, const char *path);
-/* Address of a symbol, or 0. "name*": of the first that begins so; its name replaces that. */
-uint32_t hil_symbol_name(const char *path, char *name, size_t cap_B);
-uint32_t hil_symbol(const char *path, const char *name);
 
 /* --- ports.c: what answers at which port --- */
 int hil_ports_open(struct hil *h);

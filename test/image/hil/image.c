@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The ELF file: what is loaded where, and where its functions are. */
+#include "image.h"
+
 #include "hil.h"
 
 #include <elf.h>
@@ -30,44 +32,63 @@ static int inside(const struct file *f, uint64_t from, uint64_t n)
     return from <= f->size && n <= f->size - from;
 }
 
-/* The header, if it is a 32-bit x86 program. */
+/* The header, if it is a 32-bit program for one of our processors. */
 static int header_of(const struct file *f, Elf32_Ehdr *e)
 {
     if (!inside(f, 0, sizeof *e)) { return -1; }
     memcpy(e, f->at, sizeof *e);
     if (memcmp(e->e_ident, ELFMAG, SELFMAG) != 0 || e->e_ident[EI_CLASS] != ELFCLASS32 ||
-        e->e_machine != EM_386 || e->e_phentsize != sizeof(Elf32_Phdr) ||
+        (e->e_machine != EM_386 && e->e_machine != EM_ARM) ||
+        e->e_phentsize != sizeof(Elf32_Phdr) ||
         !inside(f, e->e_phoff, (uint64_t)e->e_phnum * sizeof(Elf32_Phdr))) {
         return -1;
     }
     return 0;
 }
 
-static int load_segments(struct hil *h, const struct file *f, const Elf32_Ehdr *e)
+/* clears: what the file has not is 0. Where memory is flash, nobody clears what a file leaves out.
+ */
+static int load_segments(
+    const struct file *f, const Elf32_Ehdr *e, image_place_fn *place, void *ctx, int clears)
 {
     for (unsigned i = 0; i < e->e_phnum; i++) {
         Elf32_Phdr p;
+        uint8_t *to;
         memcpy(&p, f->at + e->e_phoff + i * sizeof p, sizeof p);
         if (p.p_type != PT_LOAD) { continue; }
-        if (!inside(f, p.p_offset, p.p_filesz) || p.p_filesz > p.p_memsz ||
-            (uint64_t)p.p_paddr + p.p_memsz > HIL_RAM_B) {
+        to = place(ctx, p.p_paddr, clears ? p.p_memsz : p.p_filesz);
+        if (!inside(f, p.p_offset, p.p_filesz) || p.p_filesz > p.p_memsz || to == NULL) {
             return -1;
         }
-        memcpy(&h->ram[p.p_paddr], f->at + p.p_offset, p.p_filesz);
-        memset(&h->ram[p.p_paddr + p.p_filesz], 0, p.p_memsz - p.p_filesz);
+        memcpy(to, f->at + p.p_offset, p.p_filesz);
+        if (clears) { memset(to + p.p_filesz, 0, p.p_memsz - p.p_filesz); }
     }
-    h->entry = e->e_entry;
     return 0;
 }
 
-int hil_load(struct hil *h, const char *path)
+int image_load(
+    const char *path, unsigned machine, image_place_fn *place, void *ctx, uint32_t *entry)
 {
     struct file f = read_file(path);
     Elf32_Ehdr e;
     int err = f.at == NULL ? -1 : header_of(&f, &e);
-    if (err == 0) { err = load_segments(h, &f, &e); }
-    if (err < 0) { fprintf(stderr, "hil: %s: not a 32-bit x86 image that fits\n", path); }
+    if (err == 0 && e.e_machine != machine) { err = -1; }
+    if (err == 0) { err = load_segments(&f, &e, place, ctx, machine == EM_386); }
+    if (err == 0) { *entry = e.e_entry; }
     free(f.at);
+    return err;
+}
+
+static uint8_t *in_ram(void *ctx, uint32_t at, uint32_t n)
+{
+    const struct hil *h = ctx;
+    return (uint64_t)at + n > HIL_RAM_B ? NULL : &h->ram[at];
+}
+
+int hil_load(struct hil *h, const char *path)
+{
+    const int err = image_load(path, EM_386, in_ram, h, &h->entry);
+    if (err < 0) { fprintf(stderr, "hil: %s: not a 32-bit x86 image that fits\n", path); }
     return err;
 }
 

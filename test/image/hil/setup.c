@@ -3,6 +3,7 @@
 
 #include "bilateral/bilateral.h"
 #include "drop/drop.h"
+#include "guarded/guarded.h"
 
 #include "box/hand.h"
 
@@ -29,10 +30,10 @@ static void set_device(struct ref_cfg *c)
     set(c, "uncalibrated", 1);
 }
 
-/* The paper's first experiment, falls without end. */
-static void drop(struct ref_cfg *c)
+/* The paper's first experiment, falls without end; guarded or not. */
+static void drop(struct ref_cfg *c, const struct exh_scene *scene)
 {
-    c->scene = &exh_scene_drop;
+    c->scene = scene;
     c->board.falls = 1000000000;
     set_device(c);
     set(c, "q_lim", c->board.device.height_m);
@@ -100,7 +101,9 @@ int setup_for(struct ref_cfg *c, const char *symbol, uint64_t seed, uint32_t tic
     c->board.max_ticks = ticks;
     c->held_s = HELD_S;
     if (strcmp(symbol, "exh_scene_drop") == 0) {
-        drop(c);
+        drop(c, &exh_scene_drop);
+    } else if (strcmp(symbol, "exh_scene_guarded") == 0) {
+        drop(c, &exh_scene_guarded);
     } else if (strcmp(symbol, "exh_scene_bilateral") == 0) {
         bilateral(c);
     } else {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The two experiments that run closed-loop: which device, hand and parameters. */
+/* The experiments that run closed-loop: which device, hand and parameters. */
 #ifndef HIL_SETUP_H
 #define HIL_SETUP_H
 

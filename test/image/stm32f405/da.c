@@ -117,6 +117,9 @@ int32_t da_uV(const struct da *d, unsigned n)
         return 0;
     }
     const int32_t code = d->cleared ? zero_of(d, n) : d->active[n];
-    if (half_uV[range]) { return (int32_t)((int64_t)(code - 32768) * half_uV[range] / 32768); }
+    if (half_uV[range]) { /* the nearest */
+        const int64_t twice = (int64_t)(code - 32768) * half_uV[range] / 16384;
+        return (int32_t)((twice + (twice < 0 ? -1 : 1)) / 2);
+    }
     return range < 4 ? (int32_t)((int64_t)code * whole_uV[range] / 65536) : 0;
 }

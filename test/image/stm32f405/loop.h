@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT */
+/* Closed loop: the image over the simulated device, and beside it the same scene of this program,
+ * fed with what the image read. */
+#ifndef LOOP_H
+#define LOOP_H
+
+#include "board.h"
+#include "machine.h"
+
+#include "../hil/ref.h"
+
+#define LOOP_KEEPS 100000u
+struct loop_result {
+    uint32_t kept[LOOP_KEEPS];     /* cycles, by tick */
+    uint64_t ticks, differ, first; /* compared; those that do; the first of them */
+    char what[160];
+    uint64_t running, pulling, packets, missed, first_missed, dearest, inputs;
+    uint32_t most_insns, most_cycles, most_accesses; /* of the dearest tick, by cycles */
+    uint64_t insns, cycles, accesses;                /* of all, from the instant to the next wait */
+};
+
+struct loop {
+    struct machine *m;
+    struct board board;
+    struct ref_cfg cfg;
+    uint32_t rate_Hz, ticks_wanted;
+    int64_t spoil;
+    uint32_t scene, tick, show, back, out;
+    struct exh_period T;
+    struct exh_drive_in in;   /* as the device has it */
+    struct exh_scene_in seen; /* as the image read it */
+    struct exh_drive_out twin, last;
+    uint8_t begun, open, ready, shown, ticking, differs, waits;
+    uint64_t at_insns, at_cycles, at_accesses, at_slept;
+    uint8_t frame[300];
+    unsigned frame_B;
+    struct loop_result r;
+    char text[4096];
+    unsigned text_n;
+};
+extern struct loop loop;
+
+/* 0, or -1 after a line on stderr. */
+int loop_open(struct machine *m, const char *image, uint64_t seed);
+void loop_run(void);
+
+#endif
