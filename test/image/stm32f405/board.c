@@ -137,20 +137,17 @@ static uint16_t code_of(int32_t uV)
     return (uint16_t)(32768 + (n + (n < 0 ? -500000 : 500000)) / 1000000);
 }
 
+unsigned board_enables(const struct stm *s)
+{
+    unsigned on = 0;
+    for (unsigned i = 0; i < EXH_FINGERS; i++) { on |= (unsigned)level(s, enable[i]) << i; }
+    return on;
+}
+
 void board_get(const struct board *b, const struct stm *s, struct exh_drive_out *out)
 {
     memset(out, 0, sizeof *out);
-    for (unsigned i = 0; i < EXH_FINGERS; i++) {
-        out->dac_raw[i] = code_of(da_uV(&b->da, i));
-        if (level(s, enable[i])) { out->enable = (uint8_t)(out->enable | 1u << i); }
-    }
+    for (unsigned i = 0; i < EXH_FINGERS; i++) { out->dac_raw[i] = code_of(da_uV(&b->da, i)); }
+    out->enable = (uint8_t)board_enables(s);
     out->alive = (uint8_t)level(s, alive);
-}
-
-int board_alive(const struct board *b, const struct stm *s)
-{
-    for (unsigned i = 0; i < EXH_FINGERS; i++) {
-        if (level(s, enable[i]) || da_uV(&b->da, i) != 0) { return 1; }
-    }
-    return 0;
 }

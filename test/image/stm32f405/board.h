@@ -22,8 +22,8 @@ struct board {
 void board_open(struct board *b, struct stm *s);
 void board_put(struct board *b, struct stm *s, const struct exh_drive_in *in);
 void board_get(const struct board *b, const struct stm *s, struct exh_drive_out *out);
-/* 0: no drive is enabled and every output stands at 0 V. */
-int board_alive(const struct board *b, const struct stm *s);
+/* Drives that are enabled, as bits. */
+unsigned board_enables(const struct stm *s);
 extern void (*board_sent)(unsigned usart, uint8_t byte);
 
 #endif

@@ -14,16 +14,21 @@ struct loop_result {
     uint32_t kept[LOOP_KEEPS];     /* cycles, by tick */
     uint64_t ticks, differ, first; /* compared; those that do; the first of them */
     char what[160];
-    uint64_t running, pulling, packets, missed, first_missed, dearest, inputs;
+    uint64_t running, pulling, packets, missed, first_missed, dearest;
     uint32_t most_insns, most_cycles, most_accesses; /* of the dearest tick, by cycles */
     uint64_t insns, cycles, accesses;                /* of all, from the instant to the next wait */
 };
 
+#define LOOP_PAST 8u
 struct loop {
+    int16_t past[LOOP_PAST][EXH_FINGERS]; /* monitors */
+    uint64_t instants;
     struct machine *m;
     struct board board;
     struct ref_cfg cfg;
     uint32_t rate_Hz, ticks_wanted;
+    uint32_t cut;  /* contacts that are open: enum exh_din */
+    uint8_t quiet; /* nothing is compared */
     int64_t spoil;
     uint32_t scene, tick, show, back, out;
     struct exh_period T;

@@ -272,6 +272,7 @@ static void on_block(uc_engine *uc, uint64_t address, uint32_t size, void *user)
     cycles = cost_of(&m->cost, m->flash, off, size, insns, m->s.flash.acr & 7);
     m->insns += insns;
     m->cycles += cycles;
+    m->cost.block[off / 2].spent += cycles;
     m->s.now += (uint64_t)cycles * m->s.clk.cycle;
 }
 

@@ -17,8 +17,8 @@ struct cost {
     struct block {
         uint16_t insns, cycles;
         uint8_t lines;
-        uint8_t literals;
-    } * block; /* by half-word of flash; insns 0: not seen */
+        uint64_t spent; /* cycles, in all */
+    } * block;          /* by half-word of flash; insns 0: not seen */
     uint32_t line[LINES];
     uint64_t used[LINES], turn;
     int16_t place[STM_FLASH_B / 16]; /* where a line is, or -1 */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* One run of an image: --rate HZ, --ticks N, --seed N, --spoil TICK, --say; a row of figures. */
-#include "loop.h"
+/* One run of an image: --rate HZ, --ticks N, --seed N, --spoil TICK, --say (what it prints),
+ * --where (cycles by block), --faults N (instead: that many, a table). Prints a row of figures. */
+#include "faults.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -62,7 +63,9 @@ static int verdict(void)
 int main(int argc, char **argv)
 {
     uint64_t seed = 1;
-    int say = 0, i = 1;
+    unsigned faults = 0;
+    int bad;
+    int say = 0, where = 0, i = 1;
     loop.spoil = -1;
     loop.ticks_wanted = 2000;
     for (; i + 1 < argc && argv[i][0] == '-'; i++) {
@@ -71,22 +74,37 @@ int main(int argc, char **argv)
             say = 1;
             continue;
         }
+        if (!strcmp(argv[i], "--where")) {
+            where = 1;
+            continue;
+        }
         if (!strcmp(argv[i], "--rate")) { loop.rate_Hz = (uint32_t)atol(value); }
         if (!strcmp(argv[i], "--ticks")) { loop.ticks_wanted = (uint32_t)atol(value); }
         if (!strcmp(argv[i], "--seed")) { seed = (uint64_t)atol(value); }
+        if (!strcmp(argv[i], "--faults")) { faults = (unsigned)atol(value); }
         if (!strcmp(argv[i], "--spoil")) { loop.spoil = atol(value); }
         i++;
     }
     if (i + 1 != argc) {
-        fprintf(stderr,
-            "usage: stm32f405 [--rate HZ] [--ticks N] [--seed N] [--spoil TICK] [--say] "
-            "IMAGE\n");
+        fprintf(stderr, "usage: stm32f405 [--rate HZ] [--ticks N] [--seed N] [--spoil TICK] "
+                        "[--faults N] [--say] [--where] "
+                        "IMAGE\n");
         return 2;
     }
+    machine.guarded = faults != 0;
     if (loop_open(&machine, argv[i], seed) < 0) { return 2; }
+    if (faults) {
+        bad = stm_faults(&machine, faults, seed);
+        machine_close(&machine);
+        return bad;
+    }
     loop_run();
     if (say) { printf("%s", loop.text); }
-    i = verdict();
+    for (uint32_t at = 0; where && at < BLOCKS; at++) {
+        const struct block *k = &machine.cost.block[at];
+        if (k->spent) { printf("where 0x%x %lu\n", STM_FLASH + 2 * at, (unsigned long)k->spent); }
+    }
+    bad = verdict();
     machine_close(&machine);
-    return i;
+    return bad;
 }

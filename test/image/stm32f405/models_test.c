@@ -105,9 +105,9 @@ TEST(reset_values_are_those_of_the_crate)
             continue;
         }
         /* what the description leaves open, a reset does not set alone, or the manual has
-         * otherwise (OSPEEDR, PWR) */
-        if (!strcmp(reg, "IDR") || !strcmp(reg, "OSPEEDR") || !strcmp(p, "PWR") ||
-            !strcmp(reg, "ACR")) {
+         * otherwise (OSPEEDR, PWR, ARR) */
+        if (!strcmp(reg, "IDR") || !strcmp(reg, "OSPEEDR") || !strcmp(reg, "ARR") ||
+            !strcmp(p, "PWR") || !strcmp(reg, "ACR")) {
             continue;
         }
         CHECK(get(base + off) == reset, "%s %s: 0x%x, not 0x%x", p, reg, (unsigned)get(base + off),

@@ -41,7 +41,8 @@ enum stm_wrong {
     STM_ADC_LATE,  /* no transfer of an A/D converter's is done any more */
     STM_SPI_STUCK, /* no word on the SPI ever ends */
     STM_DA_SILENT, /* the D/A takes no word */
-    STM_LSI_FAST,  /* the watchdog's clock is at its upper limit, 47 kHz */
+    STM_LSI_FAST,  /* the watchdog's clock is at its upper limit, 47 kHz, */
+    STM_LSI_SLOW,  /* or at its lower, 17 kHz */
     STM_FLASH_CUT, /* the supply fails in the middle of a programming or an erasure */
     STM_WRONGS
 };

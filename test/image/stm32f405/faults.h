@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: MIT */
+/* Faults of the chip and of what is wired to it, from random times of a run in closed loop. */
+#ifndef FAULTS_H
+#define FAULTS_H
+
+#include "loop.h"
+
+/* `times` of them in turn, drawn with this seed. A table on stdout. 0: each in time. */
+int stm_faults(struct machine *m, unsigned times, uint64_t seed);
+
+#endif
