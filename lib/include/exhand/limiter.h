@@ -186,44 +186,45 @@ struct exh_limiter_out {
 /* As it is set up; constant in the step, without pointers: it may be copied. Written by
  * exh_limiter_setup() alone. */
 struct exh_limiter_cfg {
-    int32_t up, down;    /* effort a step, micro */
-    int32_t ramp_q30;    /* share gained a step */
-    uint32_t fall_q32;   /* 1 / steps of release */
-    int32_t heat_top;    /* heat_peak, or no limit */
-    int32_t heat_bottom; /* heat_nominal */
-    int64_t heat_budget; /* squares of (effort >> heat_shift), summed over steps, below 2^47 */
-    int32_t heat_square; /* of the nominal effort, in that scale */
-    uint32_t heat_shift;
+    int32_t up, down;     /* effort a step, micro */
+    int32_t ramp_q30;     /* share gained a step */
+    uint32_t fall_q32;    /* 1 / steps of release */
+    int32_t heat_top;     /* heat_peak, or no limit */
+    int32_t heat_bottom;  /* heat_nominal */
+    int64_t heat_budget;  /* squares of (effort >> heat_shift), summed over steps, below 2^47 */
+    int32_t heat_square;  /* of the nominal effort, in that scale */
+    uint32_t heat_shift;  /* see heat_budget */
     uint32_t heat_knee;   /* bits of the budget left, >> 16, where heat begins to hold back */
     int32_t vel, acc;     /* POSITION: a step, a step^2, micro << frac */
     int32_t brake;        /* POSITION: more than the way to brake in from full speed, micro */
     uint32_t frac;        /* fraction bits of a position sent */
     uint32_t still_steps; /* gap_max_us */
-    int32_t pos_scale, vel_scale; /* WALL: from micro to what the law is given */
-    int32_t near_min, near_max;   /* uses POS: measured position outside is RANGE */
-    struct exh_motion_par motion;
+    int32_t pos_scale, vel_scale;      /* WALL: from micro to what the law is given */
+    int32_t near_min, near_max;        /* uses POS: measured position outside is RANGE */
+    struct exh_motion_par motion;      /* limits of motion.h */
     uint32_t speed_steps, stall_steps; /* of motion.h */
-    struct exh_contact_par wall;
-    struct exh_limiter_par par;
+    struct exh_contact_par wall;       /* WALL: the contact law's parameters */
+    struct exh_limiter_par par;        /* a copy of the parameters */
 };
 
 /* From step to step. A state of zeros is OFF. Read-only outside this module. */
 struct exh_limiter {
-    uint8_t state;     /* enum exh_state */
-    uint8_t opened;    /* 1: the dead-man was open since */
-    uint8_t started;   /* 1: now_us is of a step that was */
-    uint8_t holds;     /* POSITION: 1: FAULT holds it, until it is off or armed */
-    uint32_t now_us;   /* of the last step */
-    int64_t heat;      /* above nominal, 0 .. 5/4 of the budget and 1 */
-    int32_t sent;      /* effort or position of the last step, micro */
-    int32_t part;      /* POSITION: beyond it, micro << frac, 0 .. 2^frac - 1 */
-    int32_t vel;       /* POSITION: change of it in the last step, micro << frac */
-    int32_t fall;      /* RELEASE: effort taken away a step */
-    int32_t stood;     /* position of the last movement, micro */
-    int32_t share_q30; /* ARM: of the limits; else all of them */
-    uint32_t causes, first, limits;
-    uint32_t still_steps; /* since the clock moved */
-    struct exh_motion motion;
+    uint8_t state;            /* enum exh_state */
+    uint8_t opened;           /* 1: the dead-man was open since */
+    uint8_t started;          /* 1: now_us is of a step that was */
+    uint8_t holds;            /* POSITION: 1: FAULT holds it, until it is off or armed */
+    uint32_t now_us;          /* of the last step */
+    int64_t heat;             /* above nominal, 0 .. 5/4 of the budget and 1 */
+    int32_t sent;             /* effort or position of the last step, micro */
+    int32_t part;             /* POSITION: beyond it, micro << frac, 0 .. 2^frac - 1 */
+    int32_t vel;              /* POSITION: change of it in the last step, micro << frac */
+    int32_t fall;             /* RELEASE: effort taken away a step */
+    int32_t stood;            /* position of the last movement, micro */
+    int32_t share_q30;        /* ARM: of the limits; else all of them */
+    uint32_t causes, first;   /* as in the output */
+    uint32_t limits;          /* as in the output */
+    uint32_t still_steps;     /* since the clock moved */
+    struct exh_motion motion; /* state of motion.h */
 };
 
 /* Set-up (divides). 0, or -(1 + k) where the field of number k is the first that is wrong: it lies

@@ -4,8 +4,9 @@
 
 #include "exhand/fix.h"
 
+#include "../num/mem.h"
+
 #include <stddef.h>
-#include <string.h>
 
 /* Half of what the law's formats hold: positions within it. */
 #define LAW_MOST (INT32_C(1) << 30)
