@@ -58,7 +58,7 @@ int glove_tty_open(struct glove_tty *t, const char *path, double rate_Hz)
     return try_open(t);
 }
 
-/* What does not go out now is told again later. */
+/* A command that cannot be sent now is repeated later. */
 static void say(struct glove_tty *t, const char *text)
 {
     const ssize_t n = write(t->fd, text, strlen(text));

@@ -156,8 +156,8 @@ static int is_last(const struct sigaction *a)
            ((a->sa_flags & (int)SA_RESETHAND) && a->sa_handler != on_signal);
 }
 
-/* All that end or stop a program, unless somebody has plans for them; nobody can have any for
- * SIGKILL and SIGSTOP. */
+/* All signals that end or stop a program, unless another handler is installed. SIGKILL and SIGSTOP
+ * cannot be handled. */
 static void guard_signals(void)
 {
     struct sigaction a, was;

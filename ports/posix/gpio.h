@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Lines of a Linux GPIO chip: the contacts of a person, and what a watchdog relay and a drive's
- * enable hang on. Wiring and what this is not for: docs/GPIO.md. */
+/* Lines of a Linux GPIO chip: the contacts of a person, a watchdog relay and the enable of a drive.
+ * docs/GPIO.md describes the wiring and the limits of use. */
 #ifndef POSIX_GPIO_H
 #define POSIX_GPIO_H
 
@@ -35,8 +35,8 @@ int gpio_take(struct gpio_spec *s, const char *text, char said[GPIO_SAID_B]);
 int gpio_open(const struct gpio_spec *s, char said[GPIO_SAID_B]);
 void gpio_close(void);
 
-/* Who takes the lines that a tick has to say, each without its end; NULL, as it is at first: they
- * are written to stderr, and the tick waits for that. */
+/* Sets the receiver of messages from ticks, each without a line end. NULL, the default: written to
+ * stderr, and the tick waits for that. */
 void gpio_say(void (*say)(const char *line));
 
 /* 1: a chip is open, and this contact is a real one. */

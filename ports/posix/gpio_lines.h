@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Lines of one GPIO chip, as a version of libgpiod gives them: gpio_v1.c, gpio_v2.c, or gpio_none.c
- * where there is none. One of them is linked, and gpio_lines.c with it; what lines mean is
- * gpio.c's. Levels, never edges. */
+/* Lines of one GPIO chip through a version of libgpiod: gpio_v1.c, gpio_v2.c, or gpio_none.c
+ * without it. One of them is linked with gpio_lines.c. gpio.c defines the meaning of lines. Levels,
+ * never edges. */
 #ifndef GPIO_LINES_H
 #define GPIO_LINES_H
 
@@ -15,7 +15,7 @@ enum gpio_why {
     GPIO_NO_LIBRARY,
     GPIO_NO_CHIP, /* not there, not ours to open, or none: error */
     GPIO_NO_LINE, /* line >= lines */
-    GPIO_BUSY,    /* line is somebody's: who */
+    GPIO_BUSY,    /* another program uses the line */
     GPIO_REFUSED  /* the kernel does not give the lines: error */
 };
 
@@ -39,7 +39,7 @@ void gpio_lines_close(void);
 int gpio_chip_open(const char *path);
 int gpio_chip_request(
     const unsigned *in, unsigned ins, const unsigned *out, unsigned outs, struct gpio_problem *p);
-/* This line is somebody's; who: NULL, or a name. */
+/* Another program uses this line; who: NULL, or its name. */
 static inline void gpio_lines_busy(struct gpio_problem *p, unsigned line, const char *who)
 {
     p->why = GPIO_BUSY;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Without libgpiod: whoever asks for lines is told. */
+/* Without libgpiod: a request for lines gives an error message. */
 #include "gpio_lines.h"
 
 #include <errno.h>

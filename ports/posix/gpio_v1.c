@@ -16,7 +16,7 @@ static struct {
     unsigned ins, outs; /* requested */
 } held;
 
-/* Which of them is somebody's. The kernel says only that one is. */
+/* Finds the line that another program uses. The kernel reports only that there is one. */
 static int busy(struct gpiod_line_bulk *bulk, struct gpio_problem *p)
 {
     for (unsigned i = 0; i < bulk->num_lines; i++) {

@@ -15,7 +15,7 @@ static struct {
     unsigned ins, outs;
 } held;
 
-/* Which of them is somebody's. The kernel says only that one is. */
+/* Finds the line that another program uses. The kernel reports only that there is one. */
 static int busy(const unsigned *line, unsigned n, struct gpio_problem *p)
 {
     for (unsigned i = 0; i < n && p->why != GPIO_BUSY; i++) {
@@ -49,7 +49,7 @@ static int exist(const unsigned *line, unsigned n, struct gpio_problem *p)
     return 1;
 }
 
-/* What the library is told of some lines: all three objects, or NULL. */
+/* The three libgpiod objects of a request for lines, or NULL. */
 struct asked {
     struct gpiod_line_settings *settings;
     struct gpiod_line_config *lines;

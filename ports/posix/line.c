@@ -16,7 +16,7 @@ static struct {
     struct udp udp;
     int udp_open;
     uint64_t frames;
-    struct exh_wire_rx rx; /* what comes to the socket, for whom it comes from */
+    struct exh_wire_rx rx; /* packets at the socket, for the sender check */
     double heard_s;
     struct exh_keyed keyed;
 } line;
@@ -74,15 +74,15 @@ struct posix_line_drops posix_line_drops(void)
 
 struct sim_link *posix_link(void) { return &line.link; }
 
-/* Answers go to whoever sent the newest good packet; a flood of others turns them nowhere. */
+/* Answers go to the sender of the newest valid packet. A flood of others cannot redirect them. */
 static void learn(const void *buf, size_t len_B)
 {
     struct exh_wire_packet p;
     if (exh_wire_decode(&line.rx, &p, buf, len_B) > 0) { udp_learn(&line.udp); }
 }
 
-/* What a socket with a key brings: > 0 bytes that go on. Whoever has the key and begins is answered
- * while nobody else is heard, or neither would ever have heard of the other. */
+/* Checks a datagram on a socket with a key: > 0 bytes to pass on. A sender with the key that starts
+ * is answered while no other is accepted; otherwise neither end could start. */
 static int opened(const void *buf, int n)
 {
     const int r = line.cfg.key ? (int)exh_keyed_decode(&line.keyed, buf, (size_t)n) : n;

@@ -14,14 +14,14 @@ struct posix_line {
     int on;
     struct sim_link_par way[SIM_LINK_WAYS];       /* SIM_LINK_OUT, SIM_LINK_IN */
     const struct sim_trace *trace[SIM_LINK_WAYS]; /* the caller's, or NULL */
-    /* A peer in this process: called at its frames in virtual time, frame_first_s + n frame_s, or,
-     * with frame_s 0, whenever a packet arrives; it takes from the way out and gives into
-     * the way in, at t_s. NULL: none. */
+    /* A peer in this process. It is called at its frames in virtual time, frame_first_s + n
+     * frame_s; with frame_s 0, at each packet. It takes packets from the outgoing link and gives
+     * packets to the incoming one, at t_s. NULL: none. */
     void (*frame)(void *ctx, struct sim_link *link, double t_s);
     void *ctx;
     double frame_s, frame_first_s;
-    /* Or a socket: "127.0.0.1:4747" and where the peer is, NULL: whoever sends. Real time:
-     * for runs that follow the wall clock. */
+    /* Or a socket: "127.0.0.1:4747" and the peer's address; NULL: any sender. Real time, for runs
+     * with the wall clock. */
     const char *udp_local, *udp_peer;
     /* Of the socket; NULL: none. key_start: where numbers begin (key_start()); they go on from run
      * to run. */

@@ -12,9 +12,9 @@
  * every one that went by is missed. */
 void pace_start(struct exh_period T, double slack_s);
 
-/* Waits until this tick is due, or a signal comes and *end is set. The ticks behind it that are due
- * already: they were missed, as an interrupt is that a board's loop did not wait for. 0 within the
- * slack. */
+/* Waits until this tick is due, or a signal comes and *end is set. Returns the number of later
+ * ticks already due, which are missed, as on a board whose loop was late for an interrupt. 0 within
+ * the slack. */
 uint32_t pace_wait(uint64_t tick, const volatile sig_atomic_t *end);
 
 #endif

@@ -76,14 +76,14 @@ int posix_fall(void);
 /* A finger in use, or NULL (tests, pictures). */
 const struct sim_finger *posix_finger(unsigned i);
 
-/* The box runs: whoever holds the mass counts from here. */
+/* The device is in RUN: the time for which the mass is held counts from here. */
 void posix_ready(void);
 /* It does not any more: they catch it, and the next hold goes on until it does. */
 void posix_hold(void);
 
-/* The device, and what is on its way to it, stand still to the last bit (sim/still.h), and will
- * until another output or the fall's end: then so many ticks may pass without a tick of the loop.
- * What its monitor may show meanwhile. */
+/* 1 if the device and its pending inputs are at rest to the last bit (sim/still.h), until another
+ * output or the fall's end. Then ticks may pass without the loop. Also the range of its monitor
+ * meanwhile. */
 int posix_still(void);
 void posix_monitor(int16_t *low_raw, int16_t *high_raw);
 /* The next tick has passed and the output is as it was; the monitor at it. 0: it has not, something

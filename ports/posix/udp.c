@@ -9,7 +9,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#define LOOKS 64 /* at packets that are dropped, a call: a flood holds nobody up */
+#define LOOKS 64 /* dropped packets per call at most: a flood must not block */
 
 static int address(struct sockaddr_in *a, const char *text)
 {

@@ -9,7 +9,7 @@
 
 struct udp {
     int fd;     /* < 0: closed */
-    int learns; /* the peer is whom udp_learn() says */
+    int learns; /* udp_learn() sets the peer */
     int known;  /* there is a peer */
     struct sockaddr_in peer;
     struct sockaddr_in from; /* who sent the newest packet */
@@ -18,9 +18,8 @@ struct udp {
     uint64_t unsent;         /* not taken by the system, or there was no peer yet */
 };
 
-/* Addresses are "host:port" in numbers, "127.0.0.1:4747"; port 0: any. peer NULL:
- * whoever sent what udp_learn() was called for, so that both sides may be restarted in any order.
- * 0, or -1 with errno. */
+/* Addresses are numeric "host:port", such as "127.0.0.1:4747"; port 0: any. peer NULL: set by
+ * udp_learn(), so that both sides may restart in any order. 0, or -1 with errno. */
 int udp_open(struct udp *u, const char *local, const char *peer);
 void udp_close(struct udp *u);
 
@@ -37,9 +36,8 @@ int udp_recv(struct udp *u, void *buf, size_t cap_B);
 /* 1: the packet just received came from this peer. */
 int udp_from(const struct udp *u, const struct sockaddr_in *peer);
 
-/* The packet just received was whole and wanted: its sender is the peer from now on, unless one was
- * given. Never to be called for a packet that was not checked: anybody could turn the answers away.
- */
+/* Makes the sender of the last packet the peer, unless one was given. Call it only for a checked
+ * packet: otherwise anybody could redirect the answers. */
 void udp_learn(struct udp *u);
 
 #endif

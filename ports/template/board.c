@@ -16,14 +16,14 @@ const struct exh_board_info exh_board_info = {
     .rate_max_Hz = 0,
 };
 
-/* Fill in: disable the drives first; find each card by something only that card
- * answers (an empty bus reads all ones); divide the timer's clock as near to
- * rate_Hz as it goes, refuse beyond 1000 ppm with -EXH_E_RATE, and report what was
- * programmed, in seconds: {divisor, clock_Hz}. Never a measured time. */
+/* Fill in: disable the drives first. Find each card by something only that card answers; an empty
+ * bus reads all ones. Divide the timer's clock as near to rate_Hz as possible. Refuse a deviation
+ * beyond 1000 ppm with -EXH_E_RATE. Report the programmed period in seconds: {divisor, clock_Hz},
+ * never a measured time. */
 int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
 {
     (void)rate_Hz;
-    *achieved = (struct exh_period){1, 1}; /* valid, though nobody may use it */
+    *achieved = (struct exh_period){1, 1}; /* valid, even if unused */
     return -EXH_E_ABSENT;                  /* so that an unfilled port cannot run by accident */
 }
 
@@ -75,8 +75,8 @@ int exh_board_read_glove(struct exh_glove_in *in)
     return -EXH_E_ABSENT;
 }
 
-/* Fill in: a free-running counter; it may wrap, it must not stop. If it begins anew with each
- * start, a scene with a link needs another `session` at each (docs/WIRE.md). */
+/* Fill in: a free-running counter. It may wrap, but must not stop. If it restarts at each start, a
+ * scene with a link needs another source for `session` (docs/WIRE.md). */
 uint32_t exh_board_cycles(void) { return 0; }
 
 /* Fill in: take the whole record or nothing, now: a slow sink must not cost a tick. */

@@ -4,7 +4,7 @@
  * end in LF, CR LF or CR. Empty lines are skipped; those between rows are counted and reported.
  *
  * The first line may be a header. If it begins with t_s, as in our own CSVs, the first column is
- * time, columns after the 22 are ignored, and a unit at the end of a name (_rad, _deg, _turn)
+ * time and columns after the 22 are ignored. A unit at the end of a name (_rad, _deg, _turn) then
  * applies. With selected columns (recording_columns.h), these are the sensors, time and label;
  * others may contain anything. Then every row has as many columns as the first line, and time rises
  * by at most ten seconds per row.

@@ -8,10 +8,10 @@
 /* This box answers from now on, until another; NULL: none, all ones. */
 void emu_bus_connect(struct emu_box *b);
 
-/* 1: a driver opens its cards; what it is at is told from what it asks of them: a Sensoray 526
- * is detected until it is first written to, then tested until its EEPROM is read or its references
- * are converted, then calibrated; a DMM is detected until its FIFO is first reset, then tested.
- * 0: emu_enter() tells. */
+/* 1: a driver opens its cards; the phase follows from its accesses. A Sensoray 526 is detected
+ * until its first write, then tested until its EEPROM is read or its references are converted, then
+ * calibrated. A DMM is detected until its FIFO is first reset, then tested. 0: emu_enter() sets the
+ * phase. */
 void emu_bus_opening(int opening);
 
 #endif

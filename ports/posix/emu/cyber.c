@@ -3,7 +3,7 @@
 
 #define BAUD        115200u
 #define OUT         ((unsigned)sizeof((struct emu_cyber *)0)->out)
-#define SWITCH_BITS 2u /* of the status: nobody presses it now and then */
+#define SWITCH_BITS 2u /* of the status: the switch is sometimes not pressed */
 
 /* --- the line to the host --- */
 
@@ -79,7 +79,7 @@ static void sample(struct emu_cyber *g, unsigned header)
 
 /* --- commands --- */
 
-/* The number behind place *at of the command, and *at behind it. */
+/* Reads the number at index *at of the command and moves *at beyond it. */
 static uint32_t number(const struct emu_cyber *g, unsigned *at)
 {
     uint32_t v = 0;

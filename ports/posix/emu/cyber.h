@@ -23,7 +23,7 @@ enum emu_cyber_kind {
     EMU_CYBER_ENDLESS,  /* or loses the 0 at the end */
     EMU_CYBER_HEADLESS, /* or the header */
     EMU_CYBER_GARBAGE,  /* noise before the frame, headers among it */
-    EMU_CYBER_TWICE,    /* a frame comes twice, the other at once behind it */
+    EMU_CYBER_TWICE,    /* a frame comes twice, without a gap */
     EMU_CYBER_SILENT,   /* no frame */
     EMU_CYBER_OFF,      /* no glove on the unit: status bit 0 is 0, without status "eg" */
     EMU_CYBER_FAST,     /* "es" */
@@ -33,10 +33,10 @@ enum emu_cyber_kind {
 };
 
 struct emu_cyber {
-    /* Whoever emulates sets these at any time. */
+    /* The emulator's user may set these at any time. */
     uint8_t sample[EMU_CYBER_SENSORS]; /* 1 .. 255 */
     uint8_t kind;   /* enum emu_cyber_kind, of each `every`th frame from the next on */
-    uint8_t forced; /* 1: it sends a status byte, 2: none, whatever it was told */
+    uint8_t forced; /* 1: always sends a status byte, 2: never */
     uint8_t deaf;   /* takes no command */
     uint32_t every; /* 0 as 1 */
     /* What became of it. */

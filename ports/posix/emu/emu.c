@@ -74,7 +74,7 @@ static struct emu_mm32xat_wrong mm_wrong(const struct emu_box *b)
 
 /* --- the bus --- */
 
-/* Whose port it is, and the offset in its ports; EMU_CARDS: nobody's. */
+/* The card of a port and the offset in its ports; EMU_CARDS: none. */
 static unsigned owner(const struct emu_box *b, uint16_t port, unsigned *offset)
 {
     for (unsigned i = 0; i < EMU_S526S; i++) {
@@ -108,7 +108,7 @@ static void begin(struct emu_box *b, uint16_t port, unsigned width_B)
     }
 }
 
-/* One byte, as an 8-bit card or nobody answers it. */
+/* One byte from an 8-bit card or an empty bus. */
 static uint32_t in_byte(struct emu_box *b, uint16_t port)
 {
     const struct emu_mm32xat_wrong w = mm_wrong(b);

@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* Emu: the box's cards on a bus: two Sensoray 526, a Diamond MM-32X-AT, and what can go wrong
- * with them. Written from the facts about the cards (docs/CARDS.md), not from the drivers.
+/* Emu: the cards of the device on a bus, two Sensoray 526 and a Diamond MM-32X-AT, and their
+ * possible faults. Written from facts about the cards (docs/CARDS.md), not from the drivers.
+ * Integers only, no allocation, no globals, nothing but mem*() from outside. The same code runs in
+ * the host program, inside a test image and in an emulator of the machine.
  *
- * Integers only, no allocation, nothing but mem* from outside, no globals: the same code answers
- * in the host program, inside a test image and under an emulator of the machine.
- *
- * Each access takes a stated time on the bus and acts at its end. D/A outputs change at the
- * write that starts the update; A/D inputs of an S526 are held at the write that starts the
- * conversion, counters at the read of the low word, and inputs of the DMM as
- * emu_mm32xat_config.latch says.
- */
+ * Each access takes a stated time on the bus and acts at its end. D/A outputs change at the write
+ * that starts the update. A/D inputs of an S526 are held at the write that starts the conversion,
+ * counters at the read of the low word. Inputs of the DMM are held as emu_mm32xat_config.latch
+ * says. */
 #ifndef EMU_H
 #define EMU_H
 
@@ -38,7 +36,7 @@ enum emu_kind {
     EMU_BUSY,       /* whatever is started never ends */
     EMU_LOST,       /* a conversion is lost */
     EMU_OVERFLOW,   /* the FIFO runs over */
-    EMU_READ_ORDER, /* somebody else reads between the reads of one value: wrong data */
+    EMU_READ_ORDER, /* another program reads between the reads of one value: wrong data */
     EMU_LINE_STUCK, /* encoder line A */
     EMU_LINE_NOISY, /* encoder line A */
     EMU_DA_DEAD,    /* D/A never updates, and never says that it has */

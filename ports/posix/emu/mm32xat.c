@@ -298,7 +298,7 @@ uint8_t emu_mm32xat_in(struct emu_mm32xat *c, const struct emu_pins *pins,
     switch (offset) {
     case DATA_LOW:
         pop(c, pins);
-        if (w->read && noise(&c->noise) % 8 == 0) { pop(c, pins); } /* somebody else's */
+        if (w->read && noise(&c->noise) % 8 == 0) { pop(c, pins); } /* a read by another program */
         return (uint8_t)c->popped;
     case DATA_HIGH: return (uint8_t)((uint16_t)c->popped >> 8);
     case LOW: return c->reg[LOW];

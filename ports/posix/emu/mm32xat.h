@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Diamond MM-32X-AT, register by register: 32 A/D inputs with a scan into a FIFO, four 12-bit
- * D/A outputs, digital lines, a counter/timer that may pace the scans.
- *
- * It knows no time of its own: every call is told what time it is, and the card then does first
- * whatever was due. 8-bit registers; a 16-bit access is two of them, the lower port first. What
- * no source says, or sources disagree about, is a field of emu_mm32xat_config.
- */
+/* Diamond MM-32X-AT, register by register: 32 A/D inputs with a scan into a FIFO, four 12-bit D/A
+ * outputs, digital lines, and a counter/timer that may pace the scans. It has no clock: every call
+ * passes the time, and the card first does what is due. Registers have 8 bits; a 16-bit access is
+ * two of them, lower port first. Where sources are silent or disagree, emu_mm32xat_config has a
+ * field. */
 #ifndef EMU_MM32XAT_H
 #define EMU_MM32XAT_H
 
@@ -17,7 +15,7 @@
 #define EMU_MM_FIFO  1024
 
 enum emu_latch {
-    EMU_LATCH_READ,   /* a sample is what stands on the pin when it is read, whenever converted */
+    EMU_LATCH_READ,   /* a sample is the pin's voltage when read, whenever converted */
     EMU_LATCH_CONVERT /* a sample is what stood on the pin when it was converted */
 };
 
@@ -43,8 +41,8 @@ struct emu_mm32xat_config emu_mm32xat_nominal(void);
 struct emu_mm32xat_wrong {
     uint8_t busy;     /* STS, WAIT and DACBUSY stay 1, no scan ends */
     uint8_t lost;     /* of every scan one conversion is lost */
-    uint8_t overflow; /* somebody else's conversions fill the FIFO at every scan */
-    uint8_t read;     /* somebody else reads between the reads of one value */
+    uint8_t overflow; /* conversions of another program fill the FIFO at every scan */
+    uint8_t read;     /* another program reads between the reads of one value */
     uint8_t da_dead;  /* transfers never end up in an output */
     uint8_t eeprom;   /* bytes are noise */
 };

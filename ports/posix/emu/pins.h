@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Pins: what stands on the connectors of the cards, and its codes.
- *
- * Voltages are whole microvolts. An A/D code is 10 V / 32768 = 305.17578125 uV, two's
- * complement; a D/A code is 1 / 3249 V, offset binary around 32768. A code's voltage, rounded
- * to a microvolt, gives the code back: both ways, for every code.
- */
+/* Pins: voltages at the connectors of the cards, and their codes. Voltages are whole microvolts. An
+ * A/D code is 10 V / 32768 = 305.17578125 uV, two's complement. A D/A code is 1 / 3249 V, offset
+ * binary around 32768. Every code converts to microvolts and back without change. */
 #ifndef EMU_PINS_H
 #define EMU_PINS_H
 

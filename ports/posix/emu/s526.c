@@ -205,7 +205,7 @@ static void out_adc(struct emu_s526 *c, const struct emu_pins *pins, unsigned ca
     c->ad_done_ns = now_ns + takes_ns;
 }
 
-/* Somebody else's selection may have come between. */
+/* Another program may have selected something else in between. */
 static uint16_t in_add(struct emu_s526 *c, const struct emu_s526_wrong *w)
 {
     const unsigned ch = (c->adc >> 1 & 0xFu) + (w->read ? noise(&c->noise) & 1 : 0);
@@ -287,7 +287,7 @@ static void set_mode(struct emu_s526 *c, struct emu_pins *pins, unsigned card, u
     n->seen = place(n, pins, card, i, w, &c->noise); /* in the new steps */
 }
 
-/* The load comes now from one preload register, now from the other: nobody knows which. */
+/* The counter loads from the two preload registers alternately; which is next is undocumented. */
 static void control(struct emu_s526 *c, struct emu_pins *pins, unsigned card, unsigned i,
     const struct emu_s526_wrong *w, uint16_t value)
 {
@@ -308,7 +308,7 @@ static uint16_t in_counter(struct emu_s526 *c, struct emu_pins *pins, unsigned c
     case LOW:
         if (!(n->mode & MODE_ON_EVENT)) { n->latch = n->count; }
         return (uint16_t)n->latch;
-    case HIGH: /* the upper byte is nobody's; somebody else's low word may have come between */
+    case HIGH: /* upper byte undefined; another program's low word may be in between */
         return (uint16_t)(0xFF00 | ((n->latch >> 16) + (w->read ? noise(&c->noise) & 1 : 0)));
     case MODE: return n->mode;
     default: return (uint16_t)(n->held | n->flags);

@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Sensoray Model 526, register by register: four 24-bit quadrature counters, eight A/D inputs
- * with two references, four D/A outputs, eight digital lines, an EEPROM of calibration values.
- *
- * It knows no time of its own: every call is told what time it is, and the card then does first
- * whatever was due. 16-bit accesses at even offsets only; any other reads all ones and writes
- * nothing. What no source says is a field of emu_s526_config.
- */
+/* Sensoray Model 526, register by register: four 24-bit quadrature counters, eight A/D inputs with
+ * two references, four D/A outputs, eight digital lines, an EEPROM of calibration values. It has no
+ * clock: every call passes the time, and the card first does what is due. Accesses have 16 bits at
+ * even offsets; others read all ones and write nothing. Where sources are silent, emu_s526_config
+ * has a field. */
 #ifndef EMU_S526_H
 #define EMU_S526_H
 
@@ -44,7 +42,7 @@ void emu_s526_describe(struct emu_s526_config *c);
 struct emu_s526_wrong {
     uint8_t busy;                   /* no operation ever says done */
     uint8_t lost;                   /* the next start of the A/D is not taken */
-    uint8_t read;                   /* somebody else reads between the reads of one value */
+    uint8_t read;                   /* another program reads between the reads of one value */
     uint8_t line_stuck, line_noisy; /* bit n: line A of encoder n */
     uint8_t da_dead;                /* updates change nothing and are not said to be done */
     uint8_t da_mute;                /* updates are said to be done but change nothing */

@@ -29,7 +29,7 @@ enum fall_status fall_check_log(const struct fall_log *log)
     return FALL_OK;
 }
 
-/* The next contact of a fall at or after `from`; 0 if there is none. */
+/* The next contact of a fall at or after `from`; 0: none. */
 static int next_contact(
     const struct fall_log *log, size_t fall, size_t from, struct fall_contact *out)
 {

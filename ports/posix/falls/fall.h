@@ -69,11 +69,11 @@ struct fall_pairs {
     size_t n;
 };
 
-/* Which force an averaged position keeps. The paper averages the positions only,
- * so the pair keeps the force of one sample. CENTRE is the sixth of the ten, right
- * of the middle: the average belongs to the middle of its window, and a pair that
- * kept the NEWEST force would be shifted by 4.5 samples, unevenly where forces
- * are not evenly spaced. NEWEST and MEAN are there to show how little it matters. */
+/* Which force an averaged position gets. The paper averages positions only, so the pair keeps the
+ * force of one sample. CENTRE is the sixth of ten, right of the middle, because the average belongs
+ * to the middle of its window. With the NEWEST force, the pair would be shifted by 4.5 samples,
+ * unevenly where forces are not evenly spaced. NEWEST and MEAN exist to show how small the effect
+ * is. */
 enum fall_force { FALL_FORCE_CENTRE, FALL_FORCE_NEWEST, FALL_FORCE_MEAN };
 
 struct fall_opt {

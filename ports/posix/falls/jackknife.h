@@ -13,13 +13,14 @@ struct fall_interval {
     size_t falls; /* that have pairs in the band */
 };
 
-/* Leaves out one fall after the other and repeats average and fit: the interval is the
- * estimate +- t times the jackknife's standard error, t of one degree of freedom less
- * than there are falls. `sorted` is the output of fall_band(). Falls, not pairs, are
- * independent of each other. B's is made of its slope (m/N) and inverted then: a slope
- * that scatters through zero would make B jump from +inf to -inf.
- * It covers the mean of the estimator, which is not k: `make coverage` shows both, and
- * that the percentiles of a bootstrap over ten falls, which this replaces, do not. */
+/* Leaves out one fall after another and repeats average and fit. The interval is the estimate +- t
+ * times the jackknife's standard error; t has one degree of freedom less than falls. `sorted` is
+ * the output of fall_band(). Falls are independent of each other, pairs are not.
+ *
+ * The interval of B is computed from its slope (m/N) and then inverted: a slope that scatters
+ * through zero would make B jump from +inf to -inf. The interval covers the mean of the estimator,
+ * which is not k. `make coverage` shows both. It also shows that percentiles of a bootstrap over
+ * ten falls do not cover it. */
 enum fall_status fall_jackknife(const struct fall_pairs *sorted, size_t falls,
     enum fall_force force, struct fall_interval *a, struct fall_interval *b);
 

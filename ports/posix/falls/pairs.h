@@ -5,12 +5,11 @@
 
 #include "falls/fall.h"
 
-/* All pairs of the contacts, in log order. The monitor answers the command of the
- * previous tick, so lag 1 pairs it with the position that command came from.
- * Both samples lie in the same contact: its first `lag` forces (they answer
- * commands given before it) and its last `lag` positions (answered after it)
- * have no partner, and a contact of n samples gives n - lag pairs. The caller may
- * thin out `contacts` before, for instance to the first of each fall. */
+/* All pairs of the contacts, in log order. The monitor answers the command of the previous tick. So
+ * lag 1 pairs it with the position of that command. Both samples lie in the same contact. Its first
+ * `lag` forces answer earlier commands, and its last `lag` positions are answered later, so these
+ * have no partner. A contact of n samples gives n - lag pairs. The caller may thin out `contacts`
+ * before, for instance to the first of each fall. */
 enum fall_status fall_pool(const struct fall_log *log, const struct fall_contacts *contacts,
     size_t lag, struct fall_pairs *out);
 

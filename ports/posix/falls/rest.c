@@ -39,8 +39,8 @@ static void span_add(struct span *w, const struct fall_sample *s)
     w->n++;
 }
 
-/* A count reaches the log rounded: a quarter of a step tells 2 from 3 counts, and
- * 1 from none. */
+/* Counts in the log are rounded: a quarter of a step distinguishes 2 from 3 counts, and 1 from
+ * none. */
 static enum fall_rest_class judge(double travel_m, double force_N, const struct fall_rest_opt *opt)
 {
     const double step = opt->encoder_step_m;
@@ -70,8 +70,8 @@ static void rest_of_fall(const struct fall_log *log, const struct fall_contact *
     /* A window is rarely a whole number of ticks: by one it may seem short. */
     if (w.n < 3 || (double)w.n * tick_s < 0.9 * (opt->window_s - tick_s)) { return; }
     const enum fall_rest_class rest = judge(w.q_hi - w.q_lo, w.f_hi - w.f_lo, opt);
-    /* A position that stands still at the end of its range says nothing of the mass, and
-     * that of a slack string neither: the mass may be in flight. */
+    /* A constant position at the end of its range gives no information about the mass, nor does a
+     * slack string: the mass may be in flight. */
     if (rest != FALL_OSCILLATES &&
         (w.q_lo <= -opt->range_m || w.q_hi >= opt->range_m || w.touching == 0)) {
         return;

@@ -10,7 +10,7 @@ struct fall_rest_opt {
     double window_s;       /* the end of the observation that is judged */
     double travel_m;       /* peak-to-peak of q above this: oscillates */
     double force_N;        /* peak-to-peak of F_mon above this: oscillates */
-    double encoder_step_m; /* 0 = do not tell buzz from rest */
+    double encoder_step_m; /* 0 = do not distinguish buzz from rest */
     double range_m;        /* |q| from here on is the end of its format, not a place */
 };
 
@@ -39,12 +39,11 @@ struct fall_rest {
     double travel_m, force_N; /* peak-to-peak over the window; 0 if incomplete */
 };
 
-/* Judges every fall of the log into out[log->falls]. Time is compared at half
- * ticks, so that rounding cannot move a sample over an edge: the observation is
- * the ticks from the first contact up to, not including, observe_s after it. A
- * window with fewer than 3 samples, or with more than a tenth of them missing, is
- * incomplete; so that a slow rate can have 3 at all, it is four ticks long at least.
- * BUZZ and AT_REST both count as come to rest. */
+/* Judges every fall of the log into out[log->falls]. Times are compared at half ticks, so that
+ * rounding cannot move a sample over an edge. The observation is the ticks from the first contact
+ * up to, not including, observe_s after it. A window with fewer than 3 samples, or with more than a
+ * tenth of them missing, is incomplete. The window has at least four ticks, so that a slow rate can
+ * have 3 samples. BUZZ and AT_REST both count as rest. */
 enum fall_status fall_rest(const struct fall_log *log, const struct fall_contacts *contacts,
     const struct fall_rest_opt *opt, struct fall_rest *out);
 

@@ -22,8 +22,8 @@ struct identify_data {
     struct identify_sample *sample;
     size_t n, cap;
     double T_s;
-    double mass_kg; /* as the scene was told */
-    double step_m;  /* as the scene was told: only its limits hang on it */
+    double mass_kg; /* as given to the scene */
+    double step_m;  /* as given to the scene; affects its limits only */
     double servo_Hz;
     struct identify_par par; /* of the scene */
     unsigned result;         /* enum identify_result: how the run ended */

@@ -24,9 +24,9 @@
 #define LAG_S      200e-6
 #define FAR_M      2e-3 /* where a start may be by so much beside the string */
 #define DENIED     1.25 /* a cost so much larger with the monitor's delay: the motion has another */
-#define SHARP_S    6e-6 /* the monitor tells the delay better than the motion, */
-#define SURE_S     50e-6 /* and closer lags the motion does not tell from each other */
-#define WEIGHED    3     /* times what counts is told by the last fit */
+#define SHARP_S    6e-6 /* the monitor gives the delay more exactly than the motion, */
+#define SURE_S     50e-6 /* and the motion does not separate closer lags */
+#define WEIGHED    3     /* weights are updated from the last fit this often */
 #define CALM       0.5   /* a cost as of a device that never slackens */
 #define HOPELESS   20    /* a cost from which plain steps lead nowhere */
 
@@ -55,7 +55,7 @@ static void add_all(struct starts *s, const struct model *m, int models,
     for (int i = 0; i < models; i++) { add(s, &m[i], cost[i]); }
 }
 
-/* The free rotor alone, which a few pulses tell. */
+/* The free rotor alone, from a few pulses. */
 static int rotor(struct fit *f, const struct identify_data *d)
 {
     static const struct fit_how rough = {FIT_ROTOR, 2e-4, 15, 0, 1e-3, 0},
@@ -93,8 +93,8 @@ static double anywhere(struct sim_random *chance, double low, double high)
     return low * exp(sim_random_unit(chance) * log(high / low));
 }
 
-/* What the free rotor does not tell: force constant, string, friction in proportion and how much of
- * it is the motor's. What it told is in proportion to the force constant. */
+/* Parameters that the free rotor does not determine: force constant, string, friction in proportion
+ * and the motor's share of it. Those it determines are relative to the force constant. */
 static struct model draw(const struct model *told, struct sim_random *chance)
 {
     struct model m = *told;
@@ -112,8 +112,8 @@ static struct model draw(const struct model *told, struct sim_random *chance)
     return m;
 }
 
-/* Of many drawn the best, after a rough descent of those that promise most. The force constant
- * stays as it was drawn: it moves with what the rotor told. */
+/* Many random starts; rough descents of the best. The force constant stays as drawn, since it moves
+ * with the parameters of the rotor. */
 static int starts(struct starts *s, const struct model *told, const struct identify_data *d,
     const struct observations *few, struct sim_random *chance)
 {
@@ -136,7 +136,7 @@ static int starts(struct starts *s, const struct model *told, const struct ident
     return err;
 }
 
-/* One more of the descents, of which nobody knows how many there are. */
+/* Shows one more descent; the total is unknown. */
 static void show(int over)
 {
     static int done;
@@ -194,7 +194,7 @@ void estimate_lag_end(struct fit *f, struct lag *lag, const struct identify_data
     f->at.value[MODEL_DELAY] += lag->wait_s + 0.5 / d->servo_Hz - lag->run_s;
 }
 
-/* With what the monitor tells, either lag the drive's, unless the motion denies both. */
+/* Uses the lag from the monitor as either lag of the drive, unless the motion contradicts both. */
 static int with_monitor(
     struct estimate_of *e, const struct identify_data *d, const struct observations *o)
 {
@@ -219,7 +219,7 @@ static int with_monitor(
     return err < 0 ? err : 0;
 }
 
-/* The lag is what the motion tells least. One that is wrong keeps all others in a ditch of the
+/* The motion determines the lag least. A wrong lag keeps all others in a local minimum of the
  * cost. */
 void estimate_lag_anew(struct fit *f)
 {

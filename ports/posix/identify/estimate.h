@@ -18,7 +18,7 @@ struct estimate_of {
 /* Down to a fit, from where f is. 0; -1: out of memory. */
 int estimate_finish(struct fit *f, const struct identify_data *d, const struct observations *o);
 
-/* What the monitor tells of this run: a fit holds it from then on. 0; 1: nothing; -1: out of
+/* Estimates the lag from the monitor; later fits keep it. 0; 1: no information; -1: out of
  * memory. */
 int estimate_lag(struct fit *f, struct lag *lag, const struct identify_data *d);
 /* Behind the fit: lag and delay of the device. */
@@ -27,12 +27,12 @@ void estimate_lag_end(struct fit *f, struct lag *lag, const struct identify_data
 /* A lag that is not held becomes that of a start, within the delay. */
 void estimate_lag_anew(struct fit *f);
 
-/* So often the device that was found is told apart again, on the simulated bench. */
+/* Number of repeated identifications of the estimated device on the simulated bench. */
 #define RESAMPLES 8
 
-/* Values without what the estimate itself is off by, and their intervals: how far the estimates of
- * RESAMPLES such devices, each a run with other chance and a fit from another start, are off and
- * apart. Student's t for as many. 0; -1: out of memory; 130: interrupted. */
+/* Values corrected by the bias of the estimate, and their intervals. Both come from RESAMPLES such
+ * devices, each with another random run and another start of the fit, and Student's t. 0; -1: out
+ * of memory; 130: interrupted. */
 int identify_resample(struct estimate_of *e, const struct identify_data *d, int jobs);
 
 /* 0; -1: out of memory; 1: the run has too little to fit. */

@@ -11,7 +11,7 @@
 
 #define N       MODEL_PARS
 #define HUBER   4.0 /* deviations: farther ones count less */
-#define CHANCES 4   /* times MODEL_CHANCES runs tell the scatter of a model, */
+#define CHANCES 4   /* times MODEL_CHANCES runs give the scatter of a model, */
 #define SCATTER 2.0 /* of which so many variances of an observation are too much */
 
 struct work {
@@ -148,8 +148,8 @@ static void scatter(struct work *w, const struct model *m)
     }
 }
 
-/* Where a string slackens and strikes, nobody foretells what it does next: a group whose scatter is
- * larger than what its observations may be off by counts as next to nothing. */
+/* Where a string becomes slack and strikes, the following motion is unpredictable. A group with
+ * more scatter than the tolerance of its observations gets almost no weight. */
 int fit_weigh(const struct model *m, const struct identify_data *d, struct observations *o)
 {
     struct work w;
@@ -173,7 +173,7 @@ int fit_weigh(const struct model *m, const struct identify_data *d, struct obser
     return 0;
 }
 
-/* --- coordinates: what the free rotor tells by itself comes first, in ratios --- */
+/* --- coordinates: the free rotor's parameters first, as ratios --- */
 
 static double clamped(int i, double v)
 {

@@ -17,7 +17,7 @@ struct fit {
 };
 
 #define FIT_ALL   ((1u << MODEL_PARS) - 1u)
-#define FIT_ROTOR 15u /* what the free rotor tells: the first four, in ratios */
+#define FIT_ROTOR 15u /* determined by the free rotor: the first four, as ratios */
 #define FIT_MASS  (FIT_ALL & ~FIT_ROTOR & ~(1u << MODEL_LAG))
 
 struct fit_how {

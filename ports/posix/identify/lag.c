@@ -20,7 +20,7 @@
 #define PLAIN   1e-2
 #define SHOWN   0.5 /* of the monitor's own variance, at least, is what should be seen */
 #define KNOWN   0.1 /* of the drive's period: a wait is known no worse than this, */
-#define POOR    0.2 /* of the drive's lag: told no better than that, it is not told */
+#define POOR    0.2 /* of the drive's lag: with a larger error it is unknown */
 #define EDGE    50  /* and of so many the first and the last are left out */
 
 /* What is fitted: the logarithms of both lags, and the wait of each step. */
@@ -238,7 +238,7 @@ static int work_open(struct work *w, const struct identify_data *d)
     return ok ? 0 : -1;
 }
 
-/* --- what it tells --- */
+/* --- results --- */
 
 static int rising(const void *a, const void *b)
 {
@@ -304,7 +304,7 @@ void lag_order(struct lag *lag, double delay_s)
     if (fabs(lag->run_s + lag->monitor_s - delay_s) < off_s) { lag_swap(lag); }
 }
 
-/* Of lag p, where the last fit ended; infinite: nothing in it tells the lag. */
+/* Standard error of lag p at the end of the last fit; infinite: no information. */
 static double error_s(const struct work *w, const double u[LAGS], double variance, int p)
 {
     double unit[LAGS] = {0}, x[LAGS];

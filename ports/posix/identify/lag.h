@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* What of the delay is a wait and what is a lag of the drive. The motion tells their sum alone; the
- * monitor of the current tells them apart, as steps of the command look in it:
- *
- *   command -> wait -> the drive's next look, by its own clock -> lag -> current -> lag -> monitor
- *
- * Both lags look the same from behind. The motion's delay has the drive's in it, not the monitor's.
- */
+/* Separates the delay into a wait and a lag of the drive. The motion gives only their sum. The
+ * monitor of the current separates them by the shape of its steps: command -> wait -> the drive's
+ * next sample, by its own clock -> lag -> current -> lag -> monitor. From outside both lags look
+ * the same. The delay of the motion includes the drive's lag, not the monitor's. */
 #ifndef IDENTIFY_LAG_H
 #define IDENTIFY_LAG_H
 
@@ -20,8 +17,8 @@ struct lag {
     double drive_error_s, monitor_error_s;
 };
 
-/* delay_s: as the motion told it, about. Scale and zero of the monitor do not matter. 0; 1: it
- * tells nothing; -1: out of memory. */
+/* delay_s: estimate from the motion. Scale and zero of the monitor do not matter. 0; 1: no
+ * information; -1: out of memory. */
 int lag_tell(struct lag *lag, const struct identify_data *d, double delay_s);
 
 void lag_swap(struct lag *lag);

@@ -96,7 +96,7 @@ static void add(struct lanes *l, const struct model *m, const struct identify_da
     double most_s, phase_s;
     device.mass_kg = d->mass_kg;
     device.substep_s = SUBSTEP_S;
-    device.mon_lag_s = 0; /* nobody looks at it */
+    device.mon_lag_s = 0; /* unused */
     most_s = plant_step_that_will_do(&device, 0, 0);
     if (most_s > 0 && most_s < SUBSTEP_S) { device.substep_s = most_s; }
     sim_lanes_set(&l->plant, l->n, &still, &device);

@@ -44,7 +44,7 @@ double model_mu(const struct model *m);
 
 /* What the simulated device is in these terms, at a period of T_s. */
 struct model model_of(const struct sim_device *d, double T_s);
-/* The other way: a device for the advisor at that period. */
+/* Sum of both dry frictions of the string. A run determines it better than its two parts. */
 struct sim_device model_device(const struct model *m, double T_s, double servo_Hz);
 
 /* Models that run at a time. */
@@ -57,8 +57,8 @@ void model_run(const struct model *m, int models, const struct identify_data *d,
     float *const *q_cnt);
 
 struct sim_random;
-/* The same of MODEL_CHANCES runs of one model that differ by when in its period the drive takes
- * each command over. */
+/* The same for MODEL_CHANCES runs of one model, which differ in the phase at which the drive takes
+ * over each command. */
 void model_chances(const struct model *m, const struct identify_data *d, size_t n,
     struct sim_random *chance, float *const *q_cnt);
 

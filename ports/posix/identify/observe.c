@@ -26,7 +26,8 @@ static float weight(const struct identify_data *d, uint32_t ticks, int32_t moved
     return (float)(1 / (FLOOR_CNT * FLOOR_CNT + (within * within + by_time * by_time) / 12));
 }
 
-/* The first round of the mass begins behind its first pull: before, it may stand. */
+/* The first round of the mass begins after its first pull; before, the mass may be on its
+ * support. */
 static int wanted(const struct identify_sample *x, unsigned stages, unsigned rounds)
 {
     return x->busy && stages >> x->stage & 1 && (rounds == 0 || x->repeat < rounds) &&

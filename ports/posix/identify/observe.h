@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* What the counts of a run tell: each count that the string passes through, on its way in or out.
- *
- * Of a count that stands only its edges are known, and of one where the string turns not both. One
- * that is passed through is its middle, in the mean over its ticks. */
+/* Observations from the counts of a run: each count that the string passes, in or out. For a count
+ * at rest only its edges are known, and where the string turns only one edge. A count that is
+ * passed is its middle, as mean over its ticks. */
 #ifndef IDENTIFY_OBSERVE_H
 #define IDENTIFY_OBSERVE_H
 

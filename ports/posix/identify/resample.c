@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-#define SEED       0x7265736D70 /* no seed of a simulated device that anybody gives */
+#define SEED       0x7265736D70 /* differs from all seeds of simulated devices */
 #define STUDENT_95 2.3646       /* for RESAMPLES - 1 */
 #define TRIES      4            /* starts of a fit, at most */
 
@@ -24,8 +24,8 @@ struct context {
     const struct identify_data *d;
 };
 
-/* From other starts, until the model fits this run as well as it fitted the device's. A fit that
- * ended in a ditch tells nothing of how well a run tells a device. */
+/* Repeats from other starts until the model fits this run as well as the device's. A fit in a local
+ * minimum does not show how well a run determines a device. */
 static int told_again(struct again *r, const struct identify_data *d, const struct estimate_of *e,
     struct sim_random *chance)
 {
@@ -88,7 +88,8 @@ static double back(int i, double u)
 
 static double lower(double a, double b) { return a < b ? a : b; }
 
-/* The lag is within the delay; where the monitor did not tell it each time, anything within it. */
+/* The lag is within the delay. If the monitor does not determine it in each run, it may be anything
+ * within. */
 static void within_delay(struct fit *f, int told)
 {
     const double least_s = model_row[MODEL_LAG].min;

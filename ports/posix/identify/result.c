@@ -27,11 +27,11 @@ static const struct {
 /* Lines of a value and its interval: of the model's, then of their sum. */
 #define ROWS (MODEL_PARS + 1)
 static const struct model_row sum_row = {"mu_both", "", 0, 4, 0};
-#define SUM_OFF 1e-5 /* of its own line, from the sum of the two others: digits cut off */
+#define SUM_OFF 1e-5 /* allowed difference from the sum of the two others: cut digits */
 
 static const struct model_row *row_of(int i) { return i < MODEL_PARS ? &model_row[i] : &sum_row; }
 
-/* A lag less than it is lets more through: no rest is said where there is none. */
+/* A lower lag lets more through, so use the lower bound: no false rest. */
 static double at_least(const struct lag *lag)
 {
     const double s = lag->monitor_s - 2 * lag->monitor_error_s;

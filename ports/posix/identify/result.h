@@ -28,7 +28,7 @@ struct result_file {
     double mu_low, mu_high; /* of model_mu() of the value */
 };
 
-/* A residual above this: the model does not fit, and nobody may be advised by the file. */
+/* With a residual above this the model does not fit, and the file must not be used for advice. */
 #define RESULT_RESIDUAL_MAX 1.6
 
 /* An estimate, of a run so sampled, with a known mass. */
@@ -37,9 +37,9 @@ void result_take(struct result_file *r, const struct estimate_of *e, double T_s,
 
 void result_write(FILE *f, const struct result_file *r);
 
-/* 0; 2 after a line on stderr that names file and line, and what may stand there. */
+/* 0; 2 after a line on stderr with file, line and the valid input. */
 int result_read(struct result_file *r, const char *path);
-/* Its text alone, for tests and whoever has it; name: for that line. */
+/* The same from an open file; name: for messages. */
 int result_parse(struct result_file *r, FILE *f, const char *name);
 
 #endif

@@ -18,9 +18,9 @@ struct identify_setting {
 
 struct identify_session {
     uint32_t rate_Hz;
-    double mass_kg, hung_kg; /* told, and what really hangs there; 0: the same */
+    double mass_kg, hung_kg; /* stated mass, real mass; 0: the same */
     int repeats;             /* 0: the scene's */
-    double step_m;           /* told; 0: the device's, rounded to two digits */
+    double step_m;           /* stated; 0: the device's, rounded to two digits */
     const struct identify_setting *setting;
     int settings;
     const struct identify_par *par; /* not NULL: the scene's parameters, all of them */

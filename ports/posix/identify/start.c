@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Where a fit begins: what currents and times of a run say by themselves. */
+/* The start of a fit, directly from currents and times of a run. */
 #include "identify/fit.h"
 
 #include "identify/identify.h"
@@ -9,7 +9,7 @@
 /* Currents at the ends of the slow pulls, and how fast the pulses were. */
 struct seen {
     double free_A, up_A, down_A, pulse_A;
-    double pulse_mps2; /* at the step told */
+    double pulse_mps2; /* with the stated step */
     int pulses;
 };
 

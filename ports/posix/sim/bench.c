@@ -52,8 +52,8 @@ static void guide(struct bench *b, struct plant *p)
     b->moving = b->now_s < b->until_s;
 }
 
-/* What the string can't do: go in beyond its end or where it is caught; and what hangs on
- * it can't go below where it stands. */
+/* Limits of the string: it does not move in beyond its end or where it is caught. The mass does not
+ * move below its support. */
 static void hold_back(struct bench *b, struct plant *p, double before_m)
 {
     const double end_m = b->wrong & BENCH_CAUGHT ? CAUGHT_M : 0;

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Bench: what the experimenter does for a calibration, and what may be wrong with it.
- *
- * The string has an end (a knot at the sheath) at q = 0; the person draws it out and
- * lets go, or stands a mass on something and makes its string taut. While the person
- * is at it, the hand guides the string.
- */
+/* Bench: the actions of the experimenter during a calibration, and possible errors. The string has
+ * an end (a knot at the sheath) at q = 0. The person draws it out and releases it, or places a mass
+ * on a support and makes its string taut. Meanwhile the hand guides the string. */
 #ifndef SIM_BENCH_H
 #define SIM_BENCH_H
 
@@ -13,7 +10,7 @@
 
 enum bench_place {
     BENCH_SLACK, /* the string drawn out, nothing on it */
-    BENCH_MASS   /* a mass that stands on something, the string just taut */
+    BENCH_MASS   /* a mass on a support, its string just taut */
 };
 
 /* bits */
@@ -24,15 +21,15 @@ enum bench_wrong {
     BENCH_CAUGHT = 1 << 3,     /* the string is caught 70 mm from its end */
     BENCH_ENDLESS = 1 << 4,    /* nothing stops it at its end */
     BENCH_NO_MASS = 1 << 5,    /* the mass was not hung on */
-    BENCH_FIXED_MASS = 1 << 6, /* what hangs on it cannot be lifted */
-    BENCH_PULLED = 1 << 7      /* somebody pulls the string out */
+    BENCH_FIXED_MASS = 1 << 6, /* the mass cannot be lifted */
+    BENCH_PULLED = 1 << 7      /* a person pulls the string out */
 };
 
 struct bench {
     enum bench_place place;
     unsigned wrong;           /* enum bench_wrong */
     int moving;               /* the hand is at it */
-    struct sim_device device; /* with the mass that hangs on it */
+    struct sim_device device; /* with the mass on it */
     double now_s, from_s, until_s, from_m, to_m;
 };
 
@@ -44,7 +41,7 @@ void bench_prepare(struct bench *b, const struct plant *p, struct sim_random *r,
     enum bench_place place, double mass_kg);
 int bench_ready(const struct bench *b);
 
-/* As plant_advance(), with the hand, the end and the stand in the string's way. */
+/* As plant_advance(), with hand, end and support acting on the string. */
 void bench_advance(struct bench *b, struct plant *p, double dt_s, double ref_A);
 
 /* Position as the encoder is wired to see it. */

@@ -40,7 +40,7 @@ struct sim_device sim_device_default(void);
 int sim_device_set(
     struct sim_device *d, const char *name, double value, const struct sim_device_row **row);
 
-/* The same for any struct of doubles in the order of its own table of n rows. */
+/* The same for any struct of doubles in the order of its table of n rows. */
 void sim_rows_default(void *values, const struct sim_device_row *rows, int n);
 int sim_rows_set(void *values, const struct sim_device_row *rows, int n, const char *name,
     double value, const struct sim_device_row **row);

@@ -18,8 +18,8 @@ double sim_sqrt(double v)
 
 /* --- real: balance, Hessenberg form --- */
 
-/* A similar matrix whose rows and columns are of a size, by exact powers of 2: forces
- * stand beside positions, and a factor of 10^5 between them would only cost digits. */
+/* A similar matrix with balanced rows and columns, by exact powers of 2. Forces stand beside
+ * positions, and a factor of 10^5 between them would only cost digits. */
 static void balance(struct matrix *M)
 {
     for (int sweep = 0, changed = 1; changed && sweep < 100; sweep++) {

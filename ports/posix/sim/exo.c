@@ -30,7 +30,7 @@ static void keep_point(struct sim_exo *e, double t_s)
 {
     struct sim_exo_point *p;
     if (!e->gloved) { return; }
-    if (e->points == SIM_EXO_POINTS) { /* nobody asked for so long: the oldest is of no use */
+    if (e->points == SIM_EXO_POINTS) { /* no reader for long: drop the oldest */
         e->first = (e->first + 1) % SIM_EXO_POINTS;
         e->points--;
         e->torn = 1;
@@ -58,7 +58,7 @@ int sim_exo_start(struct sim_exo *e, const struct sim_exo_par *p, const struct s
         if (!used(e, i)) { continue; }
         path.first_s += later_s;
         later_s += p->apart_s;
-        /* A seed of its own: what it does does not hang on which others there are. */
+        /* A separate seed: each finger is independent of the others. */
         sim_finger_start(&e->finger[i], &p->finger[i], &path, &p->record[i], d,
             seed ^ UINT64_C(0x9E6C63D0876A9A47) * (i + 1));
     }

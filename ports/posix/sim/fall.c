@@ -5,7 +5,7 @@
 #define LIFT_S    0.5
 #define HOLD_S    0.1
 #define GIVE_UP_S 3.0  /* a mass that has not reached the contact by then */
-#define CATCH_S   0.2  /* until somebody who sees a light go out has the mass */
+#define CATCH_S   0.2  /* reaction time of a person who sees a light go out */
 #define MARGIN_S  0.15 /* or two ticks: by so much may the log's contact be later */
 
 static double start_height(const struct sim_device *d, struct sim_random *r)

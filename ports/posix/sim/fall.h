@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Fall: what the experimenter does. Holds the mass, lets go, watches, lifts again.
- *
- * While held or lifted, the hand guides mass and string together. */
+/* Fall: the actions of the experimenter, who holds the mass, releases it, watches and lifts it
+ * again. While held or lifted, the hand guides mass and string together. */
 #ifndef SIM_FALL_H
 #define SIM_FALL_H
 
@@ -23,8 +22,8 @@ struct fall {
     double from_x_m, from_q_m, to_m;
 };
 
-/* T_s: it holds for a tick and watches for two more than it must, whatever the rate,
- * so that the controller sees every fall whole and a tick between any two. */
+/* T_s: holds one tick and watches two ticks more than necessary, at any rate. So the controller
+ * sees every fall completely, and a tick between any two. */
 void fall_start(struct fall *f, struct plant *p, const struct sim_device *d, struct sim_random *r,
     int falls, double T_s);
 
@@ -32,14 +31,14 @@ void fall_start(struct fall *f, struct plant *p, const struct sim_device *d, str
  * fall_ready(). */
 void fall_catch(struct fall *f, double t_s);
 
-/* The box runs: what is held longer for its sake is let go as if it had begun now. */
+/* The device is in RUN: the holding time starts now. */
 void fall_ready(struct fall *f, double t_s);
 
 /* When the phase ends, if known; a time far away otherwise. */
 double fall_next_s(const struct fall *f);
 
-/* At time t, after the plant got there: moves the hand, changes phase when due.
- * Returns 1 when the mass was let go at this moment. */
+/* Call it when the plant has reached time t: moves the hand, changes the phase when due. Returns 1
+ * at the release of the mass. */
 int fall_step(
     struct fall *f, struct plant *p, const struct sim_device *d, struct sim_random *r, double t_s);
 

@@ -81,7 +81,7 @@ void sim_finger_safe(struct sim_finger *f) { f->latched_A = f->ref_A = 0; }
 
 static double earlier(double a, double b) { return a < b ? a : b; }
 
-/* The finger by itself, up to the next event. */
+/* Advances the finger alone to the next event. */
 static void advance_plant(struct sim_finger *f, double to_s, double dt_s)
 {
     const double at_m = sim_path_at(&f->path, to_s);

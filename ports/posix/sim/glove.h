@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* The glove's analog chain, from 22 joint angles to 22 A/D codes:
+/* The analog chain of the glove, from 22 joint angles to 22 A/D codes: angle, low-pass, sensor (its
+ * own two end points), amplifier, multiplexer, noise, A/D. The low-pass comes first: sensor and
+ * amplifier are linear up to the rails, so the order has no effect. After angles in closed form its
+ * output has a closed form (lag.h).
  *
- *   angle, low-pass, sensor (its own two end points), amplifier, multiplexer, noise, A/D
- *
- * The low-pass stands first: sensor and amplifier are straight lines, up to the amplifier's
- * rails, so the order of the three makes no difference, and behind angles known in closed
- * form its output is known in closed form (lag.h).
- *
- * The card converts one channel after the other, the last one `interval` before the tick
- * at which the frame is read: channel i is held at tick - (22 - i) interval.
- */
+ * The card converts one channel after the other, the last one `interval` before the tick that reads
+ * the frame. Channel i is held at tick - (22 - i) interval. */
 #ifndef SIM_GLOVE_H
 #define SIM_GLOVE_H
 
@@ -68,7 +64,7 @@ struct sim_glove {
     double volt_V[SIM_GLOVE_SENSORS];        /* of those that do not */
     struct sim_decay low_pass[SIM_GLOVE_SENSORS];
     double slot_left, code_perV, noise_V_perLSB, noise_V_most; /* multiplexer, A/D, noise */
-    /* An angle that is `share` of another's; of none else it is 1 of its own. */
+    /* An angle that is `share` of another's; an independent one is 1 of its own. */
     unsigned char of[SIM_GLOVE_SENSORS];
     double share[SIM_GLOVE_SENSORS];
 };

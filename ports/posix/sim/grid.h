@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Grid: lengths of time that repeat to the bit.
- *
- * An instant in double has an error of its own, so the pieces between ticks, outputs and servo
- * samples differ in their last bits, and nothing that was worked out for one serves the next.
- * Between instants on a grid of 2^-46 s (14 fs, a last bit at 64 s) they are few. No error adds up:
- * the pieces' sum is the whole, on the grid. */
+/* Grid: time steps that repeat to the bit. An instant in double has a rounding error. So the steps
+ * between ticks, outputs and servo samples differ in their last bits, and results for one step
+ * cannot be reused. On a grid of 2^-46 s (14 fs, the last bit at 64 s) there are few different
+ * steps. No error accumulates: their sum is exact on the grid. */
 #ifndef SIM_GRID_H
 #define SIM_GRID_H
 

@@ -120,8 +120,8 @@ struct linear_flow linear_flow(const struct linear_plant *p, double t_s)
 
 /* --- one tick --- */
 
-/* The plant over a tick, and before and after a new force takes hold in it: what does
- * not hang on the wall, which is asked for at many gains. */
+/* The plant over a tick, and before and after a new force begins in it: the parts that do not
+ * depend on the wall, reused for many gains. */
 struct tick {
     struct linear_plant p;
     double T_s, part_s;

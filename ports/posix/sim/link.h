@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Link: what a network does to packets, in virtual time, seeded.
+/* Link: effects of a network on packets, in virtual time, with a seed. Each of two directions
+ * delays packets (constant, with jitter of three kinds, or from a recorded trace), loses and
+ * duplicates them. It holds some back so that later ones overtake, and has outages, in which
+ * nothing arrives. A packet arrives at sent + delay; simultaneous ones keep their order.
  *
- * Each of two ways delays (constant, or with jitter of three kinds, or as a recorded trace says),
- * loses, doubles, holds some back so that later ones overtake them, and has holes, in which
- * nothing arrives. A packet arrives at sent + delay; two that arrive at once come in the order
- * they were sent. What is on its way is bounded; what finds no room is dropped and counted.
- *
- * Chance is drawn apart for each of these, and once a packet, whatever is switched on: more
- * loss does not change the delay of what still arrives.
- */
+ * The number in transit is bounded; further packets are dropped and counted. Random numbers are
+ * drawn separately per effect and once per packet, even if an effect is off. So more loss does not
+ * change the delay of other packets. */
 #ifndef SIM_LINK_H
 #define SIM_LINK_H
 

@@ -38,7 +38,7 @@ void sim_mass_put(struct sim_mass *m, double x_m, double q_m)
 
 static double earlier(double a, double b) { return a < b ? a : b; }
 
-/* The plant by itself, up to the next event. */
+/* Advances the plant alone to the next event. */
 static void advance_plant(struct sim_mass *m, double dt_s)
 {
     const struct plant_piece *piece;

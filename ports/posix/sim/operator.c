@@ -137,7 +137,7 @@ void sim_operator_start(struct sim_operator *o, const struct sim_operator_par *p
     if (p->does == SIM_WAVE) { wave(o, g); }
 }
 
-/* The next pose of those that go on by themselves. */
+/* The next pose of an operator that continues automatically. */
 static int next_pose(const struct sim_operator *o)
 {
     if (o->par.does == SIM_GRASP) { return o->to == FIST ? FLAT : FIST; }

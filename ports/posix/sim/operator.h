@@ -6,8 +6,8 @@
 
 #include "glove.h"
 
-/* Poses a person can take when told, angles in degrees in the glove's order, each within
- * its sensor's nominal range. Together they show every sensor both of its ends. */
+/* Poses for a person to take, angles in degrees in the glove's order, each within its sensor's
+ * nominal range. Together they move every sensor to both of its ends. */
 struct sim_pose {
     const char *name, *say; /* "fist", "make a fist, thumb beside it" */
     double deg[SIM_GLOVE_SENSORS];

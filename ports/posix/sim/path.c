@@ -173,7 +173,8 @@ static double control(const struct sim_path_record *r, long n)
     return r->string_m[n < 0 ? 0 : n < r->rows ? n : last];
 }
 
-/* From row `number` to the next, or near them; before the first and behind the last it stands. */
+/* Moves from row `number` to the next, or near them; constant before the first and after the
+ * last. */
 static void play(struct sim_path *p)
 {
     const struct sim_path_record *r = &p->record;

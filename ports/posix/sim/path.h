@@ -1,22 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* Path: where a finger wants to be, as string drawn out, m.
+/* Path: the wanted position of a finger, as string length in m. Scripted approaches move from rest
+ * to beyond the assumed place of the object with minimum jerk, and pass that place at a given
+ * speed. Then the finger presses, withdraws, and repeats. Alternatively the rows of a glove's
+ * recording are control points of a cubic B-spline: it passes near them, never beyond them, without
+ * a step in acceleration. Row n is at (n + 1) / row_hz.
  *
- * Scripted approaches: from rest to beyond where the object is believed to be, a
- * minimum-jerk movement that passes that place at a given speed; pressed for a while;
- * withdrawn; again. Or a glove's recording, its rows as control points of a cubic B-spline:
- * it passes near them, never beyond them, with no jump in acceleration; row n
- * counts at (n + 1) / row_hz.
- *
- * A hand knows how heavy the device feels when nothing is touched and pushes so much the
- * harder: the spring's end leads the wanted place x by e,
- *
- *   K e + B e' = learned (m x'' + c x' + f)
- *
- * with all that moves and rubs as the string is drawn out as m, c and f, and the finger alone as
- * it is let in, which the string follows by itself: a free finger is about where the script
- * wants it. With learned = 0 the spring's end is the script itself.
- * Known in closed form (lag.h): nothing is integrated.
- */
+ * A hand has learned the weight of the free device and pushes harder by that. The spring's end
+ * leads the wanted place x by e, with K e + B e' = learned (m x'' + c x' + f). m, c and f include
+ * all that moves and rubs when the string is drawn out, and the finger alone when it is let in. So
+ * a free finger is near the script. With learned = 0 the spring's end is the script. All in closed
+ * form (lag.h), without integration. */
 #ifndef SIM_PATH_H
 #define SIM_PATH_H
 
@@ -40,8 +33,8 @@ struct sim_path_par sim_path_default(void);
 int sim_path_set(
     struct sim_path_par *p, const char *name, double value, const struct sim_device_row **row);
 
-/* The paper's three speeds, m/s of string where the object is believed to be: "slow",
- * "natural", "fast"; 0: no such name. */
+/* The paper's three speeds, m/s of string at the assumed place of the object: "slow", "natural",
+ * "fast"; 0: no such name. */
 double sim_path_speed(const char *name);
 
 /* What is carried along: the load of free movement, and the spring it is carried by. */

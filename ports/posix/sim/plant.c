@@ -72,7 +72,7 @@ void plant_advance_piece(
 {
     step_string(p, d, s, ref_A, NULL, 0);
     step_current(p, s, ref_A);
-    for (int i = 1; i < s->n; i++) { /* rare: by itself, nothing is fetched in advance for it */
+    for (int i = 1; i < s->n; i++) { /* rare case, without prefetching */
         step_string(p, d, s, ref_A, NULL, 0);
         step_current(p, s, ref_A);
     }
@@ -104,11 +104,11 @@ void plant_advance(struct plant *p, const struct sim_device *d, double dt_s, dou
     }
 }
 
-/* Of the stretch s of a taut string, friction with its motion: s'' = -w2 s - c s'. With g = 1 - h c
- * / 2 a step has determinant 1 - g h c and trace 2 - g h c - g h^2 w2: stable where h c < 2 and g
- * (h^2 w2 + 2 h c) < 4, so wherever h^2 w2 < 4 and h c < 2. Viscous friction and the hand's damping
- * are implicit, stable at any step; yet where one would stop what it acts on within a step, dry
- * friction beside it is taken for less. */
+/* For the stretch s of a taut string, friction with its motion: s'' = -w2 s - c s'. With g = 1 - h
+ * c / 2 a step has determinant 1 - g h c and trace 2 - g h c - g h^2 w2. It is stable where h c < 2
+ * and g (h^2 w2 + 2 h c) < 4, so wherever h^2 w2 < 4 and h c < 2. Viscous friction and the hand's
+ * damping are implicit and stable at any step. But where one would stop its part within a step, dry
+ * friction beside it is underestimated. */
 static int step_ok(const struct sim_device *d, double hand_npm, double hand_nspm, double h_s)
 {
     const double per_kg = (1 + d->mu_mass) / d->mass_kg + (1 + d->mu_motor) / d->rotor_kg;

@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* Plant: a mass on an elastic string that only pulls, wound on a motor's rotor.
+/* Plant: a mass on an elastic string that only pulls, wound on the rotor of a motor.
  *
  *   T    = max(0, kc (x - q) + bc (x' - q')), 0 when x < q
  *   m x''  = m g - T - dry(mu_mass T)
  *   mr q'' = T - kf i - bv q' - dry(fc + mu_motor T)
  *   i'   = 2 pi fbw (iref - i)            monitor' = (i - monitor) / lag
  *
- * dry() is Coulomb friction with stiction. Leapfrog: half a step by the old speeds, the forces
- * there, half a step by the new speeds; friction is an impulse that can only shrink a velocity
- * towards zero (it cannot chatter), the damped forces are taken at the mean speed, the two
- * first-order lags exactly. Second order where nothing begins or ends. + - x / only: the same
- * digits on every machine.
- */
+ * dry() is Coulomb friction with stiction. Integration by leapfrog: half a step by the old speeds,
+ * the forces there, half a step by the new speeds. Friction is an impulse that can only reduce a
+ * velocity towards zero, so it cannot chatter. Damped forces use the mean speed; the two
+ * first-order lags are exact. The order is 2 where no event occurs. + - x / only: the same digits
+ * on every machine. */
 #ifndef SIM_PLANT_H
 #define SIM_PLANT_H
 
@@ -31,8 +30,8 @@ struct plant {
 void plant_advance(
     struct plant *p, const struct sim_device *d, double dt_s, double ref_A, int held);
 
-/* The same for whoever has pieces of one length again and again: what hangs on length and device
- * alone is worked out once. */
+/* The same for callers with many steps of equal length: the parts that depend on length and device
+ * only are computed once. */
 struct plant_piece {
     int n; /* sub-steps of h_s */
     double h_s, half_s;
@@ -71,10 +70,10 @@ void plant_advance_hand(struct plant *p, const struct sim_device *d, double dt_s
 void plant_advance_hand_piece(struct plant *p, const struct sim_device *d,
     const struct plant_piece *s, double ref_A, const struct plant_hand *hand);
 
-/* Whether sub-steps of substep_s are short enough: half of what keeps them stable, that is, at
- * least six of them a period of string and rotor, which then come 5 % too soon, and at least one in
- * the time in which the string's damping, the motor's or the hand's takes 1/e off a speed.
- * hand_npm, hand_nspm: stiffness and damping of a hand at the mass, 0 without. */
+/* Whether sub-steps of substep_s are short enough: at most half of the stability limit. That is at
+ * least six per period of string and rotor, which then is 5 % too short. It is also at least one in
+ * the time in which the damping of string, motor or hand reduces a speed to 1/e. hand_npm,
+ * hand_nspm: stiffness and damping of a hand at the mass, 0 without. */
 int plant_step_will_do(const struct sim_device *d, double hand_npm, double hand_nspm);
 
 /* A round number that will, at most the device's longest; 0: none that it may have. */

@@ -42,7 +42,8 @@ struct run {
     int touched, still;
 };
 
-/* In a block of cases each part of 0..1 once, in an order of its own for each axis and block. */
+/* In a block of cases, each part of 0..1 occurs once, in a separate order for each axis and
+ * block. */
 static double part_of(int i, uint64_t axis)
 {
     struct sim_random order = {(uint64_t)(i / BLOCK) << 8 | axis},

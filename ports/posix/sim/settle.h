@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Settle: does a mass that falls onto the wall come to rest? One fall, without chance.
- *
- * The model of the stability advisor: rotor, string, mass and their friction as plant.h has them,
- * the wall in doubles (no codes, no noise, no I2t), and what is chance in the box handed in as a
- * case: where the wall lies between two counts, where the encoder's count changes, when the tick
- * and the drive's own clock come, from how high the mass falls. + - x / only: the same answer on
- * every machine. */
+/* Settle: does a mass that falls onto the wall come to rest? One fall, without random numbers. The
+ * model of the stability advisor: rotor, string, mass and friction as in plant.h, the wall in
+ * doubles (no codes, noise or I2t). Random quantities of the device are parameters of a case. These
+ * are the place of the wall between two counts, the height of the fall, and the phases of encoder,
+ * tick and the drive's clock. + - x / only: the same result on every machine. */
 #ifndef SIM_SETTLE_H
 #define SIM_SETTLE_H
 
@@ -19,7 +17,7 @@ struct settle_wall {
     struct estimate_par velocity;
 };
 
-/* All in 0..1: the wall's place and the encoder's phase in counts, the first tick in ticks, the
+/* All in 0..1: place of the wall and phase of the encoder in counts, the first tick in ticks. The
  * drive's first sample in its periods, and the height between its least and its largest. */
 struct settle_case {
     double wall, grid, tick, servo, height;
@@ -28,7 +26,7 @@ struct settle_case {
 enum settle_end {
     SETTLE_REST,
     SETTLE_MOVES, /* or the force does, by what is no rest */
-    SETTLE_ASTRAY /* no contact, or gone where nobody measures */
+    SETTLE_ASTRAY /* no contact, or left the measured range */
 };
 
 /* The i-th case, i >= 0. Each block of 32 fills all five evenly (a Latin hypercube), and no two of

@@ -27,7 +27,7 @@ static inline double tension(const struct sim_device *d, double stretch_m, doubl
     return stretch_m < 0 ? 0 : pull_N;
 }
 
-/* The hand NULL: there is none, and the mass has its weight; t_s: the middle of the step. */
+/* hand NULL: no hand, and the mass has its weight; t_s: the middle of the step. */
 static inline void step_string(struct plant *p, const struct sim_device *d,
     const struct plant_piece *s, double ref_A, const struct plant_hand *hand, double t_s)
 {

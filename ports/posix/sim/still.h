@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Still: a mass that stands, to the last bit, and will for as long as the D/A output stays as it
- * is.
- *
- * Nothing of it is an estimate. Speeds are 0 and friction holds both ends, with 1e-9 N to spare: no
- * step of any length moves them. Current and monitor have come so close to the reference that the
- * longest step there can be rounds to where they are; a shorter one rounds to something between
- * that and where they are. */
+/* Still: a mass at rest to the last bit, until the D/A output changes. No estimate is involved.
+ * Speeds are 0 and friction holds both ends, with a margin of 1e-9 N, so no step of any length
+ * moves them. Current and monitor are so close to the reference that the longest possible step
+ * rounds to their present values. A shorter step rounds to a value between that and the present
+ * one. */
 #ifndef SIM_STILL_H
 #define SIM_STILL_H
 

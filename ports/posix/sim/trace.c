@@ -19,7 +19,7 @@ static int is_xz(const char *path)
     return n > 3 && strcmp(path + n - 3, ".xz") == 0;
 }
 
-/* The path between single quotes, each of its own written '\''. */
+/* The path in single quotes, with each of its quotes as '\''. */
 static FILE *unpacked(const char *path)
 {
     char command[2 * PATH_MAX_B] = "xz -dc -- '";

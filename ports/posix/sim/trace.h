@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Trace: recorded delays for the simulated link, one a packet.
+/* Trace: recorded delays for the simulated link, one per packet. The format is text: one packet per
+ * line, its delay in ms, or "lost". Empty lines and comments after # are skipped. A file of round
+ * trip times in ms is valid, too; halve it by the link's `trace_scale`.
  *
- * The file format is text: one packet a line, its delay in ms, "lost" for one that never
- * came; empty lines and what follows a # are passed over. A file of round trip times in ms
- * is such a file, to be halved by the link's `trace_scale`.
- *
- * Read as well: the log of an audio receiver that stands beside such data, CSV whose lines
- * begin with a letter, compressed by xz or not. Its 'm' lines are packets (arrival in ns, the
- * sender's stamp in samples of 44100 Hz): their delays above the quickest; its 'r' lines
- * are round trips (second field, ns).
- */
+ * Also reads the log of an audio receiver that accompanies such data: CSV whose lines begin with a
+ * letter, optionally compressed by xz. Its 'm' lines are packets (arrival in ns, the sender's stamp
+ * in samples of 44100 Hz); the delays are those above the quickest. Its 'r' lines are round trips
+ * (second field, ns). */
 #ifndef SIM_TRACE_H
 #define SIM_TRACE_H
 

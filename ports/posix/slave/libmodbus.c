@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Modbus over TCP or a serial line, by libmodbus: it receives, frames and sends. What a register
- * means, and what may be written, is the library's (exhand/modbus.h): a request's registers are
- * filled into libmodbus's mapping before it answers, and its exceptions are given before it writes.
- *
- * What libmodbus 3.1.6 does otherwise than the specification is kept away from it: counts and
- * lengths are looked at before, so that it neither waits for bytes that do not come, nor takes the
- * rest of one request for the next, nor throws requests away behind a bad one (docs/MODBUS.md).
- */
+/* Modbus over TCP or a serial line by libmodbus, which receives, frames and sends. The library
+ * (exhand/modbus.h) defines registers and permissions. A request's registers are copied to
+ * libmodbus's mapping before it answers, and exceptions are sent before it writes. Counts and
+ * lengths are checked before, because libmodbus 3.1.6 deviates from the specification
+ * (docs/MODBUS.md). So it does not wait for missing bytes, does not take the rest of one request
+ * for the next, and does not discard requests after a bad one. */
 #include "slave/libmodbus.h"
 
 #include "slave/slave.h"
@@ -143,7 +141,7 @@ static void *serve_tcp(void *unused)
         }
         f[n] = (struct pollfd){server.listener, POLLIN, 0};
         f[n + 1] = (struct pollfd){server.stop[0], POLLIN, 0};
-        if (partial) { (void)poll(NULL, 0, 1); } /* the rest of a request does not wake anybody */
+        if (partial) { (void)poll(NULL, 0, 1); } /* the rest of a request wakes no thread */
         (void)poll(f, (nfds_t)n + 2, WAIT_MS);
         if (f[n + 1].revents) { return NULL; }
         serve_clients(f);
@@ -166,7 +164,7 @@ static void *serve_rtu(void *unused)
     while (!told_to_stop()) {
         uint8_t req[MODBUS_MAX_ADU_LENGTH] = {0};
         const int len = modbus_receive(server.ctx, req);
-        if (len >= 2 + CRC_B) { /* of a broadcast writes are carried out, and nobody answers */
+        if (len >= 2 + CRC_B) { /* of a broadcast, writes are executed without a response */
             const int all = req[0] == MODBUS_BROADCAST_ADDRESS;
             if (!all ||
                 (req[1] != 1 && req[1] != 2 && req[1] != 3 && req[1] != 4 && req[1] != 23)) {

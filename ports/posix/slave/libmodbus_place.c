@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Who gives up a place when all are taken. Who vanished without a word would hold his for ever, and
- * who opens connections and says nothing must not push out one that reads: so the idle go first, of
- * the same source before others, and a reader goes for nobody but its own source. Those on this
- * machine are one source: there a connection that never asked goes before one that did. */
+/* Which client loses its place when all are taken. A client that vanished must not hold a place
+ * forever, and idle connections must not displace an active reader. So idle clients go first, those
+ * of the same source before others. A reader is displaced only by its own source. All clients on
+ * this machine are one source; there a connection without any request goes first. */
 #include "slave/libmodbus.h"
 
 #define IDLE_S 60 /* a monitor asks more often */

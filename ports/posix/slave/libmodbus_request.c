@@ -101,8 +101,8 @@ static int mask(struct exh_regs *r, const uint8_t *pdu)
     return exh_regs_write(r, (uint16_t)at, 1, bytes);
 }
 
-/* libmodbus writes what came into its mapping and answers from there; so what came becomes what
- * stands there now, where a register took the nearest it can be. */
+/* libmodbus writes the request into its mapping and answers from it. So replaces the written values
+ * by the stored ones, where a register took the nearest possible value. */
 static int write_and_read(struct exh_regs *r, uint8_t *pdu)
 {
     const unsigned at = request_be16(pdu + 1), n = request_be16(pdu + 3),

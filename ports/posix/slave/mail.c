@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The mailbox between the loop and whoever answers Modbus requests. */
+/* The mailbox between the loop and the thread that answers Modbus requests. */
 #include "slave/slave.h"
 
 #include "base/option.h"

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* exhand run --modbus: the registers of the running box (exhand/modbus.h) for clients, over TCP or
- * a serial line. A thread of its own answers them; between it and the loop is a mailbox:
+ * a serial line. A separate thread answers them. A mailbox connects it with the loop:
  *
- *   loop, behind a tick:  what the registers show is copied, all of it of this tick
+ *   loop, after a tick:   copies all registers, from one tick
  *   clients:              read the copy, stage and command in it
- *   loop, before a tick:  what was commanded is carried out
+ *   loop, before a tick:  executes commands
  *
- * The loop never waits for the mailbox: is it in use, the copy stays that of a tick before, and
- * commands wait for the next. So a client can delay an answer, and no tick.
- */
+ * The loop never waits for the mailbox. If it is in use, the copy stays that of the last tick, and
+ * commands wait for the next. So a client can delay a response, but no tick. */
 #ifndef POSIX_SLAVE_H
 #define POSIX_SLAVE_H
 
@@ -30,15 +29,15 @@ int mail_before(struct exh_scene_in *in);
 void mail_after(const struct exh_scene_in *in); /* a step of the trace, and show */
 int mail_show(const struct exh_scene_in *in);
 
-/* The registers, for one request; nobody else has them until they are given back. */
+/* Locks the registers for one request, until they are given back. */
 struct exh_regs *mail_take(void);
 void mail_give(void);
 
 /* Between requests: writes what SAVE asked for. */
 void mail_save(void);
 
-/* Behind the last tick, when nobody answers any more: what clients were told would be done, and
- * found no tick that did it, is. */
+/* After the last tick and the last response: executes commands that were confirmed but found no
+ * tick. */
 void mail_end(void);
 
 /* libmodbus.c, or none.c without that package. where: "tcp:HOST:PORT",

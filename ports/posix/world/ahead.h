@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What a fingertip will touch first: its pad's sphere goes along the way that the finger is on,
- * by steps no longer than the distance to the nearest body, so that it jumps over none. */
+/* Predicts what a fingertip touches first. The sphere of its pad moves along the finger's path, in
+ * steps no longer than the distance to the nearest body, so that it cannot skip one. */
 #ifndef WORLD_AHEAD_H
 #define WORLD_AHEAD_H
 
@@ -34,20 +34,21 @@ struct ahead_stats {
     unsigned long tested, culled; /* bodies asked for their distance; of these by their ball */
 };
 
-/* What is told of the finger. */
+/* The reported result of a finger. */
 struct ahead_patch {
     int body; /* -1: there is nothing */
     struct v3 normal, point;
     double offset_m; /* of the tangent plane from the origin, along the normal */
 };
 
-/* Of the first of these that holds:
- *   - the finger touches something: the patch nearest to its pad;
- *   - it is on its way, and touches something on it: the patch that it touches first;
- *   - it would touch something if it closed: the patch that it would touch first;
- *   - it rests: the patch nearest to it, within look_m.
- * Where the way meets a far patch flatter than graze, the patch of that body that is nearest now:
- * the plane of the far one would pass near the finger long before its surface does. */
+/* Selects the first that applies:
+ * - The finger touches something: the patch nearest to its pad.
+ * - It moves and its path touches something: the patch it touches first.
+ * - It would touch something if it closed: the patch it would touch first.
+ * - It rests: the patch nearest to it, within look_m.
+ *
+ * Where the path meets a far patch at an angle below graze, the nearest patch of that body is used.
+ * The plane of the far one would pass near the finger long before its surface does. */
 void ahead_look(const struct ahead *a, struct ahead_patch *to, struct ahead_stats *s);
 
 #endif

@@ -84,9 +84,9 @@ static void plane(
     }
 }
 
-/* A box on the fingertip, where the surface pushes it: the force is its height, along the contact's
- * normal. Around it, as glass, the highest force of the material. Without a contact there is none:
- * what pulls then (F0) comes of no surface. */
+/* A bar on the fingertip where the surface pushes. Its height is the force, along the contact's
+ * normal. The glass around it shows the highest force of the material. No bar without contact: F0
+ * then does not come from a surface. */
 static void bar(const struct scene *s, const struct draw_moment *m, const struct finger *f,
     const struct pose *hand, int which, struct draw_list *list)
 {

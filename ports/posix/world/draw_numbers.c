@@ -52,7 +52,7 @@ static const char *doing(const struct draw_moment *m, int f, int *colour)
     return m->out.plane[f].kind == EXH_PLANE_HIT ? "near" : "free";
 }
 
-/* In mm; nothing where there is none. */
+/* In mm; blank for `none`. */
 static void way(struct draw_list *l, int x, int y, int32_t m_q30, int32_t none)
 {
     if (m_q30 != none) { say(l, x, y, WHITE, 1, "%.2f", m_q30 * (1000 * 0x1p-30)); }

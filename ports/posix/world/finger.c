@@ -5,8 +5,8 @@
 
 #include "sim/lag.h"
 
-/* The published robot description of the hand (FFH): place and turning of each finger's base in the
- * palm. The four fingers stand with pitch -90 degrees; only their roll differs. */
+/* The published robot description of the hand (FFH): position and rotation of each finger's base in
+ * the palm. The four fingers have pitch -90 degrees; only their roll differs. */
 static const struct {
     struct v3 at_m, rpy_rad;
 } base[FINGERS] = {

@@ -22,7 +22,7 @@ extern const char *const finger_name[FINGERS];
 extern const double finger_radius_m[3];
 extern const double finger_lo_rad[3], finger_hi_rad[3];
 
-/* Where the fingers stand in the palm. */
+/* Positions of the fingers in the palm. */
 struct hand {
     struct pose base[FINGERS];
 };

@@ -147,7 +147,7 @@ void picture_paint(struct picture *p, const struct draw_list *list) { paint(p, l
 void picture_show(struct picture *p)
 {
     const struct gl_patch all = {0, 0, p->width, p->height};
-    if (p->layered && p->headless) { return; } /* nobody sees it; picture_save() reads the layer */
+    if (p->layered && p->headless) { return; } /* not displayed; picture_save() reads the layer */
     if (p->layered) {
         gl_layer_copy(&p->layers, GL_WHOLE, -1, GL_COLOR_BUFFER_BIT, &all);
         gl_layer_on(&p->layers, -1);

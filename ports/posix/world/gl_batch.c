@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Bodies put into one array of corners with their colours, so that a whole picture is a handful of
- * calls: without a graphics card, a call costs as much as a hundred corners. Light is reckoned
- * here, at the corners: sky from above, a lamp, some from the eye, a shine, darker edges. */
+/* Collects bodies into one array of vertices with colours, so that a picture needs few calls:
+ * without a graphics card, a call costs as much as a hundred vertices. Light is computed per
+ * vertex: sky from above, a lamp, some from the eye, specular light, darker edges. */
 #include "gl.h"
 
 #include "rpy.h"
@@ -106,8 +106,8 @@ static int is_round(const struct draw_item *i)
 
 static int is_long(const struct draw_item *i) { return i->kind == DRAW_CAPSULE && i->size.z > 0; }
 
-/* The frame of a round body's form: x to the eye, but z along its axis; of a flat one z to the eye,
- * or of its outline to the lamp and x along the axis. */
+/* The frame of a body's form. Round: x to the eye, but z along its axis. Flat: z to the eye. Its
+ * outline: z to the lamp and x along the axis. */
 static void set_round(struct brush *b, struct gl_forms *f, int form)
 {
     const struct draw_item *i = b->item;

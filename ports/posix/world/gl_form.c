@@ -19,9 +19,9 @@ static void triangle(struct gl_forms *m, int a, int b, int c)
     for (int i = 0; i < 3; i++) { m->index[m->indices++] = (unsigned short)corners[i]; }
 }
 
-/* The half of a ball that is seen from x: `strips` strips to either side of the middle, of `steps`
- * steps from one pole, -y, to the other; gl_form_face() gives the corners their places. A capsule's
- * ends are carried apart along z by the strip in the middle, which comes last: a ball has none. */
+/* The half of a ball that is visible from x: `strips` strips on either side of the middle, of
+ * `steps` steps from one pole, -y, to the other. gl_form_face() places the vertices. The middle
+ * strip, the last one, separates a capsule's ends along z; a ball has none. */
 static void make_round(struct gl_forms *m, struct gl_form *f, int steps, int strips)
 {
     const int first = m->corners, wide = steps + 1, rows = 2 * strips + 1;

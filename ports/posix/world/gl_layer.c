@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Layers of a picture: what stands still keeps its pixels and depths from picture to picture, and
- * so do the numbers, which nobody reads four hundred times a second. A new picture begins as a copy
- * of the first, where something moved, and ends with a copy of the second. */
+/* Layers of a picture: static bodies keep their pixels and depths between pictures, and so do the
+ * numbers, which need no rate of four hundred per second. A new picture starts as a copy of the
+ * first layer, where something moved, and ends with a copy of the second. */
 #include "gl.h"
 
 #include <stdlib.h>
@@ -78,7 +78,7 @@ void gl_layer_copy(
     glBlitFramebuffer(x0, y0, x1, y1, x0, y0, x1, y1, what, GL_NEAREST);
 }
 
-/* Whether what stands still, the eye, or the size is another than the last time. */
+/* 1 if static bodies, the eye or the size have changed since the last call. */
 int gl_layers_moved(struct gl_layers *g, const struct draw_list *l)
 {
     int n = 0, other = 0;

@@ -11,10 +11,10 @@
 #include <unistd.h>
 
 #define HELLO_EVERY_US 500000
-#define QUIET_US       1000000 /* nothing heard for so long: any HELLO begins anew */
+#define QUIET_US       1000000 /* silence after which any HELLO starts a session */
 #define BURST          64      /* datagrams taken a frame, at most: a flood can't hold a frame up */
 
-/* "[HOST:]PORT" apart; host is "" where there is none. */
+/* Splits "[HOST:]PORT"; host is "" if missing. */
 static int part(const char *text, char host[128], char port[16])
 {
     const char *colon = strrchr(text, ':');
@@ -171,8 +171,8 @@ static void answer_to(struct link *l, const struct sockaddr_storage *from, sockl
     l->peer_B = from_B;
 }
 
-/* With a key; > 0: so many bytes go on. Whoever has the key and begins is answered while nobody
- * else is heard, or neither would ever have heard of the other. */
+/* With a key; > 0: bytes to pass on. A sender with the key that starts is answered while no other
+ * is accepted; otherwise neither end could start. */
 static int32_t opened(struct link *l, const unsigned char *buf, ssize_t n,
     const struct sockaddr_storage *from, socklen_t from_B)
 {

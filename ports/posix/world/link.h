@@ -51,7 +51,7 @@ struct link_trace {
 struct link {
     int fd;
     struct sockaddr_storage peer;
-    socklen_t peer_B; /* 0: nobody so far */
+    socklen_t peer_B; /* 0: no peer yet */
     int fixed;        /* peer was given, and only it is listened to */
     struct exh_wire_tx tx;
     struct exh_wire_rx rx;
@@ -81,21 +81,20 @@ int link_open(struct link *l, const char *listen, const char *peer, uint32_t ses
     size_t error_B);
 void link_close(struct link *l);
 
-/* From now on: only who has this key is heard. start: key_start(). */
+/* From now on only packets with this key are accepted. start: key_start(). */
 void link_key(struct link *l, const struct exh_mac_key *key, uint64_t start);
 
-/* The scene's materials, each checked against its row, are what the controller is to have: asked
- * for when it has said HELLO and till it answers, and again of one that has started anew. Planes
- * of a material wait for its answers, but for no longer than a second. What is refused here or
- * there is said. */
+/* Sends the scene's materials, each checked against its row, to the controller. Requests start at
+ * its HELLO, repeat until the answer, and start again after its restart. Planes of a material wait
+ * for the answers, at most a second. Refusals here or there are reported. */
 void link_materials(struct link *l, const struct scene *s);
 
 /* One value of one material; 1: refused. */
 int link_want(struct link *l, const char *name, const struct exh_signal *row, unsigned instance,
     double value);
 
-/* Asks for a trace when the controller has said HELLO and till it answers, and again of one that
- * has started anew; its frames are lines of a CSV. 0, 1 (no file) or 2 (no such signal) with the
+/* Requests a trace at the controller's HELLO, repeatedly until the answer, and again after its
+ * restart. Its frames become lines of a CSV. 0, 1 (no file) or 2 (no such signal) with the
  * reason. */
 int link_trace_open(
     struct link *l, const struct link_trace_want *want, char *error, size_t error_B);
@@ -107,8 +106,8 @@ int link_trace_close(struct link *l);
 /* Takes what has come till now. 1 if a newer state is in *state. */
 int link_receive(struct link *l, struct exh_wire_state *state, int64_t now_us);
 
-/* Says HELLO when it is time, and answers the newest state. planes NULL: they are not of that
- * state's hand, and nobody is told them. */
+/* Sends HELLO when due, and answers the newest state. planes NULL: not of that state's hand; none
+ * are sent. */
 void link_answer(struct link *l, const struct exh_wire_planes *planes, int64_t now_us);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What the world wants of the controller: asked for until it is answered, and again of a controller
- * that has started anew. */
+/* The world's parameter requests to the controller: repeated until answered, and again after a
+ * restart of the controller. */
 #include "link_part.h"
 
 #include "exhand/exhand.h"

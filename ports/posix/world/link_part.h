@@ -7,12 +7,12 @@
 
 void link_put(struct link *l, struct exh_wire_packet *p, int64_t now_us);
 
-/* The controller has started anew, and knows nothing of what was wanted. */
+/* The controller has restarted and has lost all requests. */
 void link_params_anew(struct link *l, int64_t now_us);
 void link_params_answered(struct link *l, const struct exh_wire_ack *a);
 void link_params_ask(struct link *l, int64_t now_us);
 
-/* The same of the trace. */
+/* The same for the trace. */
 void link_trace_anew(struct link *l, int64_t now_us);
 void link_trace_ask(struct link *l, int64_t now_us);
 void link_trace_take(struct link *l, const struct exh_wire_trace *in);

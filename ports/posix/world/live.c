@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* In real time. The exchange has a thread of its own, so that a slow picture delays no plane: the
- * picture takes the newest exchange whenever it gets to it, and leaves out the others. */
+/* Real-time operation. The exchange has a separate thread, so that a slow picture delays no plane.
+ * Each picture shows the newest exchange and skips the others. */
 #include "run.h"
 
 #include "link.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* world: the world simulator as a program of its own. */
+/* world: the world simulator as a separate program. */
 #include "run.h"
 
 #include "base/ends.h"

@@ -22,7 +22,7 @@ static int complain(const struct reading *r, const char *what)
     return 1;
 }
 
-/* Room for one more; 0, or 1 when there is none. */
+/* Makes room for one more; 0, or 1 if there is no memory. */
 static int grow(void **array, int *room, int n, size_t size_B)
 {
     void *more;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Triangle meshes: read from OBJ files; the point nearest to another one by Embree, which is loaded
- * when the first mesh is, and only then: a world without one neither needs nor loads it. */
+/* Triangle meshes from OBJ files, and the point nearest to another one by Embree. Embree is loaded
+ * with the first mesh; a world without meshes does not need it. */
 #ifndef WORLD_MESH_H
 #define WORLD_MESH_H
 

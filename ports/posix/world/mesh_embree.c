@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The triangle nearest to a point by Embree 3 or 4. Its library has 44 MB: it is loaded when the
- * first mesh is.
- *
- * Embree tells in floats which triangles may be nearest; each is then asked in doubles, so that no
- * rounding of Embree's is in a plane. */
+/* The triangle nearest to a point by Embree 3 or 4. Its library has 44 MB, so it is loaded with the
+ * first mesh. Embree selects the candidate triangles in floats. Each is then checked in doubles, so
+ * that no plane contains Embree's rounding. */
 #include "mesh.h"
 
 #include <dlfcn.h>

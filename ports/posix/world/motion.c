@@ -81,6 +81,6 @@ static double bound(const struct motion *m, struct v3 v, int turning)
 
 double motion_speed(const struct motion *m) { return bound(m, m->move, 0); }
 
-/* Each of the three angles turns about an axis of length 1: together no faster than their sum,
- * which is at most sqrt(3) times the length of the three as a vector. */
+/* Each of the three angles turns about an axis of length 1. So the total is at most the sum of
+ * their speeds, which is at most sqrt(3) times the length of the three as a vector. */
 double motion_turning(const struct motion *m) { return 1.7320508075688774 * bound(m, m->turn, 1); }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* How something moves: an offset (metres) and a turning about its own origin (roll, pitch, yaw)
- * on top of where it stands, as functions of time alone. */
+/* Motion of an object: an offset (m) and a rotation about its own origin (roll, pitch, yaw)
+ * relative to its rest pose, as functions of time only. */
 #ifndef WORLD_MOTION_H
 #define WORLD_MOTION_H
 
@@ -22,7 +22,7 @@ struct motion {
     struct motion_key *key; /* at rising times; malloc */
 };
 
-/* Where `stand` is at t_s. */
+/* The pose at t_s of an object with the rest pose `stand`. */
 struct pose motion_at(const struct motion *m, const struct pose *stand, double t_s);
 
 /* What its origin never exceeds, m/s; and its turning, rad/s. */

@@ -22,11 +22,11 @@ struct pace {
     double pull_turn_q32ps[FINGERS][3]; /* the same while the string runs out at 0.05 m/s */
 };
 
-/* How a string bends the fingers, of the controller's HELLO; 0: it does not tell. */
+/* How a string bends the fingers, from the controller's HELLO; 0: unknown. */
 void pace_pull(struct pace *p, const struct exh_wire_hello *hello);
 
-/* A state came that was sent at stamp_us of the controller's clock. A clock that went back, or
- * stood for long, begins anew: nothing turns. */
+/* Takes a state sent at stamp_us of the controller's clock. A clock that went back or stopped for
+ * long restarts the estimate with zero speed. */
 void pace_take(struct pace *p, const struct exh_wire_state *state, uint32_t stamp_us);
 
 #endif

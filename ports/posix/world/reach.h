@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Which objects the hand can reach. One that can't sleeps until the time at which, at the
- * highest speed of both, it could at the earliest; sleepers stand in a heap, the one that wakes
- * first on top, and a frame looks at that one only. */
+/* Finds the objects within reach of the hand. An object out of reach sleeps until the earliest time
+ * at which it could be in reach, at the highest speed of both. Sleepers form a heap ordered by that
+ * time; a frame checks only its top. */
 #ifndef WORLD_REACH_H
 #define WORLD_REACH_H
 
@@ -19,7 +19,7 @@ struct reach {
     struct body *near;
     unsigned char *placed; /* of near[]: its pose is that of all times */
     int sleepers, nears;
-    int all;          /* nobody is put to sleep */
+    int all;          /* no object sleeps */
     struct v3 centre; /* in {R}: P_F stays within span_m of it, what is looked at within */
     double span_m, radius_m, speed; /* radius_m; speed of centre in {W}, at most */
     double t_s;                     /* of the last frame */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Names in a scene: of what a statement is about, and who has one; and room for one more. */
+/* Names in a scene: looks up objects by name, and adds one. */
 #include "scene_part.h"
 
 #include <stdlib.h>

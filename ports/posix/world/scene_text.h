@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A scene: what a world is made of, read from a text (scenes/README.md tells the format). */
+/* A scene: the content of a world, read from a text (format: scenes/README.md). */
 #ifndef WORLD_SCENE_TEXT_H
 #define WORLD_SCENE_TEXT_H
 

@@ -24,7 +24,7 @@ struct shape {
     const struct mesh *mesh;
 };
 
-/* A shape where it stands: in the frame of the points. */
+/* A shape with its pose, in the frame of the points. */
 struct body {
     struct pose at;
     struct shape is;

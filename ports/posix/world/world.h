@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* The world simulator's core: no clock, no socket, no graphics. A frame answers the hand's joints
- * with the planes its fingers are about to touch.
- *
- * It computes only what the scene needs: a finger that is off costs nothing; an object out of the
- * hand's reach sleeps until it could be in reach at the earliest, and costs nothing till then.
- * Same scene, times and inputs: same bits, on every machine. */
+/* The core of the world simulator: no clock, socket or graphics. A frame answers the hand's
+ * joints with the planes that its fingers are about to touch. It computes only what the scene
+ * needs. A finger that is off costs nothing; an object out of reach sleeps until it could be in
+ * reach, and costs nothing until then. The same scene, times and inputs give the same bits on
+ * every machine. */
 #ifndef WORLD_WORLD_H
 #define WORLD_WORLD_H
 
@@ -26,8 +25,8 @@ struct world_stats {
 
 struct world;
 
-/* NULL on failure, with "file:line: what: what to do" in error. name stands for the file in
- * messages, and meshes are looked for beside it. */
+/* Loads a scene. NULL on failure, with "file:line: what: what to do" in error. name is the file
+ * name for messages; meshes are searched in its folder. */
 struct world *world_load(const char *name, const char *text, char *error, size_t error_B);
 struct world *world_load_file(const char *path, char *error, size_t error_B);
 void world_free(struct world *w);

@@ -45,7 +45,7 @@ static int take_device(void *ctx, const char *text)
     return result_read(&a->file, text);
 }
 
-/* What the drop scene has when nobody says otherwise. */
+/* The default of the drop scene. */
 static double of_scene(const char *name)
 {
     const struct exh_signal *row = cli_signal_find(exh_scene_drop.params->table, name, NULL);
@@ -71,7 +71,7 @@ void gains_defaults(struct gains_options *a)
     a->jobs = jobs_cores();
 }
 
-/* Beside the device as told a heavier and a lighter mass, both with less friction. */
+/* Adds a heavier and a lighter mass, both with less friction, to the given device. */
 static void around(struct region_opt *o, double off)
 {
     for (int i = -1; i <= 1; i += 2) {
@@ -111,7 +111,7 @@ int gains_refuse(struct gains_options *a)
         return 2;
     }
     if (a->off_percent > 0) { around(&a->o, a->off_percent / 100); }
-    /* A device that nobody measured has a margin; one with a file has its intervals. */
+    /* A device without measurements gets a margin; a device file has intervals. */
     if (a->margin_percent < 0) { a->margin_percent = a->has_file ? 0 : 3; }
     a->o.margin = a->margin_percent / 100;
     a->o.cases = (int)a->cases;

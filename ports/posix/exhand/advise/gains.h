@@ -41,8 +41,7 @@ struct gains_study {
 int advise_command(int argc, char **argv, const struct gains_study *study);
 int gains_command(int argc, char **argv, const struct gains_study *study);
 
-/* What nobody asked to be otherwise; then what was asked, into o: 0, or 2 after a line on stderr.
- */
+/* Defaults first, then the given options into o. 0, or 2 after a line on stderr. */
 void gains_defaults(struct gains_options *a);
 int gains_refuse(struct gains_options *a);
 
@@ -54,9 +53,9 @@ int gains_told(struct region_opt *o, const struct result_file *f, double rate_Hz
 /* 0, or 1 after a line on stderr: too little is allowed for one. */
 int gains_rule(struct exh_gains_par *rule, const struct region *r);
 
-/* The rule ends by this share of k, and of its width in b, inside of what it was: on its line a
- * fall of a hundred that does not rest is hardly seen by the falls of a pair. Nothing is allowed
- * that was not. */
+/* Shrinks the rule by this share of k, and of its width in b. On the original line, the few falls
+ * of a pair hardly show one fall in a hundred that does not come to rest. The result allows nothing
+ * that the rule did not. */
 void gains_rule_inwards(struct exh_gains_par *rule, double by);
 
 /* A rule, and every pair that is then tried along its line and below it holds: what does not cuts

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A rule is asked where nobody has looked: between the rows that made it, below its line, and along
- * its other edges. */
+/* Tests a rule where no fall has been computed: between its rows, below its line, and along its
+ * other edges. */
 #include "advise/gains.h"
 
 #include "posix.h"

@@ -18,7 +18,7 @@
 #define SLIVER     0.01 /* of the area: so little may be left out at large b */
 #define DIP        0.25 /* of the rows beside it: what begins behind so little counts, */
 #define ISLANDS    4    /* of so many that begin there */
-#define ENOUGH     0.75 /* of the largest b: rows that go on for longer are laid anew */
+#define ENOUGH     0.75 /* of the largest b: longer rows get a new grid */
 
 /* --- one pair of gains --- */
 
@@ -147,7 +147,7 @@ static struct region_row span(const struct region_opt *o, double k, double b, st
     return row;
 }
 
-/* Where next to nothing hangs together, what begins behind it counts. */
+/* If the first part is almost empty, the next part counts. */
 static struct region_row row_at(const struct region *r, int j)
 {
     const double b = r->row[j].b_Nspm;

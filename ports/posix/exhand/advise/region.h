@@ -13,7 +13,7 @@
 #define REGION_DEVICES 24
 
 struct region_opt {
-    struct sim_device device[REGION_DEVICES]; /* the first is the one as told */
+    struct sim_device device[REGION_DEVICES]; /* the first is the given one */
     int devices;
     struct settle_wall wall; /* k and b are not looked at */
     int cases;               /* a pair */
@@ -48,8 +48,8 @@ struct region_pair region_try(const struct region_opt *o, double k_Npm, double b
 /* Whether a pair holds in as many cases, of another draw than the rows' (draw > REGION_ROWS). */
 int region_holds(const struct region_opt *o, double k_Npm, double b_Nspm, int draw);
 
-/* mu > (pi/2) w (T/2 + delay + lag - (b + c)/k), w = sqrt(k / (mass + rotor)): what friction in
- * proportion to the tension takes out of a bounce, against what hold and delay put in. */
+/* mu > (pi/2) w (T/2 + delay + lag - (b + c)/k), w = sqrt(k / (mass + rotor)). Friction in
+ * proportion to the tension removes energy from a bounce; hold and delay add energy. */
 int region_energy(const struct region_opt *o, double k_Npm, double b_Nspm);
 
 #endif

@@ -17,7 +17,8 @@ struct profile {
     int last;
 };
 
-/* A row that ends farther than both beside it is cut: between rows nobody looked. */
+/* Cuts a row that extends farther than both neighbours, since no falls were computed between
+ * rows. */
 static void cut_spikes(struct profile *p)
 {
     double before = p->k[0];

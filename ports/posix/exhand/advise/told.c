@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A device that exhand identify told apart, as the advisor takes it: its values, the corners of its
- * intervals that are worst, and what lies between. */
+/* The result of exhand identify as input of the advisor: its values, the worst corners of its
+ * intervals, and points between. */
 #include "advise/gains.h"
 
 #include "base/assign.h"
@@ -63,8 +63,8 @@ static struct model within(const struct result_file *f, int n)
 
 static int is_corner(int n) { return n % 4 == 1; }
 
-/* Of four: the device as told, a corner, two of the box. What is likely has to hold as often as
- * what is worst: chatter by one count comes and goes with no order that a corner would show. */
+/* Of four: the given device, a corner, two points inside. Likely devices are tested as often as the
+ * worst. A limit cycle of one count appears without an order that a corner would show. */
 static struct model told(const struct result_file *f, int n)
 {
     struct model m = is_corner(n) ? corner(f, n / 4 % 2) : n % 4 == 0 ? f->value : within(f, n);

@@ -36,7 +36,7 @@ static struct {
     struct bringup_run *out;
     struct exh_drive_out last; /* of the box */
     uint16_t held_raw;         /* the D/A's code when it stopped moving */
-    int phase;                 /* that the person knows of, */
+    int phase;                 /* that the person was shown, */
     int began;                 /* whether it has begun, */
     double since_s, from_m;    /* and since when, and from where */
     double wrong_s, end_s, ended_m, turn_s;

@@ -12,7 +12,7 @@ enum bringup_wrong {
     BRINGUP_RIGHT,
     BRINGUP_MOTOR_REVERSED,
     BRINGUP_ENCODER_REVERSED,
-    BRINGUP_UNPLUGGED,    /* encoder: the count stands still */
+    BRINGUP_UNPLUGGED,    /* encoder: the count does not change */
     BRINGUP_COMES_OFF,    /* the same, but later */
     BRINGUP_STUCK,        /* the rotor does not turn */
     BRINGUP_MONITOR_DEAD, /* 0 V */
@@ -22,7 +22,7 @@ enum bringup_wrong {
     BRINGUP_ESTOP,
     BRINGUP_LET_GO,  /* the dead-man switch */
     BRINGUP_SLIPPED, /* the balance is off the string */
-    BRINGUP_AWAY,    /* nobody does anything */
+    BRINGUP_AWAY,    /* no person acts */
     BRINGUP_HELD,    /* the switch, before the question */
     BRINGUP_WRONGS
 };

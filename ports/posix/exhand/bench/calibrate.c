@@ -259,7 +259,7 @@ static int calibrate(const struct calibrate_options *o)
     return finish(o, &r);
 }
 
-/* The lightest of what will hang on the string decides. */
+/* The lightest mass on the string decides. */
 static int steps_too_long(struct calibrate_options *o)
 {
     struct sim_device d = o->device;
@@ -289,7 +289,7 @@ static void defaults(struct calibrate_options *o)
 int cli_calibrate(int argc, char **argv)
 {
     static struct calibrate_options o;
-    int list = 0, glove = 0, err; /* whoever has --glove goes to cli_calibrate_glove() */
+    int list = 0, glove = 0, err; /* --glove is handled by cli_calibrate_glove() */
     struct cli_call known = {take_masses, &o}, setting = {take_setting, &o};
     struct cli_call device = {take_device, &o}, fault = {take_wrong, &o};
     struct cli_call hung = {take_hung, &o};

@@ -26,9 +26,9 @@ struct calibrate_options {
 /* What is wrong with an image, after a line on stderr: 1. */
 int calibrate_complain(const char *what, int err, const struct exh_calib_error *bad);
 
-/* Is a result good: every mass is a point, all is a table, the masses fit each other, and force
- * over current is near the device's kf and what the last image in --out says? Prints it. 0 with *l,
- * or 1 after a line on stderr. */
+/* Checks and prints a result. Every mass must be a point, the tables complete, and the masses
+ * consistent. Force per current must be near the device's kf and the last image in --out. 0 with
+ * *l, or 1 after a line on stderr. */
 int calibrate_judge(
     const struct calibrate_options *o, const struct calibration *r, struct calibration_lines *l);
 

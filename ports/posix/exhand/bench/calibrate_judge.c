@@ -59,8 +59,8 @@ static int without(const struct exh_calib *c, int out, double *worst_N, double *
     return 0;
 }
 
-/* Masses that do not lie on one line: which one is it? Without the odd one the others fit. Of two
- * nobody can tell. */
+/* If masses do not lie on one line, finds the one without which the others fit. With two masses
+ * this is impossible. */
 static void say_odd(const struct calibrate_options *o, const struct calibration *r, double off_N)
 {
     double least_N = off_N, seems_N = 0;

@@ -17,7 +17,7 @@ struct calibration_setting {
 
 struct calibration_cfg {
     uint32_t rate_Hz;
-    const double *mass_kg; /* what the person says hangs on the string */
+    const double *mass_kg; /* masses on the string, as the person stated */
     const double *hung_kg; /* and what does; NULL: the same */
     int masses;
     const struct calibration_setting *setting;

@@ -97,7 +97,7 @@ static int write_files(const char *dir, const struct found *x)
         outfile_write(dir, "pictures.gp", write_pictures, x) != 0) {
         return 1;
     }
-    /* What does not fit is shown, and advises nobody. */
+    /* A model that does not fit is shown, but not written for the advisor. */
     return x->r.residual <= RESULT_RESIDUAL_MAX ? outfile_write(dir, "device.txt", write_result, x)
                                                 : 0;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Positions that somebody recorded from an encoder, back to its counts. */
+/* Recorded positions of an encoder, converted back to counts. */
 #ifndef BENCH_POSITIONS_H
 #define BENCH_POSITIONS_H
 

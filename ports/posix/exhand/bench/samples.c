@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Beyond it a double can't tell two nanoseconds apart. */
+/* Beyond it a double cannot resolve two nanoseconds. */
 #define TIME_MAX_S 4e6
 
 int samples_open(struct samples *s, const struct samples_opt *opt)

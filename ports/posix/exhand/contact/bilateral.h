@@ -38,7 +38,7 @@ struct bilateral_result {
 };
 void bilateral_print_head(FILE *f);
 void bilateral_print(FILE *f, const struct bilateral_result *r);
-/* The paper's figures stand where the same thing was measured. local->b_Npm 0: there is none. */
+/* Prints the paper's figures beside equal measurements. local->b_Npm 0: none. */
 void bilateral_print_paper(FILE *f, const struct bilateral_options *o,
     const struct bilateral_result *r, int n, const struct table2_runs *local);
 void bilateral_csv_head(FILE *f);

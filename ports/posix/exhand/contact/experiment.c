@@ -28,7 +28,7 @@ static void judge(const struct bilateral_run_cfg *c, const struct bilateral_run 
     out->drawn_Npm = out->count.line.k_Npm;
 }
 
-/* The drop experiment at the same rate and gains, its wall drawn anew in each run. */
+/* The drop experiment at the same rate and gains, with a random wall in each run. */
 static struct table2_runs local_runs(const struct bilateral_options *o)
 {
     struct run_cfg c = {.rate_Hz = o->run.rate_Hz, .k_Npm = o->run.k_Npm, .b_Nspm = o->run.b_Nspm};
@@ -212,6 +212,6 @@ int bilateral_experiment(const struct bilateral_options *o)
         err |= bilateral_out_pictures(o->out, result, n, o->run.k_Npm, o->run.b_Nspm, o->link);
     }
     for (int i = 0; i < n; i++) { free(result[i].contact); }
-    if (err == 0 && o->udp && !heard) { err = 1; } /* nobody's contacts: that was said */
+    if (err == 0 && o->udp && !heard) { err = 1; } /* no world answered; this was reported */
     return err ? err : posix_interrupted() ? 130 : 0;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand bilateral: the same approaches with other seeds, so that no figure hangs on one. */
+/* exhand bilateral: the same approaches with other seeds, so that no figure depends on one. */
 #include "contact/bilateral.h"
 
 #include "falls/jackknife.h"

@@ -13,7 +13,7 @@
 
 #include <string.h>
 
-#define RUNS 20 /* at each rate, unless told */
+#define RUNS 20 /* per rate, by default */
 
 /* The image's k and b are those of the table's rows, unless they are given. */
 static int load_params(struct drop_options *o)
@@ -65,7 +65,7 @@ static int refuse_pairs(const struct drop_options *o)
     return outfile_try(leaves, sizeof leaves / sizeof leaves[0]);
 }
 
-/* Somebody looks at this one run. */
+/* 1: this single run is displayed. */
 static int watched(const struct drop_options *o)
 {
     return o->pace || o->gpio.given || o->blackbox || o->let_go_s > 0 || o->guarded;

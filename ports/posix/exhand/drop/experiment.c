@@ -105,7 +105,7 @@ static void complain_faults(const struct table2_result *r)
     cli_complain("%.6g Hz: the box stopped with faults %#x: %s", r->rate_Hz, r->faults, what);
 }
 
-/* What is wrong with the runs of a rate: 1 if anything. Each kind is told once. */
+/* Reports the problems of the runs of a rate, each kind once. Returns 1 if there are any. */
 static int check(const struct drop_options *o, const struct table2_result *r)
 {
     int err = 0, falls = 0, incomplete = 0;

@@ -17,7 +17,7 @@ struct drop_options {
     double rate_Hz[DROP_RATES_MAX];
     int rates, rates_given;
     double k_Npm, b_Nspm, scale;     /* < 0: the paper's at that rate */
-    int64_t falls, runs, seed, jobs; /* runs 0: not told */
+    int64_t falls, runs, seed, jobs; /* runs 0: not given */
     double phase;                    /* of the wall between two encoder counts; < 0: drawn */
     int pace, cards, guarded, custom;
     const char *out, *blackbox;

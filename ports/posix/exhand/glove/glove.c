@@ -52,7 +52,7 @@ static int take_device(void *ctx, const char *text)
     return err ? assign_refused("glove", name, value, row) : 0;
 }
 
-/* All but the calibration's, which stand last: 22 of each say nothing. */
+/* All parameters except the calibration's, which are the last: 22 of each are not informative. */
 static void print_params(void)
 {
     const struct exh_signal_table *all = exh_scene_glove.params->table;

@@ -43,8 +43,8 @@ struct glove_frames {
 /* 1 / rate as a ratio, to 1/1000 Hz. */
 struct exh_period glove_period(double rate_Hz);
 
-/* The scene's parameters as they are staged, and set up from them. A filter that nobody asked
- * for goes down to a quarter of the rate where it must. 0, or 2 after a line on stderr. */
+/* Stages the scene's parameters and sets up from them. A default filter is lowered to a quarter of
+ * the rate if necessary. 0, or 2 after a line on stderr. */
 int glove_ready(const struct glove_options *o, struct glove_par *par, struct glove_cfg *cfg,
     struct exh_period T);
 

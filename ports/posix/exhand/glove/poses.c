@@ -134,7 +134,7 @@ int glove_pose_find(const char *name)
     return -1;
 }
 
-/* Up to one more than there are sensors, to tell of too many. */
+/* Reads one more than there are sensors, to detect too many. */
 static int codes_of(char *text_of, double code[EXH_GLOVE_SENSORS + 1])
 {
     int n = 0;
@@ -219,7 +219,7 @@ int glove_poses_read(struct glove_taken *t, const char *path)
     return status;
 }
 
-/* --- recorded, in columns of somebody else --- */
+/* --- recorded, in columns of another program --- */
 
 /* By its name, or its number in --list; -1: neither. */
 static int labelled(const char *label)

@@ -45,7 +45,7 @@ int glove_pose_find(const char *name);
 /* What a pose says of a sensor. 1: *deg; 0: nothing. */
 int glove_pose_says(unsigned pose, unsigned sensor, int *deg);
 
-/* All poses, one after the other, as the person is told to; said on `progress`. */
+/* Takes all poses in order; instructions to the person go to `progress`. */
 void glove_poses_take(struct glove_taken *t, const struct glove_bench *b, FILE *progress);
 
 /* CSV: pose and 22 codes a line, one or more lines a pose, in any order; lines end in LF, CR

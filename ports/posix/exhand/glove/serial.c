@@ -33,7 +33,7 @@ static struct {
     int heard, silent, never;
 } run;
 
-/* What was asked for stands above it. */
+/* Options given have priority over it. */
 static int stage(const struct glove_options *o)
 {
     static struct exh_glove_cal cal;
@@ -51,7 +51,7 @@ static int stage(const struct glove_options *o)
 
 static const char *path(void) { return run.tty.path; }
 
-/* Nothing since the start: why, as far as what came tells. */
+/* No frame since the start: prints the reason, as far as the received bytes show it. */
 static void complain_never(void)
 {
     const struct cyberglove *g = &run.tty.in;
@@ -147,7 +147,7 @@ static int go(const struct glove_options *o, FILE *log)
     c.log = log;
     c.max_ticks = o->seconds > 0 ? (uint32_t)(o->seconds * run.rate_Hz + 1) : 0;
     posix_configure(&c);
-    setvbuf(stdout, NULL, _IOLBF, BUFSIZ); /* whoever reads it sees each row as it comes */
+    setvbuf(stdout, NULL, _IOLBF, BUFSIZ); /* a reader sees each row at once */
     until_catch(UNTIL_RESTARTS);
     err = exh_loop(&exh_scene_glove, 0, &hooks);
     if (err < 0) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand run: the two kinds of box, and who is told what happens in them. */
+/* exhand run: the two kinds of box, and the receivers of their events. */
 #include "live/live.h"
 
 #include "box/dumpfile.h"
@@ -14,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-/* --- who is told what happens --- */
+/* --- receivers of events --- */
 
 static struct {
     int on, status;
@@ -59,7 +59,7 @@ static void board(const struct live_options *o, struct posix_config *b)
     if (o->seconds > 0 && b->max_ticks == 0) { b->max_ticks = 1; } /* 0: never */
 }
 
-/* A dump that could not be written is an error of its own. */
+/* A dump that could not be written is a separate error. */
 static int dumped(int err, int dumps) { return err == 0 && dumps < 0 ? -EXH_E_IO : err; }
 
 /* A mass that is let fall again and again. */

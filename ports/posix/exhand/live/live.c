@@ -170,7 +170,7 @@ static int prepare(struct live_options *o, const struct exh_scene *sc)
         cli_complain("--slack: nothing is late in virtual time: only with --pace");
         err = 2;
     }
-    /* A real output would stand as long, and no fault would tell. */
+    /* A real output would stay as long, and no fault would show it. */
     if (err == 0 && o->slack_s > 0 && o->gpio.given) {
         cli_complain("--slack: not with --gpio: a real output has no time to make up for");
         err = 2;

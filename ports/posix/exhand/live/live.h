@@ -53,10 +53,10 @@ int live_box_felt(const struct live_options *o);
 /* What a client's thread could not do: an exit status; 0: nothing. */
 int live_box_clients(void);
 
-/* live_person.c. Who holds the dead-man switch of the simulated box: takes hold of it a tenth of a
- * second after the start, and lets go when asked; nobody, where --gpio has a real one. */
+/* live_person.c. The person at the dead-man switch of the simulated box. Closes it a tenth of a
+ * second after the start and opens it on request. Not used if --gpio has a real switch. */
 struct live_person {
-    int again;       /* lets go and takes hold anew while the box is in OFF or FAULT; else once */
+    int again;       /* opens and closes it again in OFF or FAULT; else once */
     double let_go_s; /* 0: never */
 };
 void live_person(const struct live_person *is);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand run --log: written by a thread of its own. A paced box does not wait for it. */
+/* exhand run --log: written by a separate thread, so that a paced box does not wait for it. */
 #include "live/live.h"
 #include "live/log_turn.h"
 
@@ -103,8 +103,8 @@ static void number_header(const uint8_t *key)
     exh_bytes_u32(&c, &crc);
 }
 
-/* Before a keyframe, with which the next begins, if the frames up to the one behind it would not
- * find room. Where the writer has no room now, the next keyframe will do. */
+/* Before a keyframe, with which the next file begins, if the frames up to the following one would
+ * not fit. If the writer has no room now, the next keyframe is used. */
 static void turn(const uint8_t *key, size_t len_B)
 {
     uint8_t end[64];

@@ -15,9 +15,9 @@
 
 static struct {
     struct live_person is;
-    int gone; /* it was let go, as asked */
+    int gone; /* it was opened on request */
     const struct exh_scene *sc;
-    double since_s; /* it is held, or let go, */
+    double since_s; /* closed, or open, since */
     int held;
 } me;
 
@@ -41,7 +41,7 @@ void live_wires(struct exh_drive_in *in)
     const int goes = me.held && !me.gone && me.is.let_go_s > 0 && now_s >= me.is.let_go_s;
     const int gives_up = me.is.again && stopped() && for_s >= THINKS_S;
     const int grips = for_s >= OPEN_S && (!me.gone || me.is.again);
-    if (gpio_has(GPIO_DEADMAN)) { return; } /* a real hand's, and nobody else's */
+    if (gpio_has(GPIO_DEADMAN)) { return; } /* a real switch is used instead */
     me.gone |= goes;
     if (goes || (me.held ? gives_up : grips)) {
         me.held = !me.held;

@@ -59,14 +59,14 @@ static double seconds(void)
     return (double)(status.ticks + status.missed) * status.T.num / status.T.den;
 }
 
-/* ", 12 missed" behind what stands there; nothing, if there is nothing to count. */
+/* Appends ", 12 missed"; nothing if the count is 0. */
 static void count(char to[ODD_B], const char *before, uint64_t n, const char *behind)
 {
     const size_t at = strlen(to);
     if (n) { snprintf(to + at, ODD_B - at, ", %s%" PRIu64 " %s", before, n, behind); }
 }
 
-/* What was odd and is no fault by itself. */
+/* Irregular events that are no faults. */
 static void odd(char to[ODD_B])
 {
     const char *const world = world_line_word();

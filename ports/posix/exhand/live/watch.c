@@ -88,8 +88,8 @@ static int csv_sample(const struct watch_box *b, int first)
     return 1;
 }
 
-/* A log has every tick: one of them each 1/hz of the box's time, later ones only. A box that
- * has begun anew counts from 0. */
+/* A log has every tick. Shows one per 1/hz of the box's time, in rising order. A restarted box
+ * counts from 0. */
 static int due(const struct watch_box *b)
 {
     const uint32_t passed = b->tick - w.tick;

@@ -49,8 +49,8 @@ int watch_stream_open(const char *at, const char *peer, const char *key);
 int watch_stream_look(struct watch_box *b, double until_s, watch_fresh fresh);
 void watch_stream_close(void);
 
-/* Registers at tcp:ADDRESS:PORT or rtu:DEVICE:BAUD, looked at once. What is wanted of them stands
- * in *b after the first sample. */
+/* Opens registers at tcp:ADDRESS:PORT or rtu:DEVICE:BAUD and reads them once. *b holds the selected
+ * ones after the first sample. */
 int watch_modbus_open(const char *where);
 int watch_modbus_look(struct watch_box *b, watch_fresh fresh);
 void watch_modbus_close(void);
@@ -72,7 +72,7 @@ const struct exh_signal *watch_name(
 /* --- showing --- */
 
 void watch_view_sample(const struct watch_box *b, const struct watch_pick *p);
-/* Draws anew, in place; tty: 0 is a line a sample. */
+/* Draws the view again, in place; tty 0: one line per sample. */
 void watch_view_draw(const struct watch_box *b, const struct watch_pick *p, const char *source);
 void watch_view_line(const struct watch_box *b, const struct watch_pick *p);
 void watch_view_end(void);

@@ -225,8 +225,8 @@ static int look_at_trace(struct watch_box *b, watch_fresh fresh)
     return err;
 }
 
-/* The head and the values behind it, read anew while the tick went on in between. After TRIES they
- * stay as they are, and are counted. 0: the link is gone. */
+/* Reads the head and the values after it again if the tick changed in between. After TRIES they
+ * stay as they are, and are counted. 0: the link is lost. */
 static int read_one_tick(struct watch_box *b, uint16_t *word)
 {
     uint16_t behind[2];
@@ -266,7 +266,7 @@ int watch_modbus_look(struct watch_box *b, watch_fresh fresh)
     b->present = value_of(word, EXH_HEAD_PRESENT);
     b->limits = value_of(word, EXH_HEAD_LIMITS);
     if (b->every) { return look_at_trace(b, fresh); }
-    if (b->heard > 0 && tick == b->tick) { return 0; } /* it stands: nothing new */
+    if (b->heard > 0 && tick == b->tick) { return 0; } /* tick unchanged: nothing new */
     b->tick = tick;
     b->heard++;
     b->heard_s = until_now_s();

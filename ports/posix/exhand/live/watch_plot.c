@@ -55,7 +55,7 @@ int watch_plot_sample(const struct watch_box *b, const struct watch_pick *p)
     const double now_s = (double)b->tick * b->T.num / b->T.den;
     double *to;
     plot.width = 2 + (size_t)p->n;
-    if (plot.n && now_s < plot.row[(plot.n - 1) * plot.width]) { plot.n = 0; } /* begun anew */
+    if (plot.n && now_s < plot.row[(plot.n - 1) * plot.width]) { plot.n = 0; } /* restarted */
     if (!make_room(now_s)) {
         cli_complain("--plot: no memory: fewer --last or --hz");
         return 1;

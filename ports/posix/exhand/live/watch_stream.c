@@ -17,7 +17,7 @@
 #include <string.h>
 
 #define BUFFER_B (65536u + STREAM_PIECE_B)
-#define NEW_S    2.0 /* nothing for so long: another box, or the same anew, may begin */
+#define NEW_S    2.0 /* silence after which another or a restarted box may begin */
 
 static struct {
     struct udp udp;
@@ -149,7 +149,7 @@ static int take(struct watch_box *b, const struct pieces_part *part, watch_fresh
     return records(b, fresh);
 }
 
-/* Silent for long: another box, or the same anew, may begin; who was strange stays counted. */
+/* After a long silence, another or a restarted box may begin; counts of foreign packets stay. */
 static void let_others(void)
 {
     struct pieces *p = &in.pieces;

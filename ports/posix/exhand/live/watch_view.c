@@ -139,7 +139,7 @@ void watch_view_draw(const struct watch_box *b, const struct watch_pick *p, cons
     fflush(stdout);
 }
 
-/* A line of its own, when what there is to do changes. */
+/* A separate line when the action required of the person changes. */
 static void say_clear(const struct watch_box *b)
 {
     static char said[NAMES_CLEAR_B];

@@ -205,7 +205,7 @@ static int on_event(struct replay *p, const struct exh_record *r)
     return 0;
 }
 
-/* What a black box says of itself stands at its end. 1: it is one. */
+/* Reads the summary at the end of a black box dump. 1: it is one. */
 static int foretell(struct replay *p, const struct exh_record *r)
 {
     struct exh_bytes c = exh_bytes_reader(r->payload, r->len_B);
@@ -220,8 +220,8 @@ static int foretell(struct replay *p, const struct exh_record *r)
     return 1;
 }
 
-/* Asked for a tick: the last keyframe not after it, whose place is all that is kept; what is
- * behind the next one is not looked at. 0: there is none. */
+/* For a start tick: finds the last keyframe not after it and keeps its position. Does not read
+ * beyond the next one. 0: none. */
 static int find_from(struct replay *p)
 {
     struct logfile_place here, found;

@@ -158,7 +158,7 @@ static void said_inputs(struct walk *w, uint64_t tick)
 
 static int runs(int32_t state) { return state == EXH_STATE_RUN || state == EXH_STATE_LIMIT; }
 
-/* RUN and LIMIT follow each other as limits act, and these are told. */
+/* RUN and LIMIT alternate as limits act; the limits are printed instead. */
 static void said_state(struct walk *w, uint64_t tick)
 {
     const int32_t from = of(w->before, w->state), to = of(w->now, w->state);
@@ -364,7 +364,7 @@ static void begin(struct walk *w, FILE *to)
     logfile_rewind(w->log);
 }
 
-/* Twice, since each line tells its distance to the first fault. */
+/* Two passes, since each line gives its distance to the first fault. */
 int timeline_print(struct logfile *l, FILE *to)
 {
     static struct walk w; /* too large for a stack to like */

@@ -13,8 +13,8 @@ int timeline_print(struct logfile *l, FILE *to);
 
 #define TIMELINE_NOTES 65536u
 
-/* timeline_note.c: lines that are put in order at the end; of more than TIMELINE_NOTES the older
- * half goes out before, and what lasted for longer than they did stands late. */
+/* timeline_note.c: lines, sorted at the end. If there are more than TIMELINE_NOTES, the older half
+ * is printed before, and a note that lasted longer than these comes late. */
 struct timeline_notes {
     const struct logfile *log;
     FILE *to; /* NULL: nothing is kept, the fault alone is looked for */
@@ -25,7 +25,7 @@ struct timeline_notes {
     } * at;
     size_t n, cap, said;
     int no_memory;
-    uint64_t fault_tick; /* the first of them; told beside each line if has_fault */
+    uint64_t fault_tick; /* the first of them; each line shows its distance if has_fault */
     int has_fault;
 };
 #ifdef __GNUC__
