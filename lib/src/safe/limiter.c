@@ -18,8 +18,8 @@ struct step {
     uint32_t present;
 };
 
-/* |v|, v > INT32_MIN. */
-static int32_t size_of(int32_t v) { return v < 0 ? -v : v; }
+/* |v|, at most INT32_MAX. */
+static int32_t size_of(int32_t v) { return v >= 0 ? v : v < -INT32_MAX ? INT32_MAX : -v; }
 
 static int32_t least(int32_t a, int32_t b) { return a < b ? a : b; }
 
@@ -110,9 +110,7 @@ static void look(struct exh_limiter *s, const struct exh_limiter_cfg *cfg,
     if (time_is_bad(s, cfg, in->now_us)) { c = EXH_LIMITER_TIME; }
     if (p->uses & EXH_LIMITER_DEADMAN && !in->deadman) { c |= EXH_LIMITER_RELEASED; }
     if (in->age_us > (uint32_t)p->age_max_us) { c |= EXH_LIMITER_STALE; }
-    if (sent && p->kind != EXH_LIMITER_POSITION) {
-        t->effort = size_of(exh_clamp32(s->sent, -INT32_MAX, INT32_MAX));
-    }
+    if (sent && p->kind != EXH_LIMITER_POSITION) { t->effort = size_of(s->sent); }
     if (read(cfg, in, t)) {
         c |= EXH_LIMITER_NUMBER;
     } else if (t->pos < cfg->near_min || t->pos > cfg->near_max) {

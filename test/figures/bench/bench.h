@@ -47,7 +47,7 @@ extern const struct kernel_group number_group, estimate_group, force_group, filt
     glove_group, hand_group;
 extern const struct kernel_group precontact_group, passivity_group, scene_group, modbus_group,
     params_group, keyed_group;
-extern const struct kernel_group box_group;
+extern const struct kernel_group box_group, limiter_group;
 
 /* Calls op(0) … op(n-1). Alone in its file, so that it is a call in every build. */
 void bench_measure(void (*op)(uint32_t i), uint32_t n);

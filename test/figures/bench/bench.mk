@@ -4,7 +4,7 @@
 # Objects are as they are shipped: no sanitizer, no audit hook. Some valgrinds cannot read some
 # compilers' debug information, and the profile needs only symbols, so it is stripped.
 bench_parts := kernels measure number estimate force path law filter glove hand precontact \
-               passivity scene minimal modbus params keyed tick box
+               passivity scene minimal modbus params keyed tick box limiter
 bench_obj := $(bench_parts:%=$(B)/posix/test/figures/bench/%.o)
 bench_scenes := examples/drop/drop.c lib/src/run/calib_set.c lib/src/run/crc_table.c \
                 examples/glove/cal.c $(wildcard examples/bilateral/*.c)

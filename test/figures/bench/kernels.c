@@ -17,7 +17,7 @@
 
 static const struct kernel_group *const groups[] = {&number_group, &estimate_group, &force_group,
     &filter_group, &glove_group, &hand_group, &precontact_group, &passivity_group, &scene_group,
-    &modbus_group, &params_group, &keyed_group, &box_group};
+    &modbus_group, &params_group, &keyed_group, &box_group, &limiter_group};
 
 static void for_each(void (*visit)(const struct kernel *k))
 {
