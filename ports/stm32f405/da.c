@@ -8,7 +8,7 @@
 
 #include "exhand/error.h"
 
-#define POLLS      2000u
+#define POLLS      100u /* ten times what a byte takes: 21 of them are not to cost a watchdog */
 #define CHANNELS   8u
 #define QUARTER    1u /* 42 MHz / 4 */
 #define RESET_CODE 0xAu

@@ -19,11 +19,13 @@ int exh_board_log(const void *rec, size_t len_B)
 
 void stm_log_out(void) { stm_fifo_out(&fifo); }
 
-/* Text comes behind it on the same line. */
+/* Text comes behind it on the same line. Outputs are safe and the loop has ended: the watchdog is
+ * fed meanwhile, or it would bite within these 82 ms and the words would be lost. */
 void stm_log_flush(void)
 {
     for (uint32_t n = 0; n < POLLS && (fifo.put != fifo.got || stm_uart_busy(STM_LOG)); n++) {
         stm_fifo_out(&fifo);
+        stm_watchdog_feed();
     }
     stm_uart_stop(STM_LOG);
     fifo.got = fifo.put;

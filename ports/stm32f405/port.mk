@@ -20,7 +20,7 @@ PORT_SRC        = $(addprefix ports/stm32f405/,start.c clock.c pins.c say.c uart
                   log.c link.c mem.c board.c $(box_$(BOX)) \
                   $(if $(SCENE_MAIN),,$(if $(SCENE_ROM),scene_rom.c, \
                   scene_full.c slot.c modbus.c))) \
-                  $(if $(SCENE_MAIN)$(SCENE_ROM),,lib/src/run/log.c)
+                  $(if $(SCENE_MAIN)$(SCENE_ROM),,lib/src/run/log.c lib/src/run/crc_table.c)
 PORT_CFLAGS    := -mcpu=cortex-m4 -mthumb -mfloat-abi=soft -ffreestanding
 PORT_LDFLAGS   := -mcpu=cortex-m4 -mthumb -nostdlib -static -Wl,--build-id=none
 PORT_LDSCRIPT  := ldscripts/stm32f405.ld

@@ -12,7 +12,8 @@
 
 #define MS      (STM_HZ / 1000)
 #define LIMIT   (20 * (uint64_t)MS)
-#define WATCHED (60 * (uint64_t)MS)  /* they stay off */
+#define WATCHED (60 * (uint64_t)MS)  /* they stay off; */
+#define SAID    (200 * (uint64_t)MS) /* behind a log of 82 ms words come */
 #define FROM    (700 * (uint64_t)MS) /* of the loop: it is armed, and its ramp is over */
 #define SPAN    (2500 * (uint64_t)MS)
 #define ASTRAY  0x08080000u /* an endless loop stands there */
@@ -104,14 +105,15 @@ static void tell(struct seen *s)
 /* Step by step, since what drives show between two of them is not seen. */
 static void child(struct seen *s)
 {
-    const uint64_t from = m->s.now;
+    const int words = kind[s->kind].begin == clock_lost || kind[s->kind].begin == overrun;
+    const uint64_t from = m->s.now, end = from + (words ? SAID : WATCHED);
     uint64_t off_at = 0;
     loop.text_n = 0;
     loop.text[0] = 0;
     s->pulled = loop.last.dac_raw[0] != 32768;
     loop.quiet = 1;
     kind[s->kind].begin();
-    for (uint64_t at = from + MS / 10; at <= from + WATCHED; at += MS / 10) {
+    for (uint64_t at = from + MS / 10; at <= end; at += MS / 10) {
         m->stop_at = at;
         m->s.wake = 0;
         while (m->s.now < at && m->end != M_BROKEN) {
