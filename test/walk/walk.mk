@@ -71,6 +71,7 @@ same:
 ## and test folder.
 .PHONY: doc-names
 doc-names: $(exhand) $(lab)
+	@ports/stm32f405/wiring.sh --check
 	@PYTHONDONTWRITEBYTECODE=1 test/walk/docs/docs.py $(exhand) $(world)
 
 ## Check the style of the documents (docs/STYLE.md): sentences, idioms, links, commands, word budgets
