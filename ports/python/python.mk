@@ -16,12 +16,10 @@ python-run: $(exhand)
 	@$(python_run) > $(B)/python.txt 2>&1; s=$$?; tail -n 3 $(B)/python.txt; \
 	    [ $$s = 0 ] || [ $$s = 3 ] || { cat $(B)/python.txt; exit 1; }
 
-## The same on a bare Debian 12 with a C compiler and no Python.h (root).
+## Install its sdist on a bare Debian 12 with a C compiler and no Python.h, and run the tests that
+## need no host program (root).
 .PHONY: python-fresh
-python-fresh:
-	@test/walk/fresh/root.sh make bookworm $(B)/fresh/python \
-	    git make gcc libc6-dev python3-venv ca-certificates
-	@git clone -q . $(B)/fresh/python/exhand
-	@test/walk/fresh/root.sh run $(B)/fresh/python "update-ca-certificates > /dev/null; \
-	    export PIP_CERT=/etc/ssl/certs/ca-certificates.crt; \
-	    find / -xdev -name Python.h | wc -l | sed 's/$$/ files Python.h/'; cd /exhand && make python"
+python-fresh: python
+	@test/walk/fresh/root.sh make bookworm $(B)/fresh/python gcc libc6-dev python3-venv ca-certificates
+	@$(python_fresh) $(B)/fresh/python $(B)/python/dist/*.tar.gz
+python_fresh = test/walk/python/fresh.sh
