@@ -78,7 +78,8 @@ def items(text):
     """The declarations at file scope, each a list of tokens; the body of a function is one."""
     item, depth = [], 0
     static = set(re.findall(r"^#define (\w+) static\b", text, re.M))
-    for t in TOKEN.findall(re.sub(r"^#ifdef __cplusplus\n.*?^#endif\n", "", text, flags=re.S | re.M)):
+    text = re.sub(r"^#ifdef __cplusplus\n.*?^#endif\n", "", text, flags=re.S | re.M)
+    for t in TOKEN.findall(text):
         if t.isspace() or t.startswith("/*") or t.lstrip().startswith("#"):
             continue
         if t == "{" and depth == 0 and item[-1:] == [")"]:

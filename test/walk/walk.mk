@@ -74,7 +74,7 @@ doc-names: $(exhand) $(lab)
 	@ports/stm32f405/wiring.sh --check
 	@PYTHONDONTWRITEBYTECODE=1 test/walk/docs/docs.py $(exhand) $(world)
 
-## Check the style of the documents (docs/STYLE.md): sentences, idioms, links, commands, word budgets
+## Check the style of the documents (docs/STYLE.md): sentences, idioms, links, commands, budgets
 ## (ARGS=--stats).
 .PHONY: prose
 prose: $(exhand) $(lab)

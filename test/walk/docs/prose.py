@@ -5,8 +5,8 @@
 Prints each fault as PAGE:LINE: a sentence or paragraph that is too long, an idiom of prose.tsv, a
 link that leads nowhere, a command or name that the tree does not have (by docs.py), too many words.
 A page may have as many faults as prose.tsv allows it, and none where it allows none. Code and what
-a command generates (between <!-- COMMAND --> and <!-- end -->) is not judged. A cell of a table is a
-paragraph of up to 40 words a sentence.
+a command generates (between <!-- COMMAND --> and <!-- end -->) is not judged. A cell of a table
+is a paragraph of up to 40 words a sentence.
 
 --stats prints words and sentences of each page; --update lowers ceilings to today's number and
 gives new pages a row.
@@ -41,7 +41,7 @@ class Data:
 
 
 def blocks(text):
-    """(kind, [(line number, text)]) of a page: prose, row. Code and generated parts are left out."""
+    """(kind, [(line number, text)]) of a page: prose, row. Not code, not generated parts."""
     block, fenced, made, listed = [], False, False, False
     for n, line in enumerate(text.split("\n"), 1):
         if line.startswith("```"):

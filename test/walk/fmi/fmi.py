@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The FMUs against the native run: fmi.py FMU-FOLDER NATIVE EXHAND FALLS RATE...: FMPy validates and
-compiles them and runs them alone and together; fmuloader, another importer, runs them together,
+"""The FMUs against the native run: fmi.py FMU-FOLDER NATIVE EXHAND FALLS RATE...: FMPy validates
+and compiles them and runs them alone and together; fmuloader, another importer, runs them together,
 too. Every output of every step is the native one, bit for bit. With all defaults they are a run
 of `exhand drop`, row by row. A third importer, ecos, where it can be had."""
 import os

@@ -34,16 +34,18 @@ for cc in gcc clang g++ clang++; do
             "$dir/alone" || failed=1
         shift 3
         if [ "$name" != exhand ]; then
-            nm -u "$object" | awk '{ print $2 }' | grep -vE '^(mem(cpy|set|cmp|move)|exh_assert_failed)$' &&
+            nm -u "$object" | awk '{ print $2 }' |
+                grep -vE '^(mem(cpy|set|cmp|move)|exh_assert_failed)$' &&
                 { echo "amalgamation: $name needs these" >&2; failed=1; }
             continue
         fi
         symbols "$object" | diff "$dir/wanted" - || failed=1
         golden=$dir/golden-$cc
-        $cc -no-pie "$@" "$object" -o "$golden" -lcmocka 2>"$dir/said" || { cat "$dir/said"; exit 1; }
+        $cc -no-pie "$@" "$object" -o "$golden" -lcmocka 2>"$dir/said" ||
+            { cat "$dir/said"; exit 1; }
         EXH_RATES=${EXH_RATES:-1..100} "$golden" >"$dir/said" 2>&1 || { cat "$dir/said"; failed=1; }
-        echo "amalgamation: $cc: $(sed -n 's/.*PASSED *\] \([0-9]*\) .*/\1/p' "$dir/said" | tail -n 1)" \
-            "golden modules, $(grep -c . "$dir/wanted") symbols"
+        passed=$(sed -n 's/.*PASSED *\] \([0-9]*\) .*/\1/p' "$dir/said" | tail -n 1)
+        echo "amalgamation: $cc: $passed golden modules, $(grep -c . "$dir/wanted") symbols"
     done
 done
 exit $failed

@@ -51,7 +51,8 @@ def run(commands, where, want):
     tree = clone(where)
     if any("file://" in c for c in commands): # fetched by git: what is there now is a commit
         for c in (["init", "-q"], ["add", "-A"],
-                  ["-c", "user.name=link", "-c", "user.email=link@localhost", "commit", "-qm", "x"]):
+                  ["-c", "user.name=link", "-c", "user.email=link@localhost",
+                   "commit", "-qm", "x"]):
             subprocess.run(["git", "-C", tree] + c, check=True)
     lines = [l for c in commands
              for l in [c + (" || exit %d" % NONE if "pip" in c or "venv" in c else "")] +

@@ -15,5 +15,6 @@ exec test/walk/fresh/root.sh run "$root" '
     find / -xdev -name Python.h | wc -l | sed "s/$/ files Python.h/"
     cd /exhand && python3 -m venv /v && /v/bin/pip install -q pytest ./*.tar.gz
     cd test/walk/python
-    exec /v/bin/python -m pytest -q -p no:cacheprovider test_kernels.py test_library.py test_limiter.py \
+    exec /v/bin/python -m pytest -q -p no:cacheprovider \
+        test_kernels.py test_library.py test_limiter.py \
         test_examples.py'
