@@ -70,7 +70,8 @@ class Prose(unittest.TestCase):
         self.one("## It hangs on\n", 1, "hangs on")
 
     def test_an_idiom_that_is_allowed(self):
-        here, there = (DATA + f"allow\t{page}\thangs on\n" for page in ("docs/HERE.md", "README.md"))
+        pages = "docs/HERE.md", "README.md"
+        here, there = (DATA + f"allow\t{page}\thangs on\n" for page in pages)
         self.assertEqual(self.faults("It hangs on.\n", here), [])
         self.assertEqual(len(self.faults("It hangs on.\n", there)), 1)
 
