@@ -34,6 +34,7 @@ WP = {
               ["no_force", "release", "exh_drive_force_within", "i2t_limit",
                "whole_codes", "coded", "exh_drive_current_step"]),
     "tracking": ("lib/src/act/tracking.c", ["exh_tracking_step", "exh_tracking_update"]),
+    "limiter": ("lib/src/safe/limiter.c", ["size_of", "is_on", "slewed", "let_go", "effort"]),
 }
 
 # Contracts of other units that a unit is judged by, beside those of fix.
@@ -67,6 +68,11 @@ WP_PLANTS = [
      "exh_clamp(2 * (int64_t)peak, -2 * hot, 2 * hot)"),
     ("tracking", "exh_tracking_step", "lib/src/act/tracking.c", "s->off_ticks >= cfg->ticks",
      "s->off_ticks > cfg->ticks"),
+    ("limiter", "slewed", "lib/src/safe/limiter.c", "far < top ? far : top", "far"),
+    ("limiter", "let_go", "lib/src/safe/limiter.c", "a > s->fall ? a - s->fall : 0",
+     "a - s->fall"),
+    ("limiter", "effort", "lib/src/safe/limiter.c", "exh_clamp32(s->sent, -top, top)",
+     "s->sent"),
 ]
 
 

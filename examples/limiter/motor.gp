@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: MIT
+# What goes wrong with a motor, with the limiter and without: a row a case, position and torque.
+#
+#   gnuplot -e "csv='motor.csv'; out='motor.png'" motor.gp
+
+reset
+if (!exists("csv")) csv = 'motor.csv'
+if (!exists("out")) out = 'motor.png'
+set terminal pngcairo size 1600,1200 font 'DejaVu Sans,16' linewidth 1.6 background '#ffffff'
+set output out
+set datafile separator ','
+set multiplot layout 3,2
+set xlabel 'time, s'
+set grid
+set key bottom left
+cases = "jump stall silence"
+do for [name in cases] {
+    set title name
+    set ylabel 'position, rad'
+    set yrange [-1.5:3.2]
+    plot csv using (strcol(1) eq name && $2 == 0 ? $3 : 1/0):4 with lines lc '#999999' dt 2 title 'target', \
+         '' using (strcol(1) eq name && $2 == 0 ? $3 : 1/0):5 with lines lc '#d62728' title 'bare', \
+         '' using (strcol(1) eq name && $2 == 1 ? $3 : 1/0):5 with lines lc '#1f77b4' title 'limited'
+    set ylabel 'torque, N m'
+    set yrange [-1.5:1.5]
+    plot csv using (strcol(1) eq name && $2 == 0 ? $3 : 1/0):7 with lines lc '#d62728' title 'bare', \
+         '' using (strcol(1) eq name && $2 == 1 ? $3 : 1/0):7 with lines lc '#1f77b4' title 'limited'
+}
+unset multiplot
