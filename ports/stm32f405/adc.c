@@ -24,6 +24,7 @@
 #define LATE       (3u * 17280u) /* of TIM5: three halves of 205.7 us */
 #define STREAM     (BASE_DMA2 + DMA_STREAM(0u))
 #define OPEN_POLLS 200u
+#define AGE_MAX    65535
 
 static volatile uint16_t circle[CIRCLE];
 static struct glove {
@@ -115,7 +116,7 @@ int stm_adc_glove(struct exh_glove_in *in, uint32_t tick)
     const struct glove *const g = &frame[newest]; /* whole for 2 ms */
     const int32_t age = (int32_t)(tick - g->tick);
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { in->raw[i] = g->raw[i]; }
-    in->age_ticks = (uint16_t)(!frames || age > UINT16_MAX ? UINT16_MAX : age < 0 ? 0 : age);
+    in->age_ticks = (uint16_t)(!frames || age > AGE_MAX ? AGE_MAX : age < 0 ? 0 : age);
     return stm_adc_late() ? -EXH_E_IO : 0;
 }
 
