@@ -4,7 +4,7 @@
 # Exit status: 0 the image said "done", 1 it did not (or took too long), 2 bad usage, 3 no QEMU,
 # 5 processor exception.
 # Environment: QEMU_FLAGS (virtual time, 64 ns an instruction: 1.6 cycles of 25 MHz), TIMEOUT_s
-# (60), MACHINE (mps2-an385).
+# (60), MACHINE (mps2-an385), SERIAL (-serial stdio).
 set -u
 
 qemu="qemu-system-arm"
@@ -18,7 +18,7 @@ if ! command -v "$qemu" >/dev/null 2>&1; then
 fi
 # shellcheck disable=SC2086 # a list of words
 timeout "${TIMEOUT_s:-60}" "$qemu" -M "${MACHINE:-mps2-an385}" -kernel "$1" -display none \
-    -serial stdio -monitor none -semihosting-config enable=on,target=native \
+    ${SERIAL--serial stdio} -monitor none -semihosting-config enable=on,target=native \
     ${QEMU_FLAGS--icount shift=6,sleep=off} </dev/null
 status=$?
 case $status in
