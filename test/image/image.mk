@@ -148,3 +148,21 @@ $(B)/test/stm32f405/emulator: $(stm_objs) $(filter-out %/main.o,$(cli_obj)) $(si
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(unicorn)/lib/libunicorn.so.2 \
 	    -Wl,-rpath,$(unicorn)/lib $(cli_libs)
+
+STM_TICKS ?= 10000
+STM_TIMES ?= 5000
+
+## Run the stm32f405 image in closed loop under emulation (STM_TICKS=10000 STM_TIMES=5000
+## ARGS="drop guarded box spoil faults").
+.PHONY: stm32f405 stm32f405-built stm32f405-run
+stm32f405: stm32f405-built
+	@B=$(B) TICKS=$(STM_TICKS) TIMES=$(STM_TIMES) $(stm_dir)/stm32f405.sh $(ARGS)
+stm32f405-built:
+	@B=$(B) test/image/hil/unicorn.sh
+	@.ci/deps "the stm32f405 image" arm-none-eabi-gcc gcc-arm-none-eabi || exit 3
+	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/test/stm32f405/emulator
+	@for s in drop guarded bilateral; \
+	    do $(MAKE) --no-print-directory $(if $(V),,-s) PORT=stm32f405 SCENE=$$s all || exit 1; done
+# The short form: what is built, with few ticks and faults.
+stm32f405-run: stm32f405-regs
+	@B=$(B) TICKS=600 TIMES=56 $(stm_dir)/stm32f405.sh $(ARGS)

@@ -171,6 +171,7 @@ void stm_dma_write(struct stm *s, unsigned n, uint32_t off, uint32_t v)
     if (off < 0x10 || i >= STM_STREAMS) { return; }
     if (what == 0) {
         write_cr(d, i, v);
+        if (d->stream[i].cr & EN) { stm_serial_ask(s); }
     } else if (!(d->stream[i].cr & EN)) {
         uint32_t *const at[] = {NULL, &d->stream[i].ndtr, &d->stream[i].par, &d->stream[i].m0ar,
             &d->stream[i].m1ar, &d->stream[i].fcr};

@@ -70,13 +70,21 @@ static void take_link(uint8_t byte)
     loop.frame_B = 0;
 }
 
+/* The newest of it; records are on the same line. */
+static void keep_text(char c)
+{
+    if (loop.text_n == sizeof loop.text - 1) {
+        loop.text_n = sizeof loop.text / 2;
+        memmove(loop.text, &loop.text[sizeof loop.text / 2 - 1], loop.text_n);
+    }
+    loop.text[loop.text_n++] = c;
+    loop.text[loop.text_n] = 0;
+}
+
 static void on_sent(unsigned usart, uint8_t byte)
 {
     if (usart == LINK_LINE) { take_link(byte); }
-    if (usart == TEXT && loop.text_n < sizeof loop.text - 1) {
-        loop.text[loop.text_n++] = (char)byte;
-        loop.text[loop.text_n] = 0;
-    }
+    if (usart == TEXT) { keep_text((char)(byte ? byte : ' ')); }
 }
 
 static void bring_link(void)

@@ -383,8 +383,7 @@ TEST(a_usart_sends_and_takes_by_dma)
     put(DMA1 + 0x14 + 3 * 0x18, 5);
     put(DMA1 + 0x18 + 3 * 0x18, USART3 + 4);
     put(DMA1 + 0x1C + 3 * 0x18, STM_RAM + 0x200);
-    put(DMA1 + 0x10 + 3 * 0x18, 4u << 25 | 0x400 | 0x40 | 1);
-    put(USART3 + 0x14, 0xC0);
+    put(DMA1 + 0x10 + 3 * 0x18, 4u << 25 | 0x400 | 0x40 | 1); /* it has been asking */
     put(DMA1 + 0x14 + 0x18, 8);
     put(DMA1 + 0x18 + 0x18, USART3 + 4);
     put(DMA1 + 0x1C + 0x18, STM_RAM + 0x300);

@@ -238,3 +238,19 @@ void stm_usart_write(struct stm *s, unsigned n, uint32_t off, uint32_t v)
         return;
     }
 }
+
+void stm_serial_ask(struct stm *s)
+{
+    for (unsigned n = 1; n <= STM_USARTS; n++) {
+        struct stm_usart *u = &s->usart[n];
+        if ((u->r[UCR1] & (U_UE | U_TE)) == (U_UE | U_TE)) { ask(s, n); }
+        if (u->r[SR] & U_RXNE && u->r[UCR3] & U_DMAR) {
+            (void)stm_dma_request(s, STM_REQ_USART_RX + n);
+        }
+    }
+    for (unsigned n = 1; n <= STM_SPIS; n++) {
+        if (!s->spi[n].waits && s->spi[n].r[CR2] & 2) {
+            (void)stm_dma_request(s, STM_REQ_SPI_TX + n);
+        }
+    }
+}

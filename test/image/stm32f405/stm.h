@@ -230,6 +230,8 @@ uint32_t stm_spi_read(struct stm *s, unsigned n, uint32_t off);
 void stm_spi_write(struct stm *s, unsigned n, uint32_t off, uint32_t v);
 void stm_spi_go_on(struct stm *s);
 uint64_t stm_spi_next(const struct stm *s);
+/* A stream was enabled: whoever has been asking is served. */
+void stm_serial_ask(struct stm *s);
 uint32_t stm_usart_read(struct stm *s, unsigned n, uint32_t off);
 void stm_usart_write(struct stm *s, unsigned n, uint32_t off, uint32_t v);
 void stm_usart_go_on(struct stm *s);

@@ -1,0 +1,57 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# The stm32f405 image under emulation, in closed loop: stm32f405.sh [WHAT...], of these (all):
+#   drop guarded box   that scene at 1, 2, 5 and 10 kHz: the same bits as on this host, tick by tick;
+#                      what the mean, the 99th of 100 and the dearest tick take
+#   spoil              a count more in one tick is found in that tick
+#   faults             faults from random times: drives off in time, each told by its name
+# README.md says what is reckoned. Environment: B (build), TICKS of a run at 1
+# kHz, TIMES of faults a scene.
+# Exit status: 0 all ok, 1 not, 2 bad usage, 3 something is not built.
+set -u
+
+b=${B:-build}
+ticks=${TICKS:-10000}
+times=${TIMES:-5000}
+emulator=$b/test/stm32f405/emulator
+failed=0
+
+[ -x "$emulator" ] || { echo "stm32f405: $emulator: not built: make stm32f405" >&2; exit 3; }
+
+image()
+{
+    case $1 in box) echo "$b/stm32f405/bilateral.elf" ;; *) echo "$b/stm32f405/$1.elf" ;; esac
+}
+rates()
+{
+    # At 10 kHz scene guarded refuses its set-up, on any board.
+    for r in 1000 2000 5000 $([ "$1" = guarded ] || echo 10000); do
+        "$emulator" --rate "$r" --ticks "$((ticks * r / 1000))" "$(image "$1")" || failed=1
+    done
+}
+spoil()
+{
+    said=$("$emulator" --rate 1000 --ticks 400 --spoil 300 "$(image drop)")
+    case $said in
+    *"differ, the first is 300: encoder read"*) echo "spoil: found in tick 300" ;;
+    *) failed=1 && echo "spoil: FAILED: $said" ;;
+    esac
+}
+faults()
+{
+    for s in drop box; do
+        echo "$s, 1 kHz"
+        "$emulator" --rate 1000 --faults "$times" "$(image $s)" || failed=1
+    done
+}
+
+for what in ${*:-drop guarded box spoil faults}; do
+    case $what in
+    drop | guarded | box) rates "$what" ;;
+    spoil | faults) "$what" ;;
+    *)
+        echo "usage: stm32f405.sh [drop|guarded|box|spoil|faults]..." >&2
+        exit 2 ;;
+    esac
+done
+exit $failed
