@@ -36,7 +36,7 @@ struct exh_gains_par {
 extern const struct exh_signal exh_gains_rows[EXH_GAINS_ROWS];
 
 /* Checks the rule for this period. -EXH_E_RANGE: a value outside its row, or a knot below k_min
- * between two above it, which would split the region. -EXH_E_MONOTONE: b does not rise.
+ * between two that are not, which would split the region. -EXH_E_MONOTONE: b does not rise.
  * -EXH_E_RATE: the rate of T differs from the rule's by more than 1 %. */
 int exh_gains_setup(const struct exh_gains_par *rule, struct exh_period T);
 

@@ -164,7 +164,7 @@ int exh_weigh_setup(
 void exh_weigh_start(struct exh_weigh *s, const struct exh_weigh_cfg *cfg, int32_t cnt);
 
 /* One tick. coded is the current coded in the last tick, mon the measured one, A. The time limit
- * also applies to each of the three phases, such as a mass that never settles. */
+ * also applies to each of the three phases: it ends the wait for a mass that never settles. */
 uint8_t exh_weigh_step(struct exh_weigh *s, const struct exh_weigh_cfg *cfg, int32_t cnt,
     int32_t coded_A_q26, int32_t mon_A_q26);
 
