@@ -122,10 +122,12 @@ static void child(struct seen *s)
                 note(s, "reset");
                 start_anew();
             }
-            if (machine_run(m) == M_HALTED || m->end == M_HUNG) { m->s.now = at; }
+            if (machine_run(m) == M_HALTED) { break; } /* its loop makes safe and feeds, for good */
+            if (m->end == M_HUNG) { m->s.now = at; }
         }
         if (!drives_on() && off_at == 0) { off_at = m->s.now; }
         if (drives_on() && off_at) { s->stays = 0; }
+        if (m->end == M_HALTED) { break; }
     }
     tell(s);
     s->took = off_at ? off_at - from : WATCHED;

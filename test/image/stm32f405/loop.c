@@ -205,7 +205,8 @@ static void on_tick(struct machine *m)
     loop.out = machine_reg(m, UC_ARM_REG_R1);
     memcpy(&loop.seen, in, sizeof loop.seen);
     if ((int64_t)loop.r.ticks == loop.spoil) { loop.seen.drive.enc_raw[0]++; }
-    check_inputs(&loop.seen);
+    if (loop.r.missed == loop.missed) { check_inputs(&loop.seen); } /* else it read on the way */
+    loop.missed = loop.r.missed;
     run_twin(&loop.seen);
     if (!watched) {
         extern machine_watch_fn loop_on_back;

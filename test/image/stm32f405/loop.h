@@ -22,7 +22,7 @@ struct loop_result {
 #define LOOP_PAST 8u
 struct loop {
     int16_t past[LOOP_PAST][EXH_FINGERS]; /* monitors */
-    uint64_t instants;
+    uint64_t instants, missed;
     struct machine *m;
     struct board board;
     struct ref_cfg cfg;
