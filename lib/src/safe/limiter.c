@@ -33,10 +33,7 @@ static int is_far(int32_t a, int32_t b, int32_t way)
 /* 1 where the drive may be on: all states but OFF and FAULT. */
 static uint32_t is_on(unsigned state)
 {
-    return ((1u << EXH_STATE_ARM | 1u << EXH_STATE_RUN | 1u << EXH_STATE_LIMIT |
-                1u << EXH_STATE_RELEASE) >>
-               state) &
-           1u;
+    return state >= EXH_STATE_ARM && state <= EXH_STATE_RELEASE;
 }
 
 /* --- causes --- */
