@@ -288,7 +288,7 @@ static void move(struct exh_limiter *s, const struct exh_limiter_cfg *cfg, int32
 
 /* At rest it follows what is measured, unless FAULT holds it. */
 static int32_t position(
-    struct exh_limiter *s, const struct exh_limiter_cfg *cfg, const struct step *t)
+    struct exh_limiter *s, const struct exh_limiter_cfg *cfg, const struct step *t, int run)
 {
     s->vel = exh_clamp32(s->vel, -cfg->vel, cfg->vel);
     if (s->state == EXH_STATE_RELEASE || (is_on(s->state) && s->share_q30 > 0)) {
@@ -297,7 +297,11 @@ static int32_t position(
     } else {
         s->limits = EXH_LIMITER_BY_STATE;
         s->vel = 0;
-        if (s->state == EXH_STATE_FAULT) { s->holds = cfg->par.after == EXH_LIMITER_HOLD; }
+        if (s->state == EXH_STATE_FAULT) {
+            s->holds = cfg->par.after == EXH_LIMITER_HOLD;
+        } else if (!run) {
+            s->holds = 0;
+        }
         if (!s->holds && !(t->present & EXH_LIMITER_NUMBER)) {
             s->sent = t->pos;
             s->part = 0;
@@ -321,8 +325,8 @@ void exh_limiter_step(struct exh_limiter *s, const struct exh_limiter_cfg *cfg,
     }
     look(s, cfg, in, &t);
     go_on(s, cfg, in, t.present);
-    s->sent =
-        cfg->par.kind == EXH_LIMITER_POSITION ? position(s, cfg, &t) : effort(s, cfg, t.asked);
+    s->sent = cfg->par.kind == EXH_LIMITER_POSITION ? position(s, cfg, &t, in->run != 0)
+                                                    : effort(s, cfg, t.asked);
     out->send = s->sent;
     out->enable = is_on(s->state) | (s->holds != 0);
     out->state = s->state;

@@ -601,6 +601,11 @@ TEST(a_position_brakes_and_holds)
         if (after) {
             CHECK_EQ_I64(r.out.send, held);
             CHECK_EQ_I64(r.out.enable, 1);
+            r.s.state = EXH_STATE_OFF; /* as if it were off in between */
+            r.s.holds = 1;
+            r.in.run = 0;
+            step();
+            CHECK_EQ_I64(r.out.enable, 0);
         }
     }
 }
