@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 """amalgamate.py OUT HEADER...: one header and one source, OUT.h and OUT.c, of these public headers
 (contact.h; exhand.h is the whole library). OUT.h has them and all that they and the sources
-include. OUT.c has each source that defines what a given header declares, and each that those need.
+include. OUT.c has each source that defines what a given header declares or names in a comment,
+name(), and each that those need.
 A name of one source's own that is used elsewhere, too, gets the source's name before it. Comments
 stay. Exit status: 0 written, 2 what is wrong. Standard library only.
 """
@@ -135,26 +136,31 @@ def offers(text):
 
 
 def inline(text):
-    """What the functions in a header call."""
-    return {w for item in items(text) if "body" in item for w in item if WORD.fullmatch(w)}
+    """{function in a header: the words of it}"""
+    return {n: {w for w in item if WORD.fullmatch(w)} for item in items(text) if "body" in item
+            for n in declared(item)[0]}
 
 
 def promised(text):
-    """External names that a header declares."""
-    return {n for item in items(text) if not is_own(item)
-            for n in declared(item)[0] if n.startswith("exh_")}
+    """External names that a header declares, and functions that its comments name."""
+    return set(re.findall(r"\b(exh_\w+)\(\)", text)) | {
+        n for item in items(text) if not is_own(item)
+        for n in declared(item)[0] if n.startswith("exh_")}
 
 
 def needed(headers, of):
     """The sources behind these headers, and the headers of all of them. of: {source: offers}"""
     given = headers + [i for h in headers if h.endswith(os.sep + "exhand.h") for i in included(h)]
-    chosen, want = [], set().union(*(promised(read(h)) for h in given))
+    chosen, before, want = [], 0, set().union(*(promised(read(h)) for h in given))
     while True:
         reach = below(headers + chosen)
         for path in reach:
-            want |= words(read(path)) if path.endswith(".c") else inline(read(path))
+            called = {} if path.endswith(".c") else inline(read(path))
+            want |= words(read(path)) if path.endswith(".c") else set()
+            want |= set().union(*(called[n] for n in called if n in want or path in given))
         more = [s for s in sorted(of) if s not in chosen and of[s] & want]
-        if not more:
+        grown, before = len(want) > before, len(want)
+        if not more and not grown:
             return sorted(chosen), [p for p in reach if p.endswith(".h")]
         chosen += more
 
