@@ -12,6 +12,7 @@
 enum { PARAMS = 12, VALUES = 20, LINK = 32, TICK = 44, SHOW = 48 };
 enum { STAGED = 8, PENDING = 13, MAIL_IN = 8 };
 enum { TEXT = 2, LINK_LINE = 3 };
+#define CALM 8u /* ticks behind one that was late */
 
 struct loop loop;
 
@@ -131,6 +132,7 @@ static void on_instant(void *ctx)
         machine_stop(m, M_DONE);
         return;
     }
+    loop.before = loop.in;
     (void)exh_board_read_drive(&loop.in);
     if (!ref_held(&loop.cfg, loop.r.ticks)) { loop.in.din &= ~(uint32_t)EXH_DIN_DEADMAN; }
     loop.in.din &= ~loop.cut;
@@ -174,7 +176,9 @@ static void check_inputs(const struct exh_scene_in *in)
             low = was < low ? was : low;
             high = was > high ? was : high;
         }
-        differs("encoder read", i, in->drive.enc_raw[i], loop.in.enc_raw[i] & 0xFFFF);
+        if (!loop.r.missed || in->drive.enc_raw[i] != (loop.before.enc_raw[i] & 0xFFFF)) {
+            differs("encoder read", i, in->drive.enc_raw[i], loop.in.enc_raw[i] & 0xFFFF);
+        }
         if (in->drive.mon_raw[i] < low - 16 || in->drive.mon_raw[i] > high + 16) {
             differs("monitor", i, in->drive.mon_raw[i], loop.in.mon_raw[i]);
         }
@@ -205,8 +209,10 @@ static void on_tick(struct machine *m)
     loop.out = machine_reg(m, UC_ARM_REG_R1);
     memcpy(&loop.seen, in, sizeof loop.seen);
     if ((int64_t)loop.r.ticks == loop.spoil) { loop.seen.drive.enc_raw[0]++; }
-    if (loop.r.missed == loop.missed) { check_inputs(&loop.seen); } /* else it read on the way */
+    /* Late, it may have read before or behind an instant. */
+    if (loop.r.missed != loop.missed || loop.seen.missed) { loop.calm = loop.r.ticks + CALM; }
     loop.missed = loop.r.missed;
+    if (loop.r.ticks >= loop.calm) { check_inputs(&loop.seen); }
     run_twin(&loop.seen);
     if (!watched) {
         extern machine_watch_fn loop_on_back;

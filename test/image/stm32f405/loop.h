@@ -22,7 +22,7 @@ struct loop_result {
 #define LOOP_PAST 8u
 struct loop {
     int16_t past[LOOP_PAST][EXH_FINGERS]; /* monitors */
-    uint64_t instants, missed;
+    uint64_t instants, missed, calm;
     struct machine *m;
     struct board board;
     struct ref_cfg cfg;
@@ -32,8 +32,8 @@ struct loop {
     int64_t spoil;
     uint32_t scene, tick, show, back, out;
     struct exh_period T;
-    struct exh_drive_in in;   /* as the device has it */
-    struct exh_scene_in seen; /* as the image read it */
+    struct exh_drive_in in, before; /* as the device has it; a tick ago */
+    struct exh_scene_in seen;       /* as the image read it */
     struct exh_drive_out twin, last;
     uint8_t begun, open, ready, shown, ticking, differs, waits;
     uint64_t at_insns, at_cycles, at_accesses, at_slept;
