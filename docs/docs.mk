@@ -26,7 +26,7 @@ fmt-check:
 	    { echo "$@: left out: this clang-format is not 14"; exit 0; }; \
 	    clang-format --dry-run -Werror $(fmt_src)
 
-## Draw the block diagrams in docs/ by Graphviz from the signal and device tables.
+## Draw block diagrams of the signal and device tables to build/; docs/ has four of them.
 .PHONY: diagrams
 dot_look := -Nshape=box -Nstyle=rounded,filled -Nfillcolor=\#f4f7fb -Ncolor=\#1f5fbf \
             -Nfontname="DejaVu Sans" \
@@ -38,7 +38,8 @@ diagrams: $(lab)
 	    $(lab) diagram test/lab/diagram/$$d.dot > $(B)/$$d.dot && \
 	    dot $(dot_look) -Tsvg -o $(B)/$$d.svg $(B)/$$d.dot || exit 1; \
 	    awk '/^<svg/ { on = 1 } !on || /^<!--/ { next } \
-	        { printf "%s%s", $$0, /^<\/(g|svg)>$$/ ? "\n" : " " }' $(B)/$$d.svg > docs/$$d.svg; \
+	        { printf "%s%s", $$0, /^<\/(g|svg)>$$/ ? "\n" : " " }' $(B)/$$d.svg > $(B)/$$d.new && \
+	    mv $(B)/$$d.new $(B)/$$d.svg && { ! [ -f docs/$$d.svg ] || cp $(B)/$$d.svg docs/; } || exit 1; \
 	done
 	$(Q)$(lab) diagram test/lab/diagram/geometry.svg > docs/geometry.svg
 
