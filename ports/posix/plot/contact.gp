@@ -20,16 +20,16 @@ if (!exists("before_ms")) before_ms = 10
 if (!exists("after_ms")) after_ms = 110
 
 n = words(files)
-width = 190.0 + 765*n
-set terminal pngcairo size width,1080 font 'DejaVu Sans,20' linewidth 1.6 background '#ffffff'
+width = 190.0 + 560*n
+set terminal pngcairo size width,980 font 'DejaVu Sans,18' linewidth 1.6 background '#ffffff'
 set output out_contact
 set datafile separator ','
 
 ink = '#333333'
-set style line 1 lc rgb '#1a8f2e' pt 2 ps 0.9 lw 1.2   # green crosses: force commanded
-set style line 2 lc rgb '#1f5fbf' lw 2.2               # blue: force by the monitor
-set style line 3 lc rgb '#7a1fa2' lw 2.0               # velocity
-set style line 4 lc rgb '#000000' lw 1.6               # contact begins
+set style line 1 lc rgb '#d55e00' pt 2 ps 0.8 lw 1.2   # force commanded
+set style line 2 lc rgb '#0072b2' lw 2.2               # force by the monitor
+set style line 3 lc rgb '#000000' lw 2.0               # velocity
+set style line 4 lc rgb '#777777' lw 1.6 dt (7,5)               # contact begins
 
 # The same axes in every column, or they could not be compared.
 f_top = 1; v_top = 0.1; v_low = 0
@@ -51,18 +51,20 @@ set lmargin at screen 0; set rmargin at screen 1
 set tmargin at screen 1; set bmargin at screen 0
 unset border; unset tics; unset title
 set xrange [0:1]; set yrange [0:1]
-set key at screen 0.5, screen 0.985 center top horizontal Left \
-    reverse maxrows 1 samplen 1.6 width -3 \
+set label 1 '{/:Bold Force and velocity in bilateral contacts at each speed}' at screen 0.5, \
+    screen 0.975 center textcolor rgb ink
+set key at screen 0.5, screen 0.955 center top horizontal Left \
+    reverse maxrows 1 samplen 1.6 width -1 \
     textcolor rgb ink
-plot NaN with points ls 1 ps 1.4 title 'force commanded F_{des}', \
+plot NaN with points ls 1 ps 1.4 title 'commanded force F_{des}', \
      NaN with lines ls 2 title 'force by the current monitor F_{mon}', \
-     NaN with lines ls 3 title 'velocity dq/dt', NaN with lines ls 4 title 'contact begins'
-set key off
+     NaN with lines ls 3 title 'velocity', NaN with lines ls 4 title 'contact begins'
+unset label 1; set key off
 gains = k eq '' || b eq '' ? "the scene's own k and b" : \
     sprintf('k = %s N/m, b = %s Ns/m', k, b)
 limit = f_top > 21.5 && f_top < 22.6 ? '; force ends at 22 N, the drive at its 6.6 A' : ''
 set label 9 sprintf('%s, link: %s%s', gains, link, limit) at screen 0.5, \
-    screen 0.93 center \
+    screen 0.872 center \
     noenhanced textcolor rgb ink font ',17'
 set border 3 lc rgb ink lw 0.8
 set tics nomirror out scale 0.5 textcolor rgb ink
@@ -75,20 +77,20 @@ do for [i = 1:n] {
     T0 = real(word(contacts, i))
     FILE = word(files, i).'.csv'
     ms = "(column('t_s') - T0)*1e3"
-    set lmargin at screen (130.0 + 765*(i-1)) / width
-    set rmargin at screen (130.0 + 765*(i-1) + 660) / width
+    set lmargin at screen (130.0 + 560*(i-1)) / width
+    set rmargin at screen (130.0 + 560*(i-1) + 490) / width
     S = real(word(settles, i))
     set title sprintf("{/:Bold %s}, %s: %s m/s at contact\n%s", word(names, i), word(fingers, i), \
         word(speeds, i), T0 < 0 ? 'no contact' : S < 0 \
-        ? 'F_{mon} does not stay within 5 % of its end' : \
-        sprintf('F_{mon} stays within 5 %% of its end after %.0f ms', S)) \
+        ? 'F_{mon} does not settle to 5 %' : \
+        sprintf('F_{mon} settles to 5 %% in %.0f ms', S)) \
         textcolor rgb ink offset 0,-0.6
     set arrow 1 from first 0, graph 0 to first 0, graph 1 nohead ls 4 front
-    set tmargin at screen 0.83; set bmargin at screen 0.43
+    set tmargin at screen 0.775; set bmargin at screen 0.43
     set yrange [-0.04*f_top : 1.07*f_top]
     set format x ''
     unset xlabel
-    if (i == 1) { set ylabel 'F (N)' textcolor rgb ink } else { unset ylabel }
+    if (i == 1) { set ylabel 'force (N)' textcolor rgb ink } else { unset ylabel }
     plot FILE using ((column('t_s') - T0)*1e3):(column('f_mon_n')) with lines ls 2, \
          FILE using ((column('t_s') - T0)*1e3):(column('f_des_n')) with points ls 1
     unset title; unset label 9
@@ -96,7 +98,7 @@ do for [i = 1:n] {
     set yrange [v_low - 0.06*(v_top - v_low) : v_top + 0.08*(v_top - v_low)]
     set format x '%g'
     set xlabel 'time since contact (ms)' textcolor rgb ink
-    if (i == 1) { set ylabel 'dq/dt (m/s)' textcolor rgb ink }
+    if (i == 1) { set ylabel 'velocity (m/s)' textcolor rgb ink }
     plot FILE using ((column('t_s') - T0)*1e3):(column('qd_m_per_s')) with lines ls 3
 }
 unset multiplot

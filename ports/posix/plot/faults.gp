@@ -18,21 +18,21 @@ set output out_faults
 set datafile separator ','
 
 ink = '#333333'
-color(i) = word('#d62728 #e08a1e #1a8f2e #1f5fbf #5a3d9a', i)
+color(i) = word('#d55e00 #e69f00 #009e73 #0072b2 #000000', i)
 set border 3 lc rgb ink lw 0.8
 set tics nomirror out scale 0.6 textcolor rgb ink
 set grid lc rgb '#dddddd' lw 0.6 lt 1
-set xlabel 'ms from the tick that sees the cause' textcolor rgb ink
+set xlabel 'time since the tick that sees the cause (ms)' textcolor rgb ink
 set xrange [-10:35]
-set yrange [0:8.2]
+set yrange [0:7]
 set key top right Left reverse samplen 2 spacing 1.15 textcolor rgb ink
 fast = word(rates, n)
 
 set multiplot layout 1,2 margins screen 0.07,0.985,0.13,0.88 spacing screen 0.06
-set label 1 'A finger presses against a wall, and something fails' at screen 0.5,0.965 center \
+set label 1 '{/:Bold Force in the ticks after a fault, a finger in the wall}' at screen 0.5,0.965 center \
     textcolor rgb ink
 
-set title '{/:Bold released}: the dead-man switch is let go' textcolor rgb ink offset 0,-0.3
+set title 'the dead-man switch is released' textcolor rgb ink offset 0,-0.3
 set ylabel 'force commanded (N)' textcolor rgb ink
 set object 1 rectangle from first 0, graph 0 to first 20, \
     graph 1 fc rgb '#f4f7fb' fs solid noborder behind
@@ -43,15 +43,15 @@ plot for [i = 1:n] 'faults_'.word(rates, i).'Hz_release.csv' \
      with steps lc rgb color(i) lw 1.8 title word(rates, i).' Hz'
 unset label 1; unset label 2; unset object 1
 
-set title '{/:Bold cut} beside it: the emergency stop opens' textcolor rgb ink offset 0,-0.3
-set ylabel 'force (N)' textcolor rgb ink
+set title 'the emergency stop opens (cut), beside it' textcolor rgb ink offset 0,-0.3
+set ylabel 'force at '.fast.' Hz (N)' textcolor rgb ink
 plot 'faults_'.fast.'Hz_release.csv' using (1e3*column('t_s')):(column('force_n')) with steps \
-         lc rgb '#9db8e0' lw 1.8 title 'released, commanded, '.fast.' Hz', \
-     '' using (1e3*column('t_s')):(kf*column('motor_a')) with lines lc rgb '#1f5fbf' lw 1.8 \
-         title 'in the motor', \
+         lc rgb '#56b4e9' lw 1.8 title 'released: commanded', \
+     '' using (1e3*column('t_s')):(kf*column('motor_a')) with lines lc rgb '#0072b2' lw 1.8 \
+         title 'released: in the motor', \
      'faults_'.fast.'Hz_cut.csv' using (1e3*column('t_s')):(column('force_n')) with steps \
-         lc rgb '#f0a5a5' lw 1.8 title 'cut, commanded', \
-     '' using (1e3*column('t_s')):(kf*column('motor_a')) with lines lc rgb '#d62728' lw 1.8 \
-         title 'in the motor'
+         lc rgb '#e69f00' lw 1.8 title 'cut: commanded', \
+     '' using (1e3*column('t_s')):(kf*column('motor_a')) with lines lc rgb '#d55e00' lw 1.8 dt (7,3) \
+         title 'cut: in the motor'
 unset multiplot
 unset output

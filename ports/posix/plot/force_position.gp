@@ -28,10 +28,10 @@ set output out
 set datafile separator ','
 
 ink = '#333333'
-set style line 1 lc rgb '#1f5fbf' pt 2 ps 0.9 lw 0.8   # blue crosses: pairs in the band
-set style line 2 lc rgb '#b9c9e2' pt 2 ps 0.5 lw 0.6   # faint: pairs outside it
-set style line 3 lc rgb '#d62728' pt 6 ps 0.9 lw 0.9   # red circles: averaged positions
-set style line 4 lc rgb '#1a8f2e' lw 3.2               # green: the line
+set style line 1 lc rgb '#56b4e9' pt 7 ps 0.7          # pairs in the band
+set style line 2 lc rgb '#bbbbbb' pt 7 ps 0.5          # pairs outside it
+set style line 3 lc rgb '#d55e00' pt 6 ps 0.9 lw 0.9   # averaged positions
+set style line 4 lc rgb '#000000' lw 3.2               # the line
 
 inside(f) = f >= band_lo && f <= band_hi ? f : NaN
 outside(f) = f >= band_lo && f <= band_hi ? NaN : f
@@ -44,18 +44,20 @@ set lmargin at screen 0; set rmargin at screen 1
 set tmargin at screen 1; set bmargin at screen 0
 unset border; unset tics
 set xrange [0:1]; set yrange [0:1]
+set label 1 '{/:Bold Measured stiffness of the virtual contact at two loop rates}' at screen 0.515, 0.96 \
+    center textcolor rgb ink
 set key at screen 0.515,0.02 center bottom horizontal Left reverse maxrows 1 samplen 1.4 width -1 \
     font ',20' textcolor rgb ink
-plot NaN with points ls 1 ps 1.4 title sprintf('pairs, %g to %g N', band_lo, band_hi), \
-     NaN with points ls 2 ps 1.4 title 'other pairs', \
-     NaN with points ls 3 ps 1.4 title 'mean of ten positions', \
+plot NaN with points ls 1 ps 1.4 title sprintf('a tick, %g to %g N', band_lo, band_hi), \
+     NaN with points ls 2 ps 1.4 title 'other ticks', \
+     NaN with points ls 3 ps 1.4 title 'mean position of ten ticks', \
      NaN with lines ls 4 title fit
-set key off
+unset label 1; set key off
 
 set border 3 lc rgb ink lw 0.8
 set tics nomirror out scale 0.6 textcolor rgb ink
 set grid lc rgb '#dddddd' lw 0.6 lt 1
-set tmargin at screen 0.855; set bmargin at screen 0.235
+set tmargin at screen 0.81; set bmargin at screen 0.235
 set xlabel 'position past the virtual contact (mm)' textcolor rgb ink
 set yrange [0:band_hi + 1.0]
 set xtics nomirror; set ytics nomirror 1
@@ -69,7 +71,7 @@ do for [panel in 'a b'] {
     if (!exists("P_min")) { P_min = 0; P_max = 1 } # no pair in the band: an empty panel
     pad = 0.06 * (P_max - P_min) + 0.02
     right_mm = exists(panel.'_q_hi_mm') ? value(panel.'_q_hi_mm') : P_max + pad
-    left_mm = P_min - pad < 0 ? P_min - pad : 0 # the wall itself is in the picture
+    left_mm = P_min < 0 ? P_min - pad : 0 # the wall itself is in the picture
     set xrange [left_mm : right_mm]
     set lmargin at screen (panel eq 'a' ? 0.065 : 0.562)
     set rmargin at screen (panel eq 'a' ? 0.487 : 0.985)

@@ -18,18 +18,18 @@ panels = words(rates)
 across = panels < 3 ? panels : 3
 down = (panels + across - 1) / across
 width = 130.0 + 600*across
-top = across == 1 && has_map ? 230.0 : across == 2 ? 160.0 : 120.0 # of the key
+top = across == 1 && has_map ? 260.0 : across == 2 ? 190.0 : 150.0 # of the key
 height = 70.0 + top + 520*down
 set terminal pngcairo size width,height font 'DejaVu Sans,20' linewidth 1.6 background '#ffffff'
 set datafile separator ','
 
 ink = '#333333'
-set style line 1 lc rgb '#1f5fbf' pt 7 ps 0.8             # at rest
-set style line 2 lc rgb '#d07800' pt 7 ps 0.8             # most of its falls at rest
-set style line 3 lc rgb '#e0a8a0' pt 2 ps 0.6 lw 1.0      # unstable
-set style line 4 lc rgb '#cfe8cf'                         # allowed
-set style line 5 lc rgb '#8f2f8f' lw 2.6                  # the rule
-set style line 6 lc rgb '#1a8f2e' pt 3 ps 2.6 lw 2.4      # the paper's point
+set style line 1 lc rgb '#0072b2' pt 7 ps 0.7             # at rest
+set style line 2 lc rgb '#e69f00' pt 9 ps 1.2             # most of its falls at rest
+set style line 3 lc rgb '#d55e00' pt 2 ps 0.6 lw 1.0      # unstable
+set style line 4 lc rgb '#dddddd'                         # allowed
+set style line 5 lc rgb '#000000' lw 3.0                  # the rule
+set style line 6 lc rgb '#000000' pt 4 ps 2.2 lw 2.4      # the paper's point
 set style fill solid 1.0 noborder
 
 set output out
@@ -38,15 +38,17 @@ set lmargin at screen 0; set rmargin at screen 1
 set tmargin at screen 1; set bmargin at screen 0
 unset border; unset tics
 set xrange [0:1]; set yrange [0:1]
-set key at screen 0.52, screen 1.0-20.0/height center top horizontal Left reverse maxrows 2 \
+set label 1 '{/:Bold Allowed gains, beside the gains at which simulated falls rest}' at \
+    screen 0.5, screen 1 - 24/height center textcolor rgb ink
+set key at screen 0.52, screen 1 - 46/height center top horizontal Left reverse maxrows 2 \
     samplen 2.4 width 1 textcolor rgb ink
-plot NaN with boxes ls 4 title 'every fall of the model rests', \
-     NaN with lines ls 5 title 'allowed: the rule', \
-     NaN with points ls 6 title 'paper, Table II', \
-     NaN with points ls 1 ps 1.6 title has_map ? 'simulated: every fall comes to rest' : '', \
-     NaN with points ls 2 ps 1.6 title has_map ? 'nine of ten' : '', \
-     NaN with points ls 3 ps 1.2 title has_map ? 'fewer' : ''
-set key off
+plot NaN with boxes ls 4 title 'model: all falls rest', \
+     NaN with lines ls 5 title 'allowed by the rule, inside', \
+     NaN with points ls 6 title "the paper's gains", \
+     NaN with points ls 1 ps 1.6 title has_map ? 'simulated: all falls rest' : '', \
+     NaN with points ls 2 ps 1.6 title has_map ? 'simulated: 90 % or more rest' : '', \
+     NaN with points ls 3 ps 1.2 title has_map ? 'simulated: fewer rest' : ''
+unset label 1; set key off
 set border 3 lc rgb ink lw 0.8
 set tics nomirror out scale 0.5 textcolor rgb ink
 
@@ -70,7 +72,7 @@ do for [i = 1:panels] {
     b_top = real(word(b_tops, i))
     RATE = real(word(rates, i))
     set xrange [0:1.02*k_top]
-    set yrange [-0.03*b_top:1.03*b_top]
+    set yrange [0:1.03*b_top]
     set xtics step(k_top); set ytics step(b_top)
     set title '{/:Bold '.word(rates, i).' Hz}' textcolor rgb ink offset 0,-0.6
     if (r == down - 1 || i + across > panels) { set xlabel 'stiffness k (kN/m)' textcolor rgb ink

@@ -150,7 +150,8 @@ class Report:
             s.lines.append("skipped: the picture: gnuplot is missing (gnuplot-nox)")
             return
         p = subprocess.run([self.gnuplot, "-e",
-                            "data='%s.csv'; out='%s.png'; here='%s'" % (s.name, s.name, HERE),
+                            "data='%s.csv'; out='%s.png'; here='%s'; heading=\"%s\"" %
+                            (s.name, s.name, HERE, s.title),
                             os.path.join(HERE, "style.gp"), plt], cwd=self.out, env=self.env,
                            text=True, errors="replace", stdout=subprocess.PIPE,
                            stderr=subprocess.STDOUT, check=False)

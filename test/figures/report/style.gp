@@ -8,11 +8,11 @@ set output out
 set datafile separator ','
 set encoding utf8
 ink = '#333333'
-ours_colour = '#1f5fbf'
-integer_colour = '#d07800'
-float_colour = '#1a8f2e'
+ours_colour = '#0072b2'
+integer_colour = '#d55e00'
+float_colour = '#000000'
 away_colour = '#999999'
-bad_colour = '#d62728'
+bad_colour = '#cc79a7'
 set border 3 lc rgb ink lw 0.8
 set tics nomirror out scale 0.5 textcolor rgb ink
 set grid lc rgb '#dddddd' lw 0.6 lt 1

@@ -4,25 +4,28 @@
 stem = data[1:strlen(data) - 4]
 load stem.'.panels'
 legend_px = 46.
+heading_px = 44.
 width = n_columns*panel_w + 30
 if (width < 1000) { width = 1000 }
-height = n_rows*panel_h + legend_px
+height = n_rows*panel_h + legend_px + heading_px
 load here.'/style.gp'
 set multiplot
 set logscale xy
 unset key
+set label 1000 heading.' (lower and further left is better)' at screen 0.5, screen 1 - 22/height \
+    center font 'DejaVu Sans Bold,20' textcolor rgb ink
 small = sprintf(',%d', font)
 points_of(k, kind, named) = (column('panel') == k && column('kind') == kind && \
     column('named') == named) ? column('cost') : NaN
 label_of(k) = (column('panel') == k && column('named') == 1) ? column('label_cost') : NaN
 array colour[3] = [ours_colour, integer_colour, float_colour]
-array number[3] = [0x1f5fbf, 0xb06500, 0x1a8f2e]
+array number[3] = [0x0072b2, 0xa84800, 0x000000]
 do for [k = 1:n_panels] {
     c = (k - 1) % n_columns; r = (k - 1)/n_columns
     set lmargin at screen (30. + c*panel_w + left)/width
     set rmargin at screen (30. + (c + 1)*panel_w - right)/width
-    set tmargin at screen 1 - (r*panel_h + top)/height
-    set bmargin at screen 1 - ((r + 1)*panel_h - bottom)/height
+    set tmargin at screen 1 - (heading_px + r*panel_h + top)/height
+    set bmargin at screen 1 - (heading_px + (r + 1)*panel_h - bottom)/height
     set xrange [value(sprintf('x0_%d', k)) : value(sprintf('x1_%d', k))]
     set yrange [value(sprintf('y0_%d', k)) : value(sprintf('y1_%d', k))]
     decades = log10(value(sprintf('x1_%d', k))/value(sprintf('x0_%d', k)))
@@ -39,11 +42,11 @@ do for [k = 1:n_panels] {
     set xlabel value(sprintf('x_label_%d', k)) font ',16' textcolor rgb ink offset 0,0.4
     set ylabel (c == 0 ? y_label : '') textcolor rgb ink offset 1.5,0
     plot stem.'_front.csv' using (column('panel') == k ? column('cost') : NaN):'error' \
-        with lines lw 2 lc rgb '#9bb8e3', \
+        with lines lw 2 lc rgb '#7fb8d8', \
          stem.'_leader.csv' using ($1 == k ? $2 : NaN):3 with lines lw 0.5 lc rgb '#bbbbbb', \
          stem.'_points.csv' using (points_of(k, 2, 0)):'error' with points pt 6 ps 0.9 lw 0.8 \
-         lc rgb '#a9d3b0', \
-         '' using (points_of(k, 1, 0)):'error' with points pt 5 ps 0.8 lc rgb '#f0c690', \
+         lc rgb '#aaaaaa', \
+         '' using (points_of(k, 1, 0)):'error' with points pt 5 ps 0.8 lc rgb '#f0b58c', \
          '' using (points_of(k, 2, 1)):'error' with points pt 6 ps 1.6 lw 1.6 lc rgb float_colour, \
          '' using (points_of(k, 1, 1)):'error' with points pt 5 ps 1.3 lc rgb integer_colour, \
          '' using (points_of(k, 0, 1)):'error' with points pt 7 ps 1.9 lc rgb ours_colour, \
@@ -54,15 +57,15 @@ unset title; unset xlabel; unset ylabel; unset border; unset tics; unset logscal
 set lmargin at screen 0; set rmargin at screen 1; set tmargin at screen 1; set bmargin at screen 0
 set xrange [0:width]; set yrange [0:height]
 lx = (width - 960)/2. + 30; ly = legend_px/2
-array entry[5] = ['ours', 'other integer code', 'floating point', 'front of integers', \
-    'faint: behind']
+array entry[5] = ['ours', 'other integer code', 'floating point', 'best integer code', \
+    'faint: the others']
 array gap[5] = [0, 95, 335, 520, 745]
 do for [k = 1:5] { set label k entry[k] at lx + gap[k] + 22, ly left font ',16' \
     textcolor rgb ink }
-set arrow 1 from lx + gap[4] - 12, ly to lx + gap[4] + 14, ly nohead lw 2 lc rgb '#9bb8e3'
+set arrow 1 from lx + gap[4] - 12, ly to lx + gap[4] + 14, ly nohead lw 2 lc rgb '#7fb8d8'
 plot '+' using (lx):(ly) every ::0::0 with points pt 7 ps 1.9 lc rgb ours_colour, \
      '+' using (lx + gap[2]):(ly) every ::0::0 with points pt 5 ps 1.3 lc rgb integer_colour, \
      '+' using (lx + gap[3]):(ly) every ::0::0 with points pt 6 ps 1.6 lw 1.6 lc rgb float_colour, \
-     '+' using (lx + gap[5]):(ly) every ::0::0 with points pt 5 ps 0.8 lc rgb '#f0c690'
+     '+' using (lx + gap[5]):(ly) every ::0::0 with points pt 5 ps 0.8 lc rgb '#f0b58c'
 unset multiplot
 unset output
