@@ -50,37 +50,16 @@ $(exhand_custom): $(filter-out %/scene_none.o,$(exh_obj)) $(custom_obj) $(model_
     $(gpio_obj) $(B)/posix/libexhand.a
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs) $(gpio_libs)
 
-# Coarse where finer steps do not change the answer; `exhand-lab drop --sweep` and --friction have
-# finer ones.
-demo_runs := calibration:"calibrate --out $(B)/demo/calibration" \
-             table2:"drop --out $(B)/demo --gates" \
-             stability:"drop --out $(B)/demo --sweep --grid 8x3 --falls 3" \
-             friction:"drop --out $(B)/demo --friction 5 --falls 3" table1:"glove --selftest" \
-             glove:"glove --record $(B)/demo/glove.exh --does poses --seconds 5" \
-             bilateral:"bilateral --out $(B)/demo/bilateral"
-demo_pictures := force_position fall stability friction calibration/calibration bilateral/contact \
-                 bilateral/force
-demo_texts    := calibration table1 stability friction bilateral
-
 ##@ The host program
 ##2 Run the paper's experiments on the simulated device; results go to build/demo.
-.PHONY: demo
-demo: all $(lab)
+.PHONY: demo demo-begins
+demo: Q := $(if $(V),,@printf .;)
+demo-begins:
+	@printf 'Compiling exhand and exhand-lab, a dot a file: '
+demo: demo-begins all $(lab)
+	@echo
 	@.ci/deps "the pictures" gnuplot gnuplot-nox fonts-dejavu-core || true
-	@mkdir -p $(B)/demo && rm -f $(B)/demo/stability*.csv
-	@for r in $(demo_runs); do \
-	    $(if $(V),echo "$(lab) $${r#*:}";) \
-	    $(lab) $${r#*:} > $(B)/demo/$${r%%:*}.txt || { s=$$?; cat $(B)/demo/$${r%%:*}.txt; exit $$s; \
-	    }; \
-	done
-	@s=0; if command -v gnuplot >/dev/null; then \
-	    for g in pictures sweep friction calibration/pictures bilateral/bilateral; \
-	    do (cd $(B)/demo/$$(dirname $$g) && \
-	        gnuplot -c $$(basename $$g).gp "$(CURDIR)/ports/posix/plot") || s=1; done; fi; \
-	cat $(B)/demo/table2.txt; echo; echo "More tables: $(demo_texts:%=$(B)/demo/%.txt)"; \
-	for p in $(demo_pictures:%=$(B)/demo/%.png); do \
-	    if [ -s $$p ]; then echo "picture: $$p"; else echo "picture missing: $$p" >&2; fi; done; \
-	exit $$s
+	@ports/posix/demo.sh $(lab) $(B)/demo "$(CURDIR)/ports/posix/plot"
 
 ##2 Build the program that proves and studies, build/posix/exhand-lab.
 .PHONY: lab
