@@ -51,7 +51,7 @@ $(exhand_custom): $(filter-out %/scene_none.o,$(exh_obj)) $(custom_obj) $(model_
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs) $(gpio_libs)
 
 ##@ The host program
-##2 Run the paper's experiments on the simulated device; results go to build/demo.
+##2 Run the paper's experiments on the simulated device; build/demo/index.html shows the results.
 .PHONY: demo demo-begins
 demo: Q := $(if $(V),,@printf .;)
 demo-begins:
@@ -61,7 +61,7 @@ demo: demo-begins all $(lab)
 	@.ci/deps "the pictures" gnuplot gnuplot-nox fonts-dejavu-core || true
 	@ports/posix/demo.sh $(lab) $(B)/demo "$(CURDIR)/ports/posix/plot"
 
-##2 Build the program that proves and studies, build/posix/exhand-lab.
+##2 Build exhand-lab, the program for proofs and studies (build/posix/exhand-lab).
 .PHONY: lab
 lab: $(lab)
 

@@ -18,7 +18,7 @@ gate: all
 gate-sample: all
 	@test/closed/model/gate.py sample $(exhand) $(ARGS)
 
-## Plant small errors in simulator and analysis; each must be told by its check (8 min of a core).
+## Plant small errors in simulator and analysis; its check must report each (8 min of a core).
 gate-mutants:
 	@mkdir -p $(B)/gate
 	@test/closed/model/mutants.py $(B)/gate $(ARGS)

@@ -40,7 +40,7 @@ modbus:
 attacks_run = PYTHONDONTWRITEBYTECODE=1 test/device/attacks/attacks.py $(1) $(exhand)
 
 ## Attack the box's link, ports, files and log, and judge it by its log (half a minute; ARGS="--long
-## --only key"; ARGS=--planted: each verdict must tell an error).
+## --only key"; ARGS=--planted: each verdict must report an error).
 .PHONY: attacks attacks-short
 attacks: all
 	@.ci/deps "the attacks" "test -f /usr/include/modbus/modbus.h && command -v python3" \

@@ -97,7 +97,7 @@ planted_bin := $(foreach t,prop/drive prop/safety $(addprefix unit/,authority ca
                drive gate params polarity rows safety),$(B)/mutation/$(t)_test)
 
 ## Plant errors in ceiling, authority, calibration checks and ramp; the test named for each must
-## tell it.
+## report it.
 .PHONY: planted
 planted: $(planted_bin)
 	@CC="$(CC)" test/strength/mutation/planted.py --build $(B)/mutation --jobs $(jobs) $(ARGS)

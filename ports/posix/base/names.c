@@ -16,7 +16,7 @@ static const char *const faults[EXH_FAULTS] = {"emergency stop", "a drive is not
     "an encoder stands while current flows", "a finger moved too fast for too long",
     "the glove is not believed", "a card failed", "the link is lost",
     "the supply is out of its range", "the watchdog fired", "parameters or calibration are damaged",
-    "a state that cannot be", "a contact buzzes"};
+    "a state that cannot be", "fast oscillation in a contact"};
 static const char *const limits[EXH_LIMITS] = {"a string only pulls", "the force limit",
     "how fast force may change", "the peak current", "the motor's heat",
     "the end of the D/A's range", "the gate is closed", "the ramp after arming", "the release law",

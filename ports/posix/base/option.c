@@ -117,7 +117,7 @@ static void help(const struct cli_command *c, const struct cli_more *more)
         snprintf(left, sizeof left, "--%s%s%s", o->name, o->arg ? " " : "", o->arg ? o->arg : "");
         printf("  %-24s %s\n", left, o->help);
     }
-    printf("  %-24s %s\n", "--help", "this");
+    printf("  %-24s %s\n", "--help", "print this help");
 }
 
 /* What: so many characters of it. */

@@ -30,9 +30,9 @@ static void help(const struct program *p, FILE *to)
             fprintf(to, "  %-10s %s\n", c->at[i].name, c->at[i].what);
         }
     }
-    fputs("  help       this; `help COMMAND` lists the options of one\n"
+    fputs("  help       print this list; `help COMMAND` lists the options of a command\n"
           "  --version  versions of library, record, board, parameter image, calibration\n"
-          "Of an option that is given twice the last counts, or all where its help says so.\n"
+          "If an option is given twice, the last one counts, unless its help says otherwise.\n"
           "Exit status: 0 ok, 1 a check failed, 2 bad usage, 3 something is missing,\n"
           "130 interrupted.\n",
         to);

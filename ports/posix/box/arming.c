@@ -41,5 +41,5 @@ void arming_complain(int32_t arm_step, int32_t present)
         at += (size_t)snprintf(causes + at, sizeof causes - at, " %s", exh_fault_name(k));
     }
     cli_complain("arming: refused at %s%s%s: %s", step < EXH_ARMS ? exh_arm_name(step) : "none",
-        causes[0] ? ", causes" : "", causes, step < EXH_ARMS ? advice[step] : "nobody asked");
+        causes[0] ? ", causes" : "", causes, step < EXH_ARMS ? advice[step] : "no request");
 }

@@ -24,14 +24,14 @@ static const struct program_command command[] = {
         calibrate},
     {"drop", "the paper's falling-mass experiment on the simulated device", cli_drop},
     {"glove", "glove codes to stable angles and fingertips; the paper's Table I", cli_glove},
-    {"identify", "what is this device? inertia, friction, stiffness, delay, with intervals",
+    {"identify", "inertia, friction, stiffness and delay of a device, with intervals",
         cli_identify},
     {"csv", "a log as comma-separated values", cli_csv},
-    {"listen", "the log of a box that sends it over the network, as a file", cli_listen},
-    {"run", "a box that goes on: live values and parameters, over Modbus too", cli_run},
+    {"listen", "write the log of a box on the network to a file", cli_listen},
+    {"run", "a box in continuous operation: live values, parameters, Modbus", cli_run},
     {"regs", "the Modbus registers of a scene: address, name, unit, range", cli_regs},
     {"watch", "live values, state and faults of a running box, and a picture of them", cli_watch},
-    {"replay", "the recorded inputs again, every output compared bit for bit", cli_replay},
+    {"replay", "run recorded inputs again and compare every output bit", cli_replay},
     {"quad", "samples of an encoder's two lines: count, edges, illegal steps", cli_quad},
 };
 

@@ -93,7 +93,8 @@ static void work(const void *ctx, int i, void *result)
 static void print(const struct sweep_opt *o, const struct limit *x, int points)
 {
     printf(
-        "\nThe border along the ray through the paper's point, in its gains, against friction\n"
+        "\nThe border on the line through the paper's gains, in multiples of these, against "
+        "friction\n"
         "(where half of the falls rest, %d falls at each of %d gains an octave; -: at no gain from "
         "%.1f up; >=: at\nthe last gain that the scene takes; 95 %% intervals: friction.csv)\n",
         o->base.board.falls, o->per_octave, GAIN_FIRST);

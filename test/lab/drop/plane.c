@@ -152,10 +152,11 @@ static void print(const struct found *x, int n, const struct sweep_opt *o)
     const struct found *slow = NULL, *fast = NULL;
     printf(
         "\nThe border at each rate: where half of the falls come to rest, by a logistic fit along "
-        "%d rays, %d nodes an\noctave of both gains, %d falls a node, each with the wall at its "
-        "own place between two counts; 95 %% interval\n\n"
-        "  rate |    largest stable k      at b |    largest stable b      at k | rho < 1:  k     "
-        "  b | paper's row\n"
+        "%d lines from the origin, %d points an\noctave of both gains, %d falls a point, each with "
+        "the wall at its own position between two counts;\n95 %% interval. Linear model: the "
+        "device without steps, friction and limits.\n\n"
+        "  rate |    largest stable k      at b |    largest stable b      at k | linear:   k      "
+        " b | paper's row\n"
         "    Hz |         N/m              Ns/m |        Ns/m               N/m |       N/m    "
         "Ns/m |     k    b\n",
         o->rays, o->per_octave, o->base.board.falls);
@@ -177,9 +178,9 @@ static void print(const struct found *x, int n, const struct sweep_opt *o)
         "paper: nearly 20 in its text; its table starts at 0");
     if (slow->linear.k_Npm > 0) {
         printf(
-            "  %-24s %5.1f\n", "largest k with rho < 1", fast->linear.k_Npm / slow->linear.k_Npm);
-        printf(
-            "  %-24s %5.1f\n", "largest b with rho < 1", fast->linear.b_Nspm / slow->linear.b_Nspm);
+            "  %-24s %5.1f\n", "largest k, linear model", fast->linear.k_Npm / slow->linear.k_Npm);
+        printf("  %-24s %5.1f\n", "largest b, linear model",
+            fast->linear.b_Nspm / slow->linear.b_Nspm);
     }
 }
 

@@ -122,12 +122,13 @@ int advise_command(int argc, char **argv, const struct gains_study *study)
             "string metres per fingertip metre (the index before a wall)"},
         {"lag", CLI_REAL, &a.lag_ms, 0, 2000, "MS",
             "fingertip behind the string (glove and filter of `exhand bilateral`)"},
-        {"noise", CLI_REAL, &a.noise_mm, 0, 100, "MM", "of the distance, peak (likewise)"},
+        {"noise", CLI_REAL, &a.noise_mm, 0, 100, "MM", "of the distance, peak (the same source)"},
         {"fps", CLI_REAL, &a.fps, 1, 10000, "HZ", "frames of the world a second (400)"},
         {"link", CLI_REAL, &a.link_ms, 0, 500, "MS", "latency there and back"},
-        {"jitter", CLI_REAL, &a.jitter_ms, 0, 500, "MS", "what a packet is later at most"},
+        {"jitter", CLI_REAL, &a.jitter_ms, 0, 500, "MS", "largest additional delay of a packet"},
         {"object-speed", CLI_REAL, &a.object_mps, 0, 10, "MPS", "of the object"},
-        {"slide", CLI_REAL, &a.slide_mm, 0, 1000, "MM", "way along the surface to the contact"},
+        {"slide", CLI_REAL, &a.slide_mm, 0, 1000, "MM",
+            "distance along the surface to the contact"},
         {"radius", CLI_REAL, &a.radius_mm, 0, 1900, "MM", "of the surface; 0: a plane"},
         {"d-lim", CLI_REAL, &a.d_lim_mm, -200, -0.1, "MM", "judge this one: exit 1 if too small"},
         {"ray", CLI_REAL, &a.ray_mm, 0.1, 1900, "MM", "judge this one: exit 1 if too short"},
@@ -135,7 +136,8 @@ int advise_command(int argc, char **argv, const struct gains_study *study)
     const struct cli_command c = {"advise", "freeze|gains [options]",
         "How far before contact q_lim must be frozen (d_lim), and how far the world must look "
         "(ray),\n"
-        "so that no wall is late: |d_lim| >= v*(T + lag) + noise, ray >= |d_lim| + v*(T + age) + "
+        "so that no wall comes late: |d_lim| >= v*(T + lag) + noise, ray >= |d_lim| + v*(T + age) "
+        "+ "
         "noise,\n"
         "v = speed/scale, age = 1/fps + link + jitter. error is what moves or curves meanwhile: "
         "v_object*age +\n"

@@ -233,8 +233,9 @@ static int print_pair(const struct gains_options *a, const struct gains_rate *x)
     const double k = a->k_Npm, b = a->b_Nspm;
     const double rho = linear_rho(&o->device[0], o->wall.T_s, k, b, o->wall.velocity.window);
     const int ok = gains_allows(&x->rule, k, b);
-    printf("  k %.6g N/m, b %.6g Ns/m: %s (linear test alone: rho %.4f, %s; energy: %s)\n", k, b,
-        ok ? "allowed" : "NOT allowed", rho, rho >= 0 && rho < 1 ? "stable" : "not stable",
+    printf("  k %.6g N/m, b %.6g Ns/m: %s (linear model alone: spectral radius rho %.4f, %s; "
+           "energy: %s)\n",
+        k, b, ok ? "allowed" : "NOT allowed", rho, rho >= 0 && rho < 1 ? "stable" : "not stable",
         region_energy(o, k, b) ? "stable" : "not stable");
     if (ok) {
         print_margin(&x->rule, k, b);
@@ -320,9 +321,8 @@ int gains_command(int argc, char **argv, const struct gains_study *study)
         "friction, "
         "encoder steps,\ndelay, current lag) lets the mass fall onto ever stiffer walls, from "
         "phases "
-        "that fill all there are\nevenly; allowed is what hangs together from weak walls up and "
-        "lies "
-        "inside of the rule. It holds for\nthe mass, friction and height told (--off: for some "
+        "that fill all there are\nevenly; allowed is the connected region from weak walls up, "
+        "inside the rule. It holds for\nthe mass, friction and height told (--off: for some "
         "around "
         "them) and for nothing else.",
         option, (int)(sizeof option / sizeof option[0]), 1};

@@ -27,7 +27,7 @@ const struct bringup_wrong_row bringup_wrong_row[BRINGUP_WRONGS] = {
     {"estop", "the emergency stop is open"},
     {"let_go", "the dead-man switch is let go"},
     {"slipped", "the balance is off the string"},
-    {"away", "nobody does anything"},
+    {"away", "no person acts"},
     {"held", "the dead-man switch is held before it is asked for"},
 };
 

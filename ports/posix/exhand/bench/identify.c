@@ -171,10 +171,11 @@ int cli_identify(int argc, char **argv)
     struct cli_call device = {take_device, &o};
     const struct cli_option option[] = {
         {"mass", CLI_REAL, &o.s.mass_kg, 0.01, 5, "KG", "the known mass (0.5)"},
-        {"hung", CLI_REAL, &o.s.hung_kg, 0.01, 5, "KG", "what really hangs there (the same)"},
+        {"hung", CLI_REAL, &o.s.hung_kg, 0.01, 5, "KG",
+            "the true mass, to simulate a mistake (the same)"},
         {"rate", CLI_INT, &o.rate_Hz, 100, 20000, "HZ", "loop rate (2000)"},
         {"repeats", CLI_INT, &o.repeats, 2, 100, "N", "rounds (14)"},
-        {"seed", CLI_INT, &o.seed, 0, 1e15, "N", "of all chance in the simulation (1)"},
+        {"seed", CLI_INT, &o.seed, 0, 1e15, "N", "random seed of the simulation (1)"},
         {"from-log", CLI_TEXT, &o.log, 0, 0, "LOG", "a log of the scene instead of a run"},
         {"out", CLI_TEXT, &o.out, 0, 0, "DIR",
             "write log, device.txt and a picture's script there"},
@@ -185,9 +186,9 @@ int cli_identify(int argc, char **argv)
         "What is this device? Pulses of the free rotor, then pulls, steps, a square wave and drops "
         "of\n"
         "a known mass; a model of rotor, string, friction and delay is fitted to the encoder's\n"
-        "counts. Newton and metre come from the known mass: a wrong one scales all that has a "
+        "counts. Newton and metre come from the known mass: a wrong mass scales all values in "
         "newton\n"
-        "or a kilogram in it, and no residual tells. Exit status 1: the model does not fit.",
+        "or kilogram, and no residual shows it. Exit status 1: the model does not fit.",
         option, (int)(sizeof option / sizeof option[0]), 0};
     int err;
     defaults(&o);

@@ -23,7 +23,7 @@ static void number(FILE *f, int width, int digits, double v, int there)
 
 void bilateral_print_head(FILE *f)
 {
-    fprintf(f, "speed    finger   n   contact   speed  settled    rest   place  F_des    F_mon  "
+    fprintf(f, "speed    finger   n   contact   speed  settled    rest  offset  F_des    F_mon  "
                "stiffness\n"
                "                            s     m/s    5 %%, ms      ms      mm  max, N  held, N "
                "       N/m\n");
@@ -109,7 +109,7 @@ static void print_local(FILE *f, const struct bilateral_options *o, const struct
     if (local->b_Npm <= 0) { return; }
     fprintf(f,
         "Local: median of %d runs of ten falls of 0.5 kg, same rate and gains: %.0f N/m,\n"
-        "95 %% %.0f..%.0f over the wall's places",
+        "95 %% %.0f..%.0f over the wall's positions",
         local->runs, local->b_Npm, local->low_Npm, local->high_Npm);
     if (is_papers_wall(o)) { fprintf(f, " (paper %.0f)", PAPER_LOCAL_NPM); }
     fprintf(f, ".\n");
@@ -140,8 +140,8 @@ void bilateral_print_paper(FILE *f, const struct bilateral_options *o,
     fprintf(f,
         "settled: F_mon stays within 5 %% of its mean over the last 0.2 s of the hold; rest: "
         "position\n"
-        "within 0.2 mm and F_mon within 1.5 N of it. place: q_lim less the string at which pad "
-        "and\n"
+        "within 0.2 mm and F_mon within 1.5 N of it. offset: q_lim minus the string at which "
+        "pad and\n"
         "object touch. No data of a hand in this device exist: finger and hand are guesses, "
         "and the\n"
         "spread over them is wider than the distance to the paper.\n");

@@ -158,18 +158,18 @@ void table2_print_runs(FILE *f, const struct table2_runs *r, int rows)
     fprintf(f, "\n%d run%s of %d falls a rate, beside the paper's Table II. ", r->runs,
         r->runs == 1 ? "" : "s", r->runs ? r->falls / r->runs : 0);
     if (r->places) {
-        fprintf(f, "Each run draws the wall's place between\ntwo encoder counts; values are "
-                   "medians of the runs, intervals cover the place.\n");
+        fprintf(f, "Each run draws the wall's position between\ntwo encoder counts; values are "
+                   "medians of the runs, intervals cover that position.\n");
     } else {
         fprintf(f,
             "The wall lies %.3f counts above an\nencoder count (first row); the intervals "
-            "hold for this place alone.\n",
+            "hold for this position alone.\n",
             r->phase);
     }
     fprintf(f,
-        "Stiffness: estimator B, the inverse slope of position over monitored force, 0.8..4.5 N, "
-        "paired to\nthe tick that the monitor answers. Pairs at rest: share of them from after "
-        "the motor's last movement.\n\n"
+        "Stiffness: the inverse slope of position over monitored force, 0.8..4.5 N. A pair is a "
+        "monitored force\nand the position of the tick that commanded it. Pairs at rest: the share "
+        "after the last movement.\n\n"
         "  rate      k      b  stiffness    95 %% interval    90 %% of runs    r2    pairs    "
         "falls "
         "   1.5x   paper  ours/\n"
@@ -193,8 +193,8 @@ static const char *deviation(const struct table2_runs *r)
     if (paper->stiffness_Npm >= r->low_5_Npm && paper->stiffness_Npm <= r->high_5_Npm) {
         return "inside what 90 % of our runs give; one run of ten falls does not settle it";
     }
-    return "the excess over k is damper force and ringing, and these hang on friction, inertia and "
-           "delay of a device nobody has published";
+    return "the excess over k is damper force and ringing, and these depend on friction, inertia "
+           "and delay of a device without published values";
 }
 
 static void print_deviations(FILE *f, const struct table2_runs *r, int rows)

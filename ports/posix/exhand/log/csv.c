@@ -17,7 +17,7 @@ int cli_csv(int argc, char **argv)
         {"all", CLI_FLAG, &all, 0, 0, NULL,
             "limits, state and faults too, of every finger; of a glove, its codes"},
         {"falls", CLI_FLAG, &falls, 0, 0, NULL,
-            "falls under observation alone, a gap in t_s between two: what Table II is made of"},
+            "only the observed part of falls, with a gap in t_s between two: the data of Table II"},
     };
     const struct cli_command c = {
         "csv", "LOG [options]", "A log as comma-separated values.", option, 4, 1};

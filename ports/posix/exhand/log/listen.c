@@ -152,9 +152,9 @@ int cli_listen(int argc, char **argv)
     };
     const struct cli_command c = {"listen", "--out FILE [options]",
         "The log of a box that sends it over UDP (pc104: log=udp), until its end or Ctrl-C.\n"
-        "What is lost on the way is lost: it is told, and the readers skip it. Who comes late has "
-        "the log\n"
-        "from a later keyframe on.",
+        "Lost packets are reported, and readers skip them. A late start gives the log from a "
+        "later\n"
+        "keyframe on.",
         option, (int)(sizeof option / sizeof option[0]), 0};
     struct udp u;
     int ended = 0, err = cli_parse(&c, argc, argv, NULL);

@@ -321,7 +321,7 @@ int cli_replay(int argc, char **argv)
     const struct cli_option option[] = {
         {"from", CLI_INT, &from, 0, 1e15, "TICK",
             "start at the last keyframe not after it (0: the beginning)"},
-        {"timeline", CLI_FLAG, &timeline, 0, 0, NULL, "first tell what happened in it, in words"},
+        {"timeline", CLI_FLAG, &timeline, 0, 0, NULL, "first print what happened, in words"},
     };
     const struct cli_command c = {"replay", "LOG [--from TICK] [--timeline]",
         "Runs the recorded inputs again and compares every output bit. A dump of a black box\n"

@@ -314,8 +314,8 @@ static void on_count(struct walk *w, const struct exh_record *r)
     uint32_t n = 0;
     exh_bytes_u32(&c, &n);
     if (r->type == EXH_RECORD_DROPPED) {
-        timeline_say(&w->notes, w->log->tick,
-            "%" PRIu32 " records were lost before this by who wrote them", n);
+        timeline_say(
+            &w->notes, w->log->tick, "%" PRIu32 " records before this were lost by the writer", n);
     } else {
         timeline_say(&w->notes, w->log->tick, "end of the log, %" PRIu32 " records lost in all", n);
     }
