@@ -23,10 +23,10 @@ TEST(the_papers_figures_stand_beside_the_same_alone)
         long beside, local; /* lines with a figure of the paper; with any stiffness of falls */
         const char *says;
     } row[] = {
-        {"--seed", "2", 4, 1, "places (paper 50004)."},
-        {"--link", "delay=0.01", 4, 1, "places (paper 50004)."},
-        {"--speed", "slow", 1, 1, "places (paper 50004)."},
-        {"--speed", "0.5", 1, 1, "places (paper 50004)."},
+        {"--seed", "2", 4, 1, "positions (paper 50004)."},
+        {"--link", "delay=0.01", 4, 1, "positions (paper 50004)."},
+        {"--speed", "slow", 1, 1, "positions (paper 50004)."},
+        {"--speed", "0.5", 1, 1, "positions (paper 50004)."},
         {"--rate", "500", 0, 1, "500 Hz, k 6000 N/m, b 25 Ns/m"},
         {"--k", "5000", 0, 1, "over the wall's positions.\n"},
         {"--set", "mat_k=5000", 0, 1, "over the wall's positions.\n"},
