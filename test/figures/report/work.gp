@@ -52,14 +52,15 @@ do for [k = 1:n_panels] {
          '' using (points_of(k, 0, 1)):'error' with points pt 7 ps 1.9 lc rgb ours_colour, \
          '' using (label_of(k)):'label_error':'label':(number[column('kind') + 1]) \
          with labels font small noenhanced textcolor rgb variable
+    unset label 1000
 }
 unset title; unset xlabel; unset ylabel; unset border; unset tics; unset logscale; unset grid
 set lmargin at screen 0; set rmargin at screen 1; set tmargin at screen 1; set bmargin at screen 0
 set xrange [0:width]; set yrange [0:height]
-lx = (width - 960)/2. + 30; ly = legend_px/2
+lx = (width - 1000)/2. + 30; ly = legend_px/2
 array entry[5] = ['ours', 'other integer code', 'floating point', 'best integer code', \
     'faint: the others']
-array gap[5] = [0, 95, 335, 520, 745]
+array gap[5] = [0, 100, 360, 560, 800]
 do for [k = 1:5] { set label k entry[k] at lx + gap[k] + 22, ly left font ',16' \
     textcolor rgb ink }
 set arrow 1 from lx + gap[4] - 12, ly to lx + gap[4] + 14, ly nohead lw 2 lc rgb '#7fb8d8'
