@@ -151,8 +151,8 @@ def velocity():
                 for r in rows_of("bench.csv")]}
     rows, points, labels = estimates(), [], []
     for cost, cpu in (("x64", "x86-64"), ("i686", "i686")):
-        for title, key in (("rms noise at 10 mm/s, mm/s", "rms_10mmps"), ("lag, ms", "lag_ms"),
-                           ("rms on a sine, mm/s", "sine_rms_mmps")):
+        for title, key in (("rms noise at 10 mm/s (mm/s)", "rms_10mmps"), ("lag (ms)", "lag_ms"),
+                           ("rms on a sine (mm/s)", "sine_rms_mmps")):
             mine = [r for r in rows if counted(cost_of[r["kernel"]], cost)]
             points += [work.Point(title + (" " if cost == "i686" else ""), label_of(r),
                                   kind_of(label_of(r)), cost_of[r["kernel"]][cost], r[key])
@@ -160,11 +160,11 @@ def velocity():
             labels += ["instructions, " + cpu] if mine else []
     points += [work.Point("rms noise (mm/s) over lag", label_of(r), kind_of(label_of(r)),
                           r["lag_ms"], r["rms_10mmps"]) for r in rows]
-    labels.append("lag, ms")
+    labels.append("lag (ms)")
     save("velocity", rows[0].keys(), [r.values() for r in rows])
     shown = {p.panel for p in points if not p.panel.endswith(" ") and "sine" not in p.panel}
     work.draw(OUT, "velocity", [p for p in points if p.panel in shown], 1e-3,
-              [labels[0], labels[0], labels[-1]], "error", 3, False)
+              [labels[0], labels[0], labels[-1]], "error (unit above)", 3, False)
     judged(points)
 
 
