@@ -39,7 +39,8 @@ diagrams: $(lab)
 	    dot $(dot_look) -Tsvg -o $(B)/$$d.svg $(B)/$$d.dot || exit 1; \
 	    awk '/^<svg/ { on = 1 } !on || /^<!--/ { next } \
 	        { printf "%s%s", $$0, /^<\/(g|svg)>$$/ ? "\n" : " " }' $(B)/$$d.svg > $(B)/$$d.new && \
-	    mv $(B)/$$d.new $(B)/$$d.svg && { ! [ -f docs/$$d.svg ] || cp $(B)/$$d.svg docs/; } || exit 1; \
+	    mv $(B)/$$d.new $(B)/$$d.svg || exit 1; \
+	    ! [ -f docs/$$d.svg ] || cp $(B)/$$d.svg docs/ || exit 1; \
 	done
 	$(Q)$(lab) diagram test/lab/diagram/geometry.svg > docs/geometry.svg
 

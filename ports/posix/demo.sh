@@ -122,8 +122,8 @@ while read -r gate; do verdict 1 "$gate"; done <"$dir/gates.txt"
     echo '<th>paper, N/m<th>ours / paper</tr>'
     awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
         { printf "<tr><td>%s<td>%s<td>%s<td>%.0f<td>%.0f..%.0f<td>%s<td>%.2f</tr>\n",
-            $at["rate_hz"], $at["k_n_per_m"], $at["b_ns_per_m"], $at["stiffness_b_n_per_m"], $at["ci_low"],
-            $at["ci_high"], $at["paper_n_per_m"], $at["ratio"] }' "$dir/table2.csv"
+            $at["rate_hz"], $at["k_n_per_m"], $at["b_ns_per_m"], $at["stiffness_b_n_per_m"],
+            $at["ci_low"], $at["ci_high"], $at["paper_n_per_m"], $at["ratio"] }' "$dir/table2.csv"
     echo '</table>'
 } >>"$page"
 pictures "" pictures force_position fall
