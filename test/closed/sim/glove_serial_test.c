@@ -438,7 +438,7 @@ TEST(a_box_that_goes_on_has_it_for_its_glove)
         if (begin() < 0) { return; }
         far.glove.kind = silent ? EMU_CYBER_SILENT : EMU_CYBER_WELL;
         command_of(&s, dir, cli_run,
-            WORDS("run", "--scene", "bilateral", "--pace", "--slack", "1", "--rate", "200",
+            WORDS("run", "--scene", "bilateral", "--pace", "--slack", "60", "--rate", "200",
                 "--seconds", "3", "--glove-serial", far.link, "--log", log));
         CHECK(s.status == 0 && strstr(s.out, silent ? "glove" : "faults none"), "%d: %s%s",
             s.status, s.out, s.err);
@@ -547,8 +547,8 @@ TEST(a_user_calibrates_it_by_poses)
     command(&s, dir, WORDS("glove", "--serial", far.link, "--pose", "fist"));
     CHECK(s.status == 2 && strstr(s.err, "--pose: fist: no such pose"), "%d: %s", s.status, s.err);
     command_of(&s, dir, cli_run,
-        WORDS("run", "--scene", "bilateral", "--pace", "--slack", "1", "--rate", "200", "--seconds",
-            "1", "--glove-serial", far.link, "--glove-calibration", image));
+        WORDS("run", "--scene", "bilateral", "--pace", "--slack", "60", "--rate", "200",
+            "--seconds", "1", "--glove-serial", far.link, "--glove-calibration", image));
     CHECK(s.status == 0 && strstr(s.out, "faults none"), "%d: %s%s", s.status, s.out, s.err);
     said(&s, dir, cli_run,
         WORDS("run", "--scene", "bilateral", "--pace", "--glove-serial", far.link,

@@ -219,7 +219,7 @@ TEST(the_line_of_status)
     pid_t pid;
     if (terminal_open(&tty) < 0) { return; }
     pid = said_start(dir, run_on_terminal,
-        WORDS("run", "--pace", "--slack", "1", "--rate", "100", "--seconds", "2"));
+        WORDS("run", "--pace", "--slack", "60", "--rate", "100", "--seconds", "2"));
     text[0] = '\0';
     for (int i = 0; i < 3000 && !ended(pid); i++) {
         const struct timespec a_while = {0, 10000000};
@@ -378,7 +378,7 @@ TEST(what_it_cannot_do_is_named)
         {{"run", "--fingers", "index,thumb,index"}, "one comes twice", 2},
         {{"run", "--seconds", "1", "--log", "a.exh", "--blackbox", "a.exh"},
             "--blackbox: a.exh: is the file of --log", 2},
-        {{"run", "--pace", "--slack", "1.1"}, "--slack", 2},
+        {{"run", "--pace", "--slack", "60.1"}, "--slack", 2},
         {{"run", "--pace", "--slack", "0.1", "--gpio", "gpiochip9:estop=4,deadman=5"},
             "not with --gpio", 2},
         {{"run", "--seconds", "1", "--log", "/dev/full"}, "/dev/full: can't be written: No space",
