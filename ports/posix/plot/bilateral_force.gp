@@ -34,8 +34,8 @@ set lmargin at screen 0; set rmargin at screen 1
 set tmargin at screen 1; set bmargin at screen 0
 unset border; unset tics; unset title; unset arrow; unset label
 set xrange [0:1]; set yrange [0:1]
-set label 1 '{/:Bold Bilateral contact: force over position, and the fitted stiffness}' at screen 0.5, \
-    screen 0.96 center textcolor rgb ink
+set label 1 '{/:Bold Bilateral contact: force over position, and the fitted stiffness}' \
+    at screen 0.5, screen 0.96 center textcolor rgb ink
 gains = k eq '' || b eq '' ? "the scene's own k and b" : \
     sprintf('k = %s N/m, b = %s Ns/m', k, b)
 set label 9 sprintf('%s, link: %s; shown: pairs of %g to %g N, which the fit uses', gains, link, \

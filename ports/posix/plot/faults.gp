@@ -29,8 +29,8 @@ set key top right Left reverse samplen 2 spacing 1.15 textcolor rgb ink
 fast = word(rates, n)
 
 set multiplot layout 1,2 margins screen 0.07,0.985,0.13,0.88 spacing screen 0.06
-set label 1 '{/:Bold Force in the ticks after a fault, a finger in the wall}' at screen 0.5,0.965 center \
-    textcolor rgb ink
+set label 1 '{/:Bold Force in the ticks after a fault, a finger in the wall}' \
+    at screen 0.5,0.965 center textcolor rgb ink
 
 set title 'the dead-man switch is released' textcolor rgb ink offset 0,-0.3
 set ylabel 'force commanded (N)' textcolor rgb ink
@@ -51,7 +51,7 @@ plot 'faults_'.fast.'Hz_release.csv' using (1e3*column('t_s')):(column('force_n'
          title 'released: in the motor', \
      'faults_'.fast.'Hz_cut.csv' using (1e3*column('t_s')):(column('force_n')) with steps \
          lc rgb '#e69f00' lw 1.8 title 'cut: commanded', \
-     '' using (1e3*column('t_s')):(kf*column('motor_a')) with lines lc rgb '#d55e00' lw 1.8 dt (7,3) \
-         title 'cut: in the motor'
+     '' using (1e3*column('t_s')):(kf*column('motor_a')) with lines \
+         lc rgb '#d55e00' lw 1.8 dt (7,3) title 'cut: in the motor'
 unset multiplot
 unset output

@@ -44,8 +44,8 @@ set lmargin at screen 0; set rmargin at screen 1
 set tmargin at screen 1; set bmargin at screen 0
 unset border; unset tics
 set xrange [0:1]; set yrange [0:1]
-set label 1 '{/:Bold Measured stiffness of the virtual contact at two loop rates}' at screen 0.515, 0.96 \
-    center textcolor rgb ink
+set label 1 '{/:Bold Measured stiffness of the virtual contact at two loop rates}' \
+    at screen 0.515, 0.96 center textcolor rgb ink
 set key at screen 0.515,0.02 center bottom horizontal Left reverse maxrows 1 samplen 1.4 width -1 \
     font ',20' textcolor rgb ink
 plot NaN with points ls 1 ps 1.4 title sprintf('a tick, %g to %g N', band_lo, band_hi), \
