@@ -612,6 +612,43 @@ TEST(a_position_brakes_and_holds)
 
 /* --- names and floats --- */
 
+/* What memory gives back, and what no sensor says, moves nothing. */
+TEST(damage_and_no_number_at_rest_move_nothing)
+{
+    run(with(EXH_LIMITER_EFFORT));
+    r.cfg.par.uses &= ~EXH_LIMITER_MEASURED;
+    r.s.sent = INT32_MIN;
+    step();
+    CHECK(r.out.send >= -r.cfg.par.effort_max, "%ld", (long)r.out.send);
+    rest(with(EXH_LIMITER_POSITION));
+    r.in.pos = 1234;
+    step();
+    CHECK_EQ_I64(r.out.send, 1234);
+    r.in.pos = EXH_LIMITER_NONE;
+    step();
+    CHECK_EQ_I64(r.out.send, 1234);
+    CHECK_EQ_I64(r.out.enable, 0);
+}
+
+/* A command back to the place that it just left, at full speed: it brakes, and comes back. */
+TEST(a_position_turns_within_its_limits)
+{
+    run(with(EXH_LIMITER_POSITION));
+    for (int i = 0, was = 0, v = 0; i < 2000; i++) {
+        r.in.command = i < 200 ? UNIT : r.in.command;
+        if (i == 200) { r.in.command = r.out.send + 1; }
+        r.in.pos = r.out.send;
+        was = r.out.send;
+        steps(1);
+        if (i > 1) {
+            CHECK(r.out.send - was - v <= 12 && r.out.send - was - v >= -12, "%d: %d behind %d", i,
+                (int)r.out.send - was, v);
+        }
+        v = r.out.send - was;
+    }
+    CHECK_EQ_I64(r.out.send, r.in.command);
+}
+
 TEST(every_bit_has_a_name)
 {
     for (unsigned k = 0; k < EXH_LIMITER_LIMITS; k++) {
@@ -650,4 +687,5 @@ TEST_MAIN("limiter", set_up_names_the_first_wrong_field, what_is_not_measured_is
     the_first_cause_stays, what_is_not_used_is_not_read, a_clock_may_wrap, damage_is_a_cause,
     a_first_command_that_is_far_is_refused_or_approached, a_first_command_that_is_near_is_taken,
     effort_slew_and_heat_are_held, a_wall_pushes_out, a_position_is_reached_within_its_limits,
-    a_position_brakes_and_holds, every_bit_has_a_name, floats_become_millionths_or_none);
+    a_position_brakes_and_holds, damage_and_no_number_at_rest_move_nothing,
+    a_position_turns_within_its_limits, every_bit_has_a_name, floats_become_millionths_or_none);

@@ -8,7 +8,7 @@
  * EVA: -eva-slevel 100 -eva-slevel-function main:3000
  * PLANT: lib/src/talk/ring.c: return at < SLOTS ? at : at - SLOTS; -> return at;
  * PLANT: lib/src/talk/ring.c: const uint32_t first = least(n, r->cap_B - at); -> const uint32_t first = n;
- * PLANT: lib/src/talk/ring.c: r->head = copy_in(r, at, payload, len_B); -> r->head = at + len_B;
+ * PLANT: lib/src/talk/ring.c: copy_in(r, at, (const uint8_t *)payload, len_B); -> at + len_B;
  * PLANT: lib/src/talk/ring.c: if (begins && parts(r) == SLOTS) { drop_oldest(r); } -> (void)0;
  * PLANT: lib/src/talk/ring.c: payload.at = payload.at + 1 < r->cap_B ? payload.at + 1 : 0; -> payload.at = payload.at + 1;
  * PLANT: lib/src/talk/ring.c: if (payload.len_B > p->left_B - EXH_RING_HEAD_B) { return 0; } -> (void)0;
