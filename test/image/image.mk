@@ -144,7 +144,8 @@ stm32f405-regs:
 stm_objs := $(patsubst %.c,$(B)/posix/%.o,$(filter-out %_test.c,$(wildcard $(stm_dir)/*.c)) \
             $(addprefix test/image/hil/,image.c ref.c setup.c) lib/src/run/deadman.c)
 $(filter $(B)/posix/$(stm_dir)/%,$(stm_objs)): PORT_HOSTFLAGS += -isystem $(unicorn)/include
-$(B)/test/stm32f405/emulator: $(stm_objs) $(filter-out %/main.o,$(cli_obj)) $(sim_obj) $(B)/posix/libexhand.a
+$(B)/test/stm32f405/emulator: $(stm_objs) $(filter-out %/main.o,$(cli_obj)) $(sim_obj) \
+                                $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(unicorn)/lib/libunicorn.so.2 \
 	    -Wl,-rpath,$(unicorn)/lib $(cli_libs)

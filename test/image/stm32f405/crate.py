@@ -5,7 +5,8 @@
 crate.py extract DIR REGS >crate.tsv: DIR holds the sources of `stm32f4` and `cortex-m`, as
 `cargo vendor` leaves them. One row a register: peripheral, base, register, offset, reset, rights,
 its fields as name:lowest bit:width. Names are the crates'. Only what the header REGS names.
-crate.py check TSV REGS: whatever REGS says of a register is what TSV says. Exit status 1: it is not.
+crate.py check TSV REGS: whatever REGS says of a register is what TSV says. Exit status 1: it is
+not.
 crate.py planted TSV REGS: the check tells each number of REGS that is changed by one bit.
 """
 import pathlib
@@ -39,7 +40,8 @@ def registers(folder, name, text):
     """(register, offset, file of it) of one block; clusters of DMA streams among them."""
     shared = {reg: block for block, reg in re.findall(
         r"pub use crate::stm32f405::(\w+)::([a-z]\w*);", text)}
-    one = r"///(0x[0-9a-f]+)(\.\.0x[0-9a-f]+)? - [^\n]*\n(?:\s*///[^\n]*\n)*\s*#\[inline\(always\)\]\n"
+    one = (r"///(0x[0-9a-f]+)(\.\.0x[0-9a-f]+)? - [^\n]*\n(?:\s*///[^\n]*\n)*"
+           r"\s*#\[inline\(always\)\]\n")
     for m in re.finditer(one + r"\s*pub const fn (\w+)\(&self(?:, n: usize)?\) -> &(\w+)", text):
         first, many, reg, kind = int(m[1], 16), m[2], m[3], m[4]
         file = folder / shared.get(kind.lower(), name) / f"{kind.lower()}.rs"
@@ -69,8 +71,8 @@ def device(crate, wanted):
 def core(crate):
     """Offsets follow from the order of the block's words, which is all that this crate says."""
     folder = crate / "src" / "peripheral"
-    bases = dict(re.findall(r"impl (\w+) \{\n\s*/// Pointer[^\n]*\n\s*pub const PTR: [^=]*= (0x[0-9A-F_]+)",
-                            (folder / "mod.rs").read_text()))
+    pointer = r"impl (\w+) \{\n\s*/// Pointer[^\n]*\n\s*pub const PTR: [^=]*= (0x[0-9A-F_]+)"
+    bases = dict(re.findall(pointer, (folder / "mod.rs").read_text()))
     for name, file in CORE.items():
         text = re.sub(r"\s*///[^\n]*", "", (folder / f"{file}.rs").read_text())
         text = re.sub(r"#\[cfg\((armv6m|armv8m)\)\]\n[^\n]*\n", "", text)
@@ -155,7 +157,8 @@ def judge(name, value, facts, bases, said):
     if plain.startswith("TIM_CCMR1_"):
         reg, field = "CCMR1_INPUT", plain[len("TIM_CCMR1_"):]
     if plain == "SCB_SHPR3":
-        return None if bases["SCB"] + facts[("SCB", "SHPR")][1] + 8 == 0xE000E000 + value else "not there"
+        at = bases["SCB"] + facts[("SCB", "SHPR")][1] + 8
+        return None if at == 0xE000E000 + value else "not there"
     rows = [(p, facts[(p, reg)]) for p in where if (p, reg) in facts]
     if not rows or len(rows) != len(where):
         return ""
@@ -207,8 +210,8 @@ def check(said, facts, bases):
     wrong, held, apart = [], [], []
     for name, value in said.items():
         what = "" if re.fullmatch(APART, name) else judge(name, value, facts, bases, said)
-        (held if what is None else wrong if what or not re.fullmatch(APART, name) else apart).append(
-            (name, what))
+        kind = held if what is None else wrong if what or not re.fullmatch(APART, name) else apart
+        kind.append((name, what))
     return wrong, held, apart
 
 

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # The stm32f405 image under emulation, in closed loop: stm32f405.sh [WHAT...], of these (all):
-#   drop guarded box   that scene at 1, 2, 5 and 10 kHz: the same bits as on this host, tick by tick;
-#                      what the mean, the 99th of 100 and the dearest tick take
+#   drop guarded box   that scene at 1, 2, 5 and 10 kHz: the same bits as on this host, tick by
+#                      tick; what the mean, the 99th of 100 and the dearest tick take
 #   spoil              a count more in one tick is found in that tick
 #   faults             faults from random times: drives off in time, each told by its name
 # README.md says what is reckoned. Environment: B (build), TICKS of a run at 1
