@@ -4,6 +4,7 @@
  * outputs zero, whatever else is going on; a resistor holds it low over a reset (TI SLASER3A,
  * "Clear DAC Operation": a bipolar range is cleared to its middle). Frames of 24 bits, SPI mode 1,
  * the register map: as public drivers for this family have them. */
+#include "da_code.h"
 #include "stm.h"
 
 #include "exhand/error.h"
@@ -13,8 +14,6 @@
 #define QUARTER    1u /* 42 MHz / 4 */
 #define RESET_CODE 0xAu
 #define SILENT_MAX 3u
-/* 3276.8 codes/V of ours for 3249 of the library's */
-#define SCALE_Q16 66097
 
 static uint16_t written[EXH_FINGERS]; /* codes of ours in the D/A */
 static uint8_t asked;                 /* 1 + the channel that the next frame brings back */
@@ -95,13 +94,6 @@ int stm_da_open(void)
     return set_up();
 }
 
-static uint16_t code_of(uint16_t raw)
-{
-    const int32_t d = ((int32_t)raw - 32768) * SCALE_Q16;
-    const int32_t whole = (int32_t)DA_ZERO + (d + (d < 0 ? -32768 : 32768)) / 65536;
-    return (uint16_t)(whole < 0 ? 0 : whole > 65535 ? 65535 : whole);
-}
-
 /* What the frame before the first of this tick had asked for comes back with it. */
 static void compare(uint32_t back)
 {
@@ -123,7 +115,7 @@ int stm_da_write(const uint16_t raw[EXH_FINGERS])
         PIN_HIGH(DA_CLR);
     }
     for (unsigned i = 0; i < EXH_FINGERS; i++) {
-        const uint16_t code = code_of(raw[i]);
+        const uint16_t code = stm_da_code(raw[i]);
         uint32_t back;
         err |= frame(DA_DAC(i) << 16 | code, &back);
         if (i == 0) { compare(back); }

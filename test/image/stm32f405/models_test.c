@@ -5,6 +5,8 @@
 
 #include "check.h"
 
+#include "../../../ports/stm32f405/da_code.h"
+
 #include <stdio.h>
 
 #define RCC    0x40023800u
@@ -556,6 +558,22 @@ TEST(the_da_answers_in_the_frame_behind)
     CHECK_EQ_I64(da.torn, 1);
 }
 
+/* Off the exact product by half a code at most; in units of a code over 32490. */
+TEST(each_code_of_the_library_is_the_nearest_of_the_da)
+{
+    for (int64_t raw = 0; raw < 65536; raw++) {
+        const int64_t exact = (raw - 32768) * 32768, is = stm_da_code((uint16_t)raw) - 32768;
+        const int64_t off = exact - is * 32490;
+        const int beyond = exact < -32768 * INT64_C(32490) || exact > 32767 * INT64_C(32490);
+        if (beyond) {
+            CHECK_EQ_I64(is, exact < 0 ? -32768 : 32767);
+        } else {
+            CHECK(off >= -16245 && off <= 16245, "code %lld", (long long)raw);
+        }
+    }
+    CHECK_EQ_I64(stm_da_code(32768), 32768);
+}
+
 TEST_MAIN("stm32f405 models", reset_values_are_those_of_the_crate,
     a_part_without_its_clock_does_not_answer, the_clock_is_switched_when_its_source_is_ready,
     too_few_wait_states_are_seen, a_dead_crystal_is_never_ready,
@@ -568,4 +586,4 @@ TEST_MAIN("stm32f405 models", reset_values_are_those_of_the_crate,
     the_watchdog_bites_unless_it_is_fed, flash_is_programmed_from_one_to_zero_alone,
     a_wrong_key_locks_the_flash_until_a_reset, a_supply_that_fails_while_programming_leaves_a_half,
     pins_show_what_drives_them, the_da_is_at_ground_until_it_is_set_up_and_acts_together,
-    the_da_answers_in_the_frame_behind);
+    the_da_answers_in_the_frame_behind, each_code_of_the_library_is_the_nearest_of_the_da);
