@@ -154,7 +154,7 @@ STM_TICKS ?= 10000
 STM_TIMES ?= 5000
 
 ## Run the stm32f405 image in closed loop under emulation (STM_TICKS=10000 STM_TIMES=5000
-## ARGS="drop guarded box spoil faults").
+## ARGS="drop guarded box spoil faults cuts").
 .PHONY: stm32f405 stm32f405-built stm32f405-run
 stm32f405: stm32f405-built
 	@B=$(B) TICKS=$(STM_TICKS) TIMES=$(STM_TIMES) $(stm_dir)/stm32f405.sh $(ARGS)

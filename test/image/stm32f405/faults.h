@@ -8,4 +8,9 @@
 /* `times` of them in turn, drawn with this seed. A table on stdout. 0: each in time. */
 int stm_faults(struct machine *m, unsigned times, uint64_t seed);
 
+/* The supply fails in so many operations of a save into flash, the first and the last among them. A
+ * line on stdout. 0: each time the parameters of before or the new ones are there, as the image
+ * says, too. */
+int stm_cuts(struct machine *m, const char *image, unsigned times);
+
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* One run of an image: --rate HZ, --ticks N, --seed N, --spoil TICK, --say (what it prints),
- * --where (cycles by block), --faults N (instead: that many, a table). Prints a row of figures. */
+ * --where (cycles by block); instead --faults N (that many, a table) or --cuts N (of a save).
+ * Prints a row of figures. */
 #include "faults.h"
 
 #include <stdlib.h>
@@ -60,47 +61,50 @@ static int verdict(void)
     return bad;
 }
 
+static const struct {
+    const char *name;
+    int takes; /* a number */
+} option[] = {{"--rate", 1}, {"--ticks", 1}, {"--seed", 1}, {"--spoil", 1}, {"--faults", 1},
+    {"--cuts", 1}, {"--say", 0}, {"--where", 0}};
+enum { RATE, TICKS, SEED, SPOIL, FAULTS, CUTS, SAY, WHERE, OPTIONS };
+
+/* The first argument that is no option; argc: there is a bad one. */
+static int options(int argc, char **argv, long value[OPTIONS])
+{
+    int i = 1;
+    for (; i < argc && argv[i][0] == '-'; i++) {
+        unsigned k = 0;
+        while (k < OPTIONS && strcmp(argv[i], option[k].name) != 0) { k++; }
+        if (k == OPTIONS || i + option[k].takes >= argc) { return argc; }
+        value[k] = option[k].takes ? atol(argv[++i]) : 1;
+    }
+    return i;
+}
+
 int main(int argc, char **argv)
 {
-    uint64_t seed = 1;
-    unsigned faults = 0;
+    long value[OPTIONS] = {[TICKS] = 2000, [SEED] = 1, [SPOIL] = -1};
+    const int i = options(argc, argv, value);
     int bad;
-    int say = 0, where = 0, i = 1;
-    loop.spoil = -1;
-    loop.ticks_wanted = 2000;
-    for (; i + 1 < argc && argv[i][0] == '-'; i++) {
-        const char *value = argv[i + 1];
-        if (!strcmp(argv[i], "--say")) {
-            say = 1;
-            continue;
-        }
-        if (!strcmp(argv[i], "--where")) {
-            where = 1;
-            continue;
-        }
-        if (!strcmp(argv[i], "--rate")) { loop.rate_Hz = (uint32_t)atol(value); }
-        if (!strcmp(argv[i], "--ticks")) { loop.ticks_wanted = (uint32_t)atol(value); }
-        if (!strcmp(argv[i], "--seed")) { seed = (uint64_t)atol(value); }
-        if (!strcmp(argv[i], "--faults")) { faults = (unsigned)atol(value); }
-        if (!strcmp(argv[i], "--spoil")) { loop.spoil = atol(value); }
-        i++;
-    }
     if (i + 1 != argc) {
         fprintf(stderr, "usage: stm32f405 [--rate HZ] [--ticks N] [--seed N] [--spoil TICK] "
-                        "[--faults N] [--say] [--where] "
-                        "IMAGE\n");
+                        "[--faults N] [--cuts N] [--say] [--where] IMAGE\n");
         return 2;
     }
-    machine.guarded = faults != 0;
-    if (loop_open(&machine, argv[i], seed) < 0) { return 2; }
-    if (faults) {
-        bad = stm_faults(&machine, faults, seed);
+    loop.rate_Hz = (uint32_t)value[RATE];
+    loop.ticks_wanted = (uint32_t)value[TICKS];
+    loop.spoil = value[SPOIL];
+    machine.guarded = value[FAULTS] != 0;
+    if (loop_open(&machine, argv[i], (uint64_t)value[SEED]) < 0) { return 2; }
+    if (value[FAULTS] || value[CUTS]) {
+        bad = value[CUTS] ? stm_cuts(&machine, argv[i], (unsigned)value[CUTS])
+                          : stm_faults(&machine, (unsigned)value[FAULTS], (uint64_t)value[SEED]);
         machine_close(&machine);
         return bad;
     }
     loop_run();
-    if (say) { printf("%s", loop.text); }
-    for (uint32_t at = 0; where && at < BLOCKS; at++) {
+    if (value[SAY]) { printf("%s", loop.text); }
+    for (uint32_t at = 0; value[WHERE] && at < BLOCKS; at++) {
         const struct block *k = &machine.cost.block[at];
         if (k->spent) { printf("where 0x%x %lu\n", STM_FLASH + 2 * at, (unsigned long)k->spent); }
     }

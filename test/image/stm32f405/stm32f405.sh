@@ -5,6 +5,7 @@
 #                      tick; what the mean, the 99th of 100 and the dearest tick take
 #   spoil              a count more in one tick is found in that tick
 #   faults             faults from random times: drives off in time, each told by its name
+#   cuts               the supply fails in each operation of a save into flash
 # README.md says what is reckoned. Environment: B (build), TICKS of a run at 1
 # kHz, TIMES of faults a scene.
 # Exit status: 0 all ok, 1 not, 2 bad usage, 3 something is not built.
@@ -44,13 +45,17 @@ faults()
         "$emulator" --rate 1000 --faults "$times" "$(image $s)" || failed=1
     done
 }
+cuts()
+{
+    "$emulator" --cuts 10000 "$(image drop)" || failed=1
+}
 
-for what in ${*:-drop guarded box spoil faults}; do
+for what in ${*:-drop guarded box spoil faults cuts}; do
     case $what in
     drop | guarded | box) rates "$what" ;;
-    spoil | faults) "$what" ;;
+    spoil | faults | cuts) "$what" ;;
     *)
-        echo "usage: stm32f405.sh [drop|guarded|box|spoil|faults]..." >&2
+        echo "usage: stm32f405.sh [drop|guarded|box|spoil|faults|cuts]..." >&2
         exit 2 ;;
     esac
 done
