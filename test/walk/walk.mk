@@ -28,8 +28,7 @@ porting:
 
 ## Link the library to a program in each way of examples/link/README.md, and check its ABI.
 .PHONY: link
-amalgamated := $(patsubst %.c,$(B)/posix/%.o,$(golden_src) $(wildcard test/golden/*_test.c) \
-               test/support.c)
+amalgamated := $(patsubst %.c,$(B)/posix/%.o,$(golden_src) test/support.c)
 link: $(lib) $(amalgamated) amalgamation
 	@.ci/deps "the ways to link" \
 	    "for t in cmake pkg-config clang tcc g++; do command -v $$t || exit; done; \

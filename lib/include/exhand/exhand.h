@@ -16,6 +16,7 @@
  *              supply tracking              supply voltage; does the current follow?
  *   safety     safety integrity             states and gate; checks of configuration and memory
  *              chatter motion polarity      limit cycle; overspeed; sign of motor and encoder
+ *              limiter                      a guard for any motor, in one structure and one step
  *   finger     axis                         one tick of one finger, in its order
  *   bench      calibrate probe              tables of the device; motions that measure them
  *   talking    record ring trace            log, its newest part, a few signals

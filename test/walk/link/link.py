@@ -58,7 +58,7 @@ def run(commands, where, want):
              for l in [c + (" || exit %d" % NONE if "pip" in c or "venv" in c else "")] +
              registry(c, "exhand")]
     env = {k: v for k, v in os.environ.items()
-           if k not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL", "CFLAGS", "WERROR")}
+           if k not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL", "CC", "CFLAGS", "WERROR")}
     start = time.time()
     done = subprocess.run(["sh", "-e", "-c", "\n".join(lines)], cwd=where,
                           env=dict(env, LC_ALL="C.UTF-8", PLATFORMIO_CORE_DIR=where + "/core"),

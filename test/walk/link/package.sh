@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # package.sh DIR: what CMake installs for others to find, with the folder of libraries given in full
-# and not: the paths of exhand.pc, and which versions find_package(exhand) takes. Exit status: 0, 1
-# not as it should be, 3 what is missing.
+# and not: the paths of exhand.pc, and which versions find_package(exhand) takes; and that the
+# metadata for registries has this version. Exit status: 0, 1 not as it should be, 3 what is missing.
 set -eu
-unset MAKEFLAGS MFLAGS MAKELEVEL # of a make that is around
+unset MAKEFLAGS MFLAGS MAKELEVEL CC # of a make that is around
 for tool in cmake pkg-config; do
     command -v $tool >/dev/null || { echo "package: skipped: no $tool"; [ -z "${EXH_ALL:-}" ] ||
         exit 3; exit 0; }
@@ -48,6 +48,11 @@ for where in lib "$PWD/usr/lib"; do
         { echo "package: libraries in $where: pkg-config: $said" >&2; failed=1; }
     for ask in "" "$minor" "$version" "$version EXACT"; do asks "$ask" 1; done
     for ask in "$minor.999" "${minor%.*}.999" 999; do asks "$ask" 0; done
+done
+# What registries read says this version, too.
+for said in library.json lib/library.json lib/idf_component.yml; do
+    grep -qE "^ *\"?version\"?: \"$version\",?$" "$lib/../$said" ||
+        { echo "package: $said: its version is not $version" >&2; failed=1; }
 done
 # A CPU without an operating system gets the static library alone.
 if command -v arm-none-eabi-gcc >/dev/null; then

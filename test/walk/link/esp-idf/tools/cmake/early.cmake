@@ -1,0 +1,15 @@
+# SPDX-License-Identifier: MIT
+# The first reading of a component, for what it requires.
+set(ESP_PLATFORM 1)
+macro(idf_component_register)
+  set(registered 1)
+  return()
+endmacro()
+function(expand)
+  include(${COMPONENT_DIR}/CMakeLists.txt)
+  set(registered ${registered} PARENT_SCOPE)
+endfunction()
+expand()
+if(NOT registered)
+  message(FATAL_ERROR "no component")
+endif()
