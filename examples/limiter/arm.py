@@ -102,7 +102,7 @@ def picture(path, incident, place):
         return
     first = (4, "position, rad") if place else (6, "torque, Nm")
     text = ["set terminal pngcairo size 800,600", "set output '%s.png'" % path,
-            "set datafile separator ','", "set key top left", "set multiplot layout 2,1"]
+            "set datafile separator ','", "set key above", "set multiplot layout 2,1"]
     for column, label in (first, (5, "speed, rad/s")):
         text += ["set ylabel '%s'" % label, "plot '%s.csv' every ::1 using 1:%d with lines lw 2 "
                  "title 'before', '' every ::1 using 1:%d with lines lw 2 title 'after'" %

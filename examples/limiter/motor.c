@@ -57,18 +57,23 @@ static void move(struct motor *m, double torque_Nm)
     m->q += T * m->v;
 }
 
-/* --- who commands --- */
+/* --- the cases, and who commands --- */
+
+enum { JUMP, STALL, SILENCE, CASES };
+static const char *const names[CASES] = {"jump", "stall", "silence"};
 
 struct target {
     double q;        /* rad */
     uint32_t age_us; /* of the last word from it */
 };
 
-static struct target target_at(int step, int jumps, int silent)
+static struct target target_at(int what, int step)
 {
     struct target t = {0.3, 0};
-    if (jumps && step >= BEGINS) { t.q = 3; }
-    if (silent && step >= BEGINS) { t.age_us = (uint32_t)(step - BEGINS) * 1000; }
+    if (step < BEGINS) { return t; }
+    if (what == JUMP) { t.q = 3; }
+    if (what == STALL) { t.q = 0.8; }
+    if (what == SILENCE) { t.age_us = (uint32_t)(step - BEGINS) * 1000; }
     return t;
 }
 
@@ -80,9 +85,6 @@ static double law(struct target t, const struct motor *m, double last)
 }
 
 /* --- one case --- */
-
-enum { JUMP, STALL, SILENCE, CASES };
-static const char *const names[CASES] = {"jump", "stall", "silence"};
 
 struct run {
     struct motor m;
@@ -113,11 +115,11 @@ static void run(int what, int with, const struct exh_limiter_cfg *cfg)
     struct run r = {{0.28, 0, 0}, none, 0, 0, 0, 0, 0};
     unsigned k = 0;
     for (int step = 0; step < STEPS; step++) {
-        const struct target t = target_at(step, what == JUMP, what == SILENCE);
+        const struct target t = target_at(what, step);
         /* A push on the arm just before silence leaves a torque on. */
         if (what == SILENCE && step == BEGINS - 20) { r.m.v = -3; }
         if (what == STALL && step >= BEGINS) { r.m.held = 1; }
-        r.asked = law(what == STALL && step >= BEGINS ? (struct target){0.8, 0} : t, &r.m, r.asked);
+        r.asked = law(t, &r.m, r.asked);
         r.sent = with ? limited(&r, cfg, step, t) : r.asked;
         move(&r.m, r.sent);
         if (r.sent > r.most) { r.most = r.sent; }

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 # package.sh DIR: what CMake installs for others to find, with the folder of libraries given in full
 # and not: the paths of exhand.pc, and which versions find_package(exhand) takes; and that the
-# metadata for registries has this version. Exit status: 0, 1 not as it should be, 3 what is missing.
+# metadata for registries has this version. Exit status: 0, 1 not as it should be, 3 what is
+# missing.
 set -eu
 unset MAKEFLAGS MFLAGS MAKELEVEL CC # of a make that is around
 for tool in cmake pkg-config; do

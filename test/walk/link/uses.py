@@ -6,6 +6,8 @@ A ```c block is a whole program: it compiles as printed, without a warning, with
 header of AMALGAMATION that it includes, runs, and prints the ```text block behind it. A ```python
 block likewise, by EXH_PYTHON (python3); named and left out where that has no exhand.
 A row of the table of uses links by its own sources, and by no fewer.
+The first lines of examples/limiter/README.md, typed beside the tree's lib and examples, print what
+its next block has; what needs a program that is not here is named and left out.
 A public header alone compiles as C99 and C++11, and declares exh_assert_failed() where its sources
 call it. Exit status: 0, 1 not as it should be. Standard library only.
 """
@@ -13,6 +15,7 @@ call it. Exit status: 0, 1 not as it should be. Standard library only.
 import glob
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -130,11 +133,31 @@ def headers(at):
     return len(paths)
 
 
+def typed(page, at):
+    """The lines of the page's first block, run; its second is the end of what they say."""
+    lines, want = [re.sub("^    ", "", b, flags=re.M)
+                   for b in re.findall(r"(?:^    .*\n)+", read(page), re.M)][:2]
+    for name in ("lib", "examples"):
+        os.symlink(os.path.join(ROOT, name), os.path.join(at, name))
+    os.mkdir(at + "/build")
+    there = []
+    for line in lines.splitlines():
+        tool = line.split()[0]
+        if os.sep in tool or shutil.which(tool):
+            there.append(line)
+        else:
+            print("uses: skipped: %s: no %s" % (page, tool))
+    done = run(["sh", "-e", "-c", "\n".join(there)], cwd=at)
+    if done.returncode != 0 or not done.stdout.endswith(want):
+        fail("%s: exit status %d, wanted\n%sgot\n%s" % (page, done.returncode, want, done.stdout))
+
+
 def main():
     pairs = os.path.abspath(sys.argv[1])
     with tempfile.TemporaryDirectory() as at:
         ran = sum(printed(page, *b, pairs, at) for page in PAGES for b in blocks(page))
         n, alone = table(at), headers(at)
+        typed("examples/limiter/README.md", at)
     print("uses: %d programs of the pages, %d rows of the table of uses, %d headers alone: "
           "%d failed" % (ran, n, alone, len(said)))
     return 1 if said or not ran or not n else 0
