@@ -106,9 +106,9 @@ TEST(reactions_are_the_librarys)
 
 /* Lines outside the gate that put a code into a frame, and why none is made there. */
 static const char *const moved[] = {
-    "out->dac_raw[f] = placed->dac_raw[k];",                /* the gate's, from place to finger */
-    "out->dac_raw[0] = out->dac_raw[1];", /* the gate's, of a finger not in use */
-    "out->dac_raw[finger] = code;",                         /* the gate's, of finger 0 */
+    "out->dac_raw[f] = placed->dac_raw[k];", /* the gate's, from place to finger */
+    "out->dac_raw[0] = out->dac_raw[1];",    /* the gate's, of a finger not in use */
+    "out->dac_raw[finger] = code;",          /* the gate's, of finger 0 */
     "out->dac_raw[0] = (uint16_t)par->drive.dac_zero_raw;",
     "out->dac_raw[f] = (uint16_t)cfg->par->drive[f].dac_zero_raw;", /* 0 A of one not in use */
 };
