@@ -51,7 +51,7 @@ for where in lib "$PWD/usr/lib"; do
     for ask in "$minor.999" "${minor%.*}.999" 999; do asks "$ask" 0; done
 done
 # What registries read says this version, too.
-for said in library.json lib/library.json lib/idf_component.yml; do
+for said in lib/library.json lib/idf_component.yml; do
     grep -qE "^ *\"?version\"?: \"$version\",?$" "$lib/../$said" ||
         { echo "package: $said: its version is not $version" >&2; failed=1; }
 done
