@@ -39,7 +39,7 @@ check:
 	@$(timed) PORT=pc104 SCENE=minimal undef undef-emu
 	@$(timed) PORT=template SCENE=minimal all
 	@$(timed) fmu $(B)/fmi/native
-	@$(timed) world boot-built contract-built nic-built hil-built
+	@$(timed) world boot-built contract-built nic-built hil-built stm32f405-built
 	@$(timed) $(check_runs)
 	@$(timed) $(check_waits)
 	@$(timed) $(check_single)
@@ -47,7 +47,7 @@ check:
 	@$(timed) report ARGS=--short
 
 # These run built images and programs, one core each, as many at a time as there are cores.
-check_runs := boot-run hil-short nic-run contract-run two-run fmi-run picture
+check_runs := boot-run hil-short nic-run contract-run two-run fmi-run picture stm32f405-run
 # Of these a core is mostly one's, or waits.
 check_waits := python-run doc-names prose kill-short doc attacks-short attacks-image-short \
                stress-short same fmt-check

@@ -164,6 +164,6 @@ stm32f405-built:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/test/stm32f405/emulator
 	@for s in drop guarded bilateral; \
 	    do $(MAKE) --no-print-directory $(if $(V),,-s) PORT=stm32f405 SCENE=$$s all || exit 1; done
-# The short form: what is built, with few ticks and faults.
+# The short form: what is built, with few ticks. Faults (ARGS=faults) may hang the emulator.
 stm32f405-run: stm32f405-regs
-	@B=$(B) TICKS=600 TIMES=56 $(stm_dir)/stm32f405.sh $(ARGS)
+	@B=$(B) TICKS=600 TIMES=56 LIMIT=600 $(stm_dir)/stm32f405.sh $(or $(ARGS),drop guarded box spoil cuts)

@@ -7,7 +7,7 @@
 #   faults             faults from random times: drives off in time, each told by its name
 #   cuts               the supply fails in each operation of a save into flash
 # README.md says what is reckoned. Environment: B (build), TICKS of a run at 1
-# kHz, TIMES of faults a scene.
+# kHz, TIMES of faults a scene, LIMIT (86400 s) of a run: what takes longer hangs.
 # Exit status: 0 all ok, 1 not, 2 bad usage, 3 something is not built.
 set -u
 
@@ -16,6 +16,13 @@ ticks=${TICKS:-10000}
 times=${TIMES:-5000}
 emulator=$b/test/stm32f405/emulator
 failed=0
+
+run()
+{
+    timeout -s KILL "${LIMIT:-86400}" "$emulator" "$@" && return
+    [ $? != 137 ] || echo "stm32f405: stopped: it hangs" >&2
+    return 1
+}
 
 [ -x "$emulator" ] || { echo "stm32f405: $emulator: not built: make stm32f405" >&2; exit 3; }
 
@@ -27,12 +34,12 @@ rates()
 {
     # At 10 kHz scene guarded refuses its set-up, on any board.
     for r in 1000 2000 5000 $([ "$1" = guarded ] || echo 10000); do
-        "$emulator" --rate "$r" --ticks "$((ticks * r / 1000))" "$(image "$1")" || failed=1
+        run --rate "$r" --ticks "$((ticks * r / 1000))" "$(image "$1")" || failed=1
     done
 }
 spoil()
 {
-    said=$("$emulator" --rate 1000 --ticks 400 --spoil 300 "$(image drop)")
+    said=$(run --rate 1000 --ticks 400 --spoil 300 "$(image drop)")
     case $said in
     *"differ, the first is 300: encoder read"*) echo "spoil: found in tick 300" ;;
     *) failed=1 && echo "spoil: FAILED: $said" ;;
@@ -42,12 +49,12 @@ faults()
 {
     for s in drop box; do
         echo "$s, 1 kHz"
-        "$emulator" --rate 1000 --faults "$times" "$(image $s)" || failed=1
+        run --rate 1000 --faults "$times" "$(image $s)" || failed=1
     done
 }
 cuts()
 {
-    "$emulator" --cuts 10000 "$(image drop)" || failed=1
+    run --cuts 10000 "$(image drop)" || failed=1
 }
 
 for what in ${*:-drop guarded box spoil faults cuts}; do
