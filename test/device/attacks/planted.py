@@ -81,8 +81,8 @@ WITH = {}  # what a process of the pool has from this one
 
 
 def try_one(n):
-    """What the rows of this part say: of four tries the first that shows the error. Whether the peer
-    is lost meanwhile depends on when packets meet, so one try may show nothing."""
+    """What the rows of this part say: of four tries the first that shows the error. Whether the
+    peer is lost meanwhile depends on when packets meet, so one try may show nothing."""
     part, _, other, must = PLANTED[n]
     with contextlib.ExitStack() as stack:
         for name, value in {**FEW, **other}.items():
