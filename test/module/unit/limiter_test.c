@@ -619,7 +619,8 @@ TEST(damage_and_no_number_at_rest_move_nothing)
     r.cfg.par.uses &= ~EXH_LIMITER_MEASURED;
     r.s.sent = INT32_MIN;
     step();
-    CHECK(r.out.send >= -r.cfg.par.effort_max, "%ld", (long)r.out.send);
+    CHECK(r.out.send >= -r.cfg.par.effort_max && r.out.send <= r.cfg.par.effort_max, "%ld",
+        (long)r.out.send);
     rest(with(EXH_LIMITER_POSITION));
     r.in.pos = 1234;
     step();
