@@ -102,9 +102,9 @@ struct exh_velocity_foaw_cfg {
 
 /* The FOAW of one finger. */
 struct exh_velocity_foaw {
-    int32_t cnt[EXH_VELOCITY_N + 1]; /* the last n + 1 counts, a ring */
-    uint8_t at;                      /* index of the newest */
-    uint8_t have;                    /* number of samples held */
+    int32_t cnt[EXH_VELOCITY_N]; /* the last counts, a ring */
+    uint8_t at;                  /* index of the newest */
+    uint8_t have;                /* number of samples held */
 };
 
 /* As the window's functions. n is 1 .. 16 and tol_cnt 1 .. 255, else -EXH_E_RANGE. */

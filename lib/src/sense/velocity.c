@@ -128,47 +128,43 @@ static int32_t wide_gain(struct exh_gain g, int64_t m)
 }
 
 /* A window fits if its slope lies between those of all lines through the newest sample that pass
- * each sample within tol. The bounds accumulate from window to window. Windows look back, so slopes
- * here are those of -y. */
+ * each sample within tol. The bounds accumulate from window to window, so the first misfit ends the
+ * search. Windows look back, so slopes here are those of -y. */
 int32_t exh_velocity_foaw_step(
     struct exh_velocity_foaw *s, const struct exh_velocity_foaw_cfg *cfg, int32_t cnt)
 {
-    const int32_t longest = cfg->n < EXH_VELOCITY_N ? cfg->n : EXH_VELOCITY_N;
-    const int32_t most = longest < s->have ? longest : s->have;
-    const int64_t less = -(int64_t)cfg->tol_cnt;
-    int64_t lo = INT64_MIN / 4, hi = INT64_MAX / 4, off = 0; /* off: below 0 after a misfit */
+    const uint32_t longest = cfg->n < EXH_VELOCITY_N ? cfg->n : EXH_VELOCITY_N;
+    const uint32_t most = longest < s->have ? longest : s->have;
+    const int64_t tol = cfg->tol_cnt;
+    int64_t lo = INT64_MIN / 4, hi = INT64_MAX / 4;
     int64_t sum = 0, m = 0, best = 0;
-    int32_t best_n = 1;
-    unsigned at = s->at < EXH_VELOCITY_N ? s->at + 1u : 0;
+    uint32_t n = 0, at = s->at;
 
-    s->at = (uint8_t)at;
-    s->cnt[at] = cnt;
-    if (s->have <= EXH_VELOCITY_N) { s->have++; }
-    for (int32_t n = 1; n <= most; n++) {
-        const struct part of = part[n - 1];
-        int64_t d, pass, reach, slope;
-        at = at > 0 ? at - 1 : EXH_VELOCITY_N;
-        d = exh_wrap_diff(s->cnt[at], cnt);
-        m += n * d - sum; /* twice the sum of each sample times its n, minus n times their sum */
-        sum += d;
-        pass = d * of.each;
-        reach = less * of.each;
-        lo = lo > pass + reach ? lo : pass + reach;
-        hi = hi < pass - reach ? hi : pass - reach;
-        slope = m * of.fit;
-        off |= (slope - lo) | (hi - slope);
-        best = off < 0 ? best : m;
-        best_n = off < 0 ? best_n : n;
+    while (n < most) {
+        const int64_t d = exh_wrap_diff(s->cnt[at & (EXH_VELOCITY_N - 1u)], cnt);
+        const int64_t low = (d - tol) * part[n].each, high = low + 2 * tol * part[n].each;
+        int64_t slope;
+        at--;
+        m += (int64_t)(n + 1) * d - sum; /* twice the sum of each sample times its n, */
+        sum += d;                        /* minus n times their sum */
+        lo = lo > low ? lo : low;
+        hi = hi < high ? hi : high;
+        slope = m * part[n].fit;
+        if (slope < lo || slope > hi) { break; }
+        best = m;
+        n++;
     }
-    return wide_gain(cfg->gain[best_n - 1], -best);
+    s->at = (uint8_t)((s->at + 1u) & (EXH_VELOCITY_N - 1u));
+    s->cnt[s->at] = cnt;
+    if (s->have < EXH_VELOCITY_N) { s->have++; }
+    return wide_gain(cfg->gain[n > 0 ? n - 1 : 0], -best);
 }
 
 void exh_velocity_foaw_serialize(struct exh_bytes *c, struct exh_velocity_foaw *s)
 {
-    for (unsigned i = 0; i <= EXH_VELOCITY_N; i++) { exh_bytes_i32(c, &s->cnt[i]); }
+    for (unsigned i = 0; i < EXH_VELOCITY_N; i++) { exh_bytes_i32(c, &s->cnt[i]); }
     exh_bytes_u8(c, &s->at);
     exh_bytes_u8(c, &s->have);
-    if (s->at > EXH_VELOCITY_N) { s->at = EXH_VELOCITY_N; } /* an index, from bytes */
 }
 
 int exh_velocity_track_setup(

@@ -66,21 +66,25 @@ class Pole:
 
 
 class Foaw:
-    pack = Struct("<17iBB").pack
+    pack = Struct("<16iBB").pack
 
     def __init__(self, step, T, n, tol):
         self.n, self.tol = n, tol
         self.gain = [gain(6 * step * T[1], T[0] * i * (i + 1) * (i + 2) << 15)
                      for i in range(1, n + 1)]
-        self.cnt, self.at, self.have = [0] * (N + 1), 0, 0
+        self.cnt, self.at, self.have = [0] * N, 0, 0
 
     def tick(self, cnt):
-        self.at = (self.at + 1) % (N + 1)
+        v = self.fit(cnt)
+        self.at = (self.at + 1) % N
         self.cnt[self.at] = cnt
-        self.have = min(self.have + 1, N + 1)
+        self.have = min(self.have + 1, N)
+        return v
+
+    def fit(self, cnt):
         d, s0, s1, best, best_m = [], 0, 0, 0, 0
-        for n in range(1, min(self.n, self.have - 1) + 1):
-            y = wrap(self.cnt[(self.at - n) % (N + 1)] - cnt)
+        for n in range(1, min(self.n, self.have) + 1):
+            y = wrap(self.cnt[(self.at + 1 - n) % N] - cnt)
             d.append(y)
             s0 += y
             s1 += n * y

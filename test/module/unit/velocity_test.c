@@ -368,13 +368,11 @@ TEST(ends_to_the_bit)
             CHECK_EQ_I64(s.v_mps_q55, sign * (most + (more < 0 ? more : 0)));
         }
     }
-    for (unsigned at = EXH_VELOCITY_N - 1; at <= EXH_VELOCITY_N + 1; at++) {
-        struct exh_velocity_foaw s = {{0}, 0, 0};
-        uint8_t buf[4 * (EXH_VELOCITY_N + 1) + 2] = {0};
-        struct exh_bytes c = exh_bytes_reader(buf, sizeof buf);
-        buf[sizeof buf - 2] = (uint8_t)at;
-        exh_velocity_foaw_serialize(&c, &s);
-        CHECK(s.at == (at < EXH_VELOCITY_N ? at : EXH_VELOCITY_N), "%u: %u", at, (unsigned)s.at);
+    for (unsigned at = EXH_VELOCITY_N - 2; at <= UINT8_MAX; at++) { /* the index wraps */
+        const struct exh_velocity_foaw_cfg foaw = {0};
+        struct exh_velocity_foaw s = {{0}, (uint8_t)at, 0};
+        (void)exh_velocity_foaw_step(&s, &foaw, 7);
+        CHECK(s.at == (at + 1) % EXH_VELOCITY_N && s.cnt[s.at] == 7, "%u: %u", at, (unsigned)s.at);
     }
 }
 

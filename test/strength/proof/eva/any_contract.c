@@ -4,7 +4,7 @@
  * the scenes show. Unit setup shows that set-ups make such configurations and that bytes make such
  * states.
  *
- * PLANT: lib/src/sense/velocity.c: & (EXH_VELOCITY_N - 1u)); -> & EXH_VELOCITY_N);
+ * PLANT: lib/src/sense/velocity.c: (cfg->n - 1u) & (EXH_VELOCITY_N - 1u)); -> (cfg->n - 1u) & EXH_VELOCITY_N);
  * PLANT: lib/src/safe/safety.c: (int64_t)s->share_q30 + cfg->ramp_q30, 0, FULL_Q30) -> (int64_t)s->share_q30 + cfg->ramp_q30, 0, INT32_MAX)
  * PLANT: lib/src/sense/quad.c: if (jump >= INT64_C(1) << (bits - 2)) { return -EXH_E_RANGE; } -> (void)0;
  * PLANT: lib/src/law/passivity.c: any ? exh_clamp(held, 0, INT32_MAX) : 0; -> any ? exh_clamp(held, INT32_MIN, INT32_MAX) : 0;

@@ -5,10 +5,10 @@
  * count.
  *
  * EVA: -eva-slevel 20
- * PLANT: lib/src/sense/velocity.c: if (s->at > EXH_VELOCITY_N) { s->at = EXH_VELOCITY_N; } -> (void)0;
- * PLANT: lib/src/sense/velocity.c: m += n * d - sum -> m += n * (int32_t)d - sum
- * PLANT: lib/src/sense/velocity.c: slope = m * of.fit -> slope = m * m
- * PLANT: lib/src/sense/velocity.c: at > 0 ? at - 1 : EXH_VELOCITY_N -> at - 1
+ * PLANT: lib/src/sense/velocity.c: s->cnt[at & (EXH_VELOCITY_N - 1u)] -> s->cnt[at]
+ * PLANT: lib/src/sense/velocity.c: ((s->at + 1u) & (EXH_VELOCITY_N - 1u)); -> (s->at + 1u);
+ * PLANT: lib/src/sense/velocity.c: (int64_t)(n + 1) * d -> (int32_t)(n + 1) * (int32_t)d
+ * PLANT: lib/src/sense/velocity.c: slope = m * part[n].fit -> slope = m * m
  */
 #include "num/bytes.c"
 #include "num/fix.c"
@@ -34,9 +34,8 @@ static void step(void)
     ANY(cfg);
     for (unsigned i = 0; i < EXH_VELOCITY_N; i++) { ANY_GAIN(cfg.gain[i]); }
     FROM_BYTES(s, exh_velocity_foaw_serialize);
-    /*@ assert foaw_read: s.at <= 16; */
     (void)exh_velocity_foaw_step(&s, &cfg, any32());
-    /*@ assert foaw_at: s.at <= 16; */
+    /*@ assert foaw_at: s.at < 16; */
 }
 
 int main(void)

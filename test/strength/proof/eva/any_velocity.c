@@ -4,7 +4,7 @@
  * and shares that set-up leaves, in any state read from bytes, with any count. The tick leaves
  * such a state again.
  *
- * PLANT: lib/src/sense/velocity.c: & (EXH_VELOCITY_N - 1u)); -> );
+ * PLANT: lib/src/sense/velocity.c: (cfg->n - 1u) & (EXH_VELOCITY_N - 1u)); -> (cfg->n - 1u));
  * PLANT: lib/src/sense/velocity.c: s->at %= EXH_VELOCITY_N; -> (void)0;
  * PLANT: lib/src/sense/velocity.c: s->v_mps_q55 = exh_clamp64(s->v_mps_q55, POLE_MAX_MPS_Q55); -> (void)0;
  * PLANT: lib/src/sense/velocity.c: s->vel_cnt_q32 = exh_clamp64(s->vel_cnt_q32, TRACK_MAX_CNT_Q32); -> (void)0;
