@@ -46,13 +46,6 @@ cores     := $(or $(shell nproc 2>/dev/null),1)
 MAKEFLAGS += $(if $(filter 0,$(MAKELEVEL)),-j$(cores),$(if $(filter output-sync,$(.FEATURES)),-O))
 jobs       = $(or $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),1)
 
-# Of several goals one runs at a time, because two sub-makes would write the same files. Files and
-# these may run together.
-together := $(B)/% variant-% golden-% undef% %-run %-short picture doc doc-names fmt-check same
-ifneq ($(and $(filter-out $(together),$(MAKECMDGOALS)),$(word 2,$(MAKECMDGOALS))),)
-.NOTPARALLEL:
-endif
-
 # The library is C99 without extensions; the strictest warnings from day one.
 warn := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wcast-align -Wcast-qual \
         -Wstrict-prototypes -Wmissing-prototypes -Wundef -Wwrite-strings -Wpointer-arith \
@@ -186,6 +179,13 @@ include test/test.mk $(foreach d,closed golden matrix fuzz strength device image
     figures,test/$d/$d.mk)
 include test/figures/bench/bench.mk test/check.mk test/walk/walk.mk
 include lib/lib.mk docs/docs.mk
+
+# Of several goals one runs at a time, because two sub-makes would write the same files. Files and
+# these may run together (test/check.mk).
+together := $(B)/% variant-% golden-% undef% $(check_runs) $(check_waits)
+ifneq ($(and $(filter-out $(together),$(MAKECMDGOALS)),$(word 2,$(MAKECMDGOALS))),)
+.NOTPARALLEL:
+endif
 
 program := $(if $(filter custom,$(SCENE)),$(exhand_custom),$(exhand))
 products := $(if $(filter posix,$(PORT)),$(program),$(image))
