@@ -2,7 +2,7 @@
 # The golden vectors: made by a model in Python, and checked against planted errors.
 
 # Digests of single rates, as the library here computes them; who reads them holds each hundred
-# against digests.inc.
+# against digests.inc. make test leaves them, too, so that no rate is computed twice.
 golden_rates := $(B)/golden/rates.txt
 $(golden_rates): $(B)/test/golden/golden_test
 	@mkdir -p $(@D)
@@ -24,11 +24,12 @@ golden:
 .PHONY: golden-rates
 golden-rates: $(golden_rates)
 
-## Compare a quarter of 2001..20000 Hz, drawn anew each time (EXH_SEED=N repeats a draw).
+## Compare a quarter of 2001..20000 Hz, drawn anew each time (EXH_SEED=N repeats a draw; ARGS=18: so
+## many of 180 hundreds).
 .PHONY: golden-beyond
 golden-beyond: $(B)/test/golden/golden_test
 	@mkdir -p $(B)/golden
-	@JOBS=$(jobs) test/matrix/beyond.py $(B)/golden $< 45
+	@JOBS=$(jobs) test/matrix/beyond.py $(B)/golden $< $(or $(ARGS),45)
 
 ## Make the model's traces at six rates, and compare the library with them tick by tick.
 .PHONY: golden-traces

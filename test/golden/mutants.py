@@ -11,7 +11,7 @@ there, or a build that fails: exit 1.
 
 B, CC: where the test was built (build), the compiler (cc)
 --some N: of each module every Nth, and one at least, as the seed deals them (that of the commits,
-if none is given).
+if none is given: each commit has others).
 """
 
 import argparse
@@ -26,7 +26,7 @@ import tempfile
 from concurrent.futures import ThreadPoolExecutor
 
 sys.dont_write_bytecode = True
-from digests import singles  # noqa: E402
+from digests import commits, singles  # noqa: E402
 
 ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 B, CC = os.environ.get("B", "build"), os.environ.get("CC", "cc").split()
@@ -545,12 +545,6 @@ def dealt(every, seed):
     for m in MUTANTS:
         of.setdefault(m[0], []).append(m)
     return [m for ms in of.values() for m in deal.sample(ms, -(-len(ms) // every))]
-
-
-def commits():
-    """Each commit has others; with every Nth, N commits have seen most of them."""
-    said = run(["git", "rev-list", "--count", "HEAD"]).stdout.strip()
-    return int(said) if said.isdigit() else 1
 
 
 def main():
