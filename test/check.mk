@@ -24,9 +24,9 @@ check_more := gcc-mips-linux-gnu libc6-dev-mips-cross gcc-s390x-linux-gnu libc6-
               qemu-user gcc-avr avr-libc simavr libsimavr-dev libelf-dev clang-19 llvm-19 \
               libclang-rt-19-dev frama-c-base python3-z3 cmake pkg-config tcc g++ python3-venv \
               python3-pip doxygen clang-format grub-pc-bin grub-common xorriso mtools
-check_uses := $(check_tools) mips-linux-gnu-gcc s390x-linux-gnu-gcc qemu-mips avr-gcc simavr clang-19 \
-              llvm-cov-19 frama-c cmake pkg-config tcc g++ doxygen clang-format grub-mkrescue \
-              xorriso mformat
+check_uses := $(check_tools) mips-linux-gnu-gcc s390x-linux-gnu-gcc qemu-mips avr-gcc simavr \
+              clang-19 llvm-cov-19 frama-c cmake pkg-config tcc g++ doxygen clang-format \
+              grub-mkrescue xorriso mformat
 check-packages:
 	@.ci/deps "the checks" "for t in $(check_uses); do command -v \$$t || exit; done" \
 	    $(check_pkgs) $(check_more) || :

@@ -139,7 +139,7 @@ clang_i686 := clang --target=i686-linux-gnu -isystem /usr/i686-linux-gnu/include
 v_i686-clang-O0 := CC="$(clang_i686)" O=0 $(v_32)
 v_i686-clang-O3 := CC="$(clang_i686)" O=3 $(v_32)
 variants   := $(filter-out 32,$(patsubst v_%,%,$(filter v_%,$(.VARIABLES))))
-# Each half has every two of compiler, optimisation and bits; CI takes one, by the number of commits.
+# Each half has every two of compiler, optimisation and bits; CI takes one, by the count of commits.
 half_even  := gcc-O0 clang-O3 i686-O3 i686-clang-O0
 half_odd   := $(filter-out $(half_even),$(variants))
 tried       = $(or $(VARIANTS),$(if $(filter %1 %3 %5 %7 %9,$(commits)),$(half_odd),$(half_even)))
@@ -155,8 +155,8 @@ $(variants:%=golden-%): golden-%:
 	    $(B)/variant/$*/test/golden/golden_test
 	@echo "$*:" && EXH_RATES=1..200 test/run.sh $(B)/variant/$*/test/golden/golden_test
 
-## Compare golden vectors, tables and logs of host programs by other compilers, optimisations and for
-## 32 bits (VARIANTS: all eight).
+## Compare golden vectors, tables and logs of host programs by other compilers, optimisations and
+## for 32 bits (VARIANTS: all eight).
 .PHONY: variants
 variants: VARIANTS = $(variants)
 variants: demo
