@@ -51,10 +51,9 @@ check:
 	@$(timed) mcdc
 	@$(timed) proof-ci
 	@$(timed) fuzz FUZZ_SECONDS=12 FUZZ_SEED=$(commits)
-	@$(timed) options sanitized valgrind
+	@$(timed) options sanitized
 	@$(timed) demo > $(B)/demo.txt && tail -n 40 $(B)/demo.txt
 	@$(timed) $(tried:%=variant-%) $(B)/posix/exhand-linux
-	@$(timed) link porting shards
 	@$(timed) $(patsubst %,golden-%,$(filter-out i686%,$(tried)))
 	@$(timed) bits
 	@$(timed) undef undef-cortex-m3 undef-cortex-m0
@@ -71,9 +70,10 @@ check:
 # built; the longest come first.
 check_runs := hil-short stm32f405-run nic-run boot-run contract-run two-run fmi-run structure \
               report-test picture
-# Of the first four a core is mostly free, so three of these run at a time.
-check_waits := attacks-short python-run kill-short attacks-image-short size bench stress-short \
-               prose same doc-names fmt-check doc
+# Some of these wait for a network or a clock, so three run at a time. Those that compile do so in
+# folders of their own.
+check_waits := attacks-short link python-run kill-short attacks-image-short size porting bench \
+               valgrind stress-short prose shards same doc-names fmt-check doc
 .PHONY: hil-short picture bits
 hil-short:
 	@$(MAKE) --no-print-directory hil-run HIL_TICKS=2000 HIL_FEW=500 HIL_QEMU=2000 > $(B)/hil.txt || \

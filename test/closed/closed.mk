@@ -103,10 +103,10 @@ prop_bin     := $(filter $(B)/test/prop/%,$(test_bin))
 ## Run stiff and extreme cases under sanitizers, and each property test with 10^8 random cases.
 .PHONY: stress
 stress:
-	@$(MAKE) --no-print-directory B=$(B)/san CFLAGS="$(san)" LDFLAGS="$(san)" $(if $(V),,-s) \
+	@$(MAKE) --no-print-directory $(san_vars) $(if $(V),,-s) \
 	    $(B)/san/test/stress
 	@$(B)/san/test/stress $(STRESS_TICKS)
-	@$(MAKE) --no-print-directory B=$(B)/san CFLAGS="$(san)" LDFLAGS="$(san)" $(if $(V),,-s) \
+	@$(MAKE) --no-print-directory $(san_vars) $(if $(V),,-s) \
 	    $(B)/san/test/stability $(B)/san/test/sim/late_test
 	@$(B)/san/test/stability --short
 	@EXH_CASES=$(STRESS_CASES) $(B)/san/test/sim/late_test

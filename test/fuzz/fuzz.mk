@@ -46,7 +46,8 @@ files_obj := $(patsubst %,$(B)/posix/test/fuzz/%.o,files_fuzz $(if $(FUZZ_NO_MAI
 $(B)/fuzz/files: $(files_obj) $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs)
-san_vars             := B=$(B)/san CFLAGS="$(san)" LDFLAGS="$(san)"
+# -O1 -g1 compiles in half of the time, and an error is told with its line.
+san_vars             := B=$(B)/san O=1 CFLAGS="$(san) -g1" LDFLAGS="$(san)"
 files_vars_plain     := $(san_vars)
 files_vars_libfuzzer := B=$(B)/fuzz/clang CC=clang FUZZ_NO_MAIN=1 \
                         CFLAGS="$(san) -fsanitize=fuzzer-no-link" \

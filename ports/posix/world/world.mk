@@ -40,10 +40,11 @@ $(world): $(world_obj) $(B)/posix/libexhand.a
 ##@ The world simulator
 ## Build the world simulator build/posix/world; it has pictures and meshes if their packages are
 ## there.
-.PHONY: world
-world:
+.PHONY: world world-packages
+world-packages:
 	@.ci/deps "the world's pictures" "cd /usr/include && ls SDL2/SDL_ttf.h GL/gl.h png.h" \
 	    $(world_pkgs) || true
+world: world-packages
 	@$(world_mesh_deps)
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(world)
 
