@@ -54,6 +54,7 @@ install-lib: $(lib) $(if $(hosted),$(shared))
 ## the limiter, each alone.
 .PHONY: amalgamation
 amalgamation:
+	@.ci/deps "the amalgamation" python3 python3 || exit 3
 	@rm -rf $(B)/amalgamation
 	@lib/amalgamate.py $(B)/amalgamation/exhand exhand.h
 	@lib/amalgamate.py $(B)/amalgamation/exhand_law quad.h velocity.h contact.h

@@ -24,7 +24,7 @@ porting:
 	@.ci/deps "a walk of docs/PORTING.md" \
 	    "command -v arm-none-eabi-gcc && command -v qemu-system-arm" \
 	    gcc-arm-none-eabi qemu-system-arm || exit 3
-	@test/walk/porting/walk.py $(B)/porting
+	@test/walk/pages/walk.py $(B)/porting docs/PORTING.md
 
 ## Link the library to a program in each way of examples/link/README.md, and check its ABI.
 .PHONY: link
@@ -40,11 +40,11 @@ link: $(lib) $(amalgamated) amalgamation
 	@test/walk/link/uses.py $(B)/amalgamation
 	@test/walk/link/link.py $(B)/link $(ARGS)
 
-## Run both README commands in a fresh Debian with only git, make and a C compiler (root;
-## RELEASE=bookworm).
+## Type each command block of README.md and docs/PORTING.md on a bare Debian (root;
+## RELEASE=bookworm, ARGS: pages).
 .PHONY: fresh
 fresh:
-	test/walk/fresh/fresh.sh $(RELEASE)
+	test/walk/fresh/fresh.sh $(or $(RELEASE),bookworm) $(ARGS)
 
 ## Measure each way of examples/link/README.md on a bare Debian 12 (root; ARGS=--update writes its
 ## table).

@@ -1,27 +1,18 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# fresh.sh [RELEASE [ROOT]]: both README commands in a new Debian (default bookworm, which is 12)
-# that holds git, make and a C compiler and nothing else, on a clone of what is committed. Needs to
-# be root. ROOT (default build/fresh/RELEASE) is kept afterwards to look into; else as root.sh says.
-# Exit status: 0 both passed, 1 not, 2 ROOT is not ours to remove, 3 not root or no debootstrap.
+# fresh.sh RELEASE [PAGE...]: types each command block of the pages (default README.md and
+# docs/PORTING.md) on a bare Debian of that release (bookworm is 12, trixie 13), in a clone of what
+# is committed. The bare root has no package that the smallest debootstrap leaves out; the pages
+# install the others. Environment: AT, where the roots are (build/fresh). They are kept, to look
+# into. Needs to be root. Exit status: 0 all blocks passed, 1 not, 2 a root is not ours to remove, 3
+# not root or no debootstrap.
 set -eu
 cd "$(dirname "$0")/../../.."
 release=${1:-bookworm}
-root=${2:-build/fresh/$release}
-test/walk/fresh/root.sh make "$release" "$root" git make gcc libc6-dev
-git clone -q . "$root/exhand"
-
-inside() # COMMAND
-{
-    echo "fresh: $release: $*"
-    start=$(date +%s)
-    test/walk/fresh/root.sh run "$root" "cd /exhand && $*"
-    took="$took, $* in $(($(date +%s) - start)) s"
-}
-took=
-inside 'dpkg -l | grep -c ^ii; gcc --version | head -n 1'
-took=
-inside make demo
-test/walk/fresh/root.sh run "$root" 'cd /exhand && ls -l build/demo/*.png build/demo/table2.csv'
-inside make test
-echo "fresh: both commands passed: $release$took"
+shift "$(($# > 0))"
+at=${AT:-build/fresh}/$release
+mkdir -p "$at"
+test/walk/fresh/root.sh make "$release" "$at/bare"
+echo "fresh: $release: $(ls "$at"/bare/var/lib/dpkg/info/*.list | wc -l) packages"
+[ $# -gt 0 ] || set -- README.md docs/PORTING.md
+test/walk/pages/walk.py --root "$at/bare" "$at" "$@"

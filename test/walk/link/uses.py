@@ -3,8 +3,9 @@
 """uses.py AMALGAMATION: what README.md and examples/link/README.md promise who uses a part.
 
 A ```c block is a whole program: it compiles as printed, without a warning, with the pair of each
-header of AMALGAMATION that it includes, runs, and prints the ```text block behind it. A ```python
-block likewise, by EXH_PYTHON (python3); named and left out where that has no exhand.
+header of AMALGAMATION that it includes, runs, and prints the ```text block behind it (```sh blocks
+may be between). A ```python block does so by EXH_PYTHON (python3), or is named and left out where
+that has no exhand.
 A row of the table of uses links by its own sources, and by no fewer.
 The first lines of examples/limiter/README.md, typed beside the tree's lib and examples, print what
 its next block has; what needs a program that is not here is named and left out.
@@ -46,8 +47,8 @@ def run(command, **more):
 
 def blocks(page):
     """(line, language, text, what it prints) of each fenced program."""
-    fence = re.compile(r"^```(c|python)\n(.*?)^```$(?:(?:(?!^```).)*?^```text\n(.*?)^```$)?",
-                       re.S | re.M)
+    fence = re.compile(r"^```(c|python)\n(.*?)^```$(?:(?:(?:(?!^```).)*?^```sh\n.*?^```$)*"
+                       r"(?:(?!^```).)*?^```text\n(.*?)^```$)?", re.S | re.M)
     text = read(page)
     for m in fence.finditer(text):
         yield text.count("\n", 0, m.start()) + 1, m[1], m[2], m[3]

@@ -15,10 +15,12 @@ PATH = os.pathsep.join([str(Path(os.environ["EXHAND"]).parent), str(Path(sys.exe
 
 
 def sections(page):
-    """(title, blocks) of those with code; a block is indented lines."""
+    """(title, blocks) of those with code; a block is indented lines or ```python."""
     for part in re.split(r"^## ", (ROOT / page).read_text(), flags=re.M)[1:]:
+        fenced = re.findall(r"^```python\n(.*?)^```$", part, re.M | re.S)
         blocks = re.findall(r"(?:^    .*\n(?:\n(?=    [ )]))*)+", part, re.M)
-        yield part.splitlines()[0], [re.sub(r"^    ", "", b, flags=re.M) for b in blocks]
+        yield (part.splitlines()[0],
+               fenced or [re.sub(r"^    ", "", b, flags=re.M) for b in blocks])
 
 
 CODE = {title: blocks for page in ("ports/python/README.md", "README.md")
