@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""prose.py [--stats | --update] EXHAND WORLD: the documents keep the rules of docs/STYLE.md.
+"""prose.py [--stats | --update | --comments PATH...] EXHAND WORLD: the documents keep the rules of docs/STYLE.md.
 
 Prints each fault as PAGE:LINE: a sentence or paragraph that is too long, an idiom of prose.tsv, a
 link that leads nowhere, a command or name that the tree does not have (by docs.py), too many words.
@@ -8,11 +8,13 @@ A page may have as many faults as prose.tsv allows it, and none where it allows 
 a command generates (between <!-- COMMAND --> and <!-- end -->) is not judged. A cell of a table
 is a paragraph of up to 40 words a sentence.
 
---stats prints words and sentences of each page; --update lowers ceilings to today's number and
-gives new pages a row.
+--stats prints words and sentences of each page, and of the comments of each folder of C sources;
+--update lowers ceilings to today's number and gives new pages a row. --comments FILE... prints the
+faults of sentences and idioms in the comments of these C sources, and passes.
 Exit status: 0 all pages keep the rules, 1 not. Standard library only.
 """
 
+import glob
 import os
 import re
 import sys
@@ -22,7 +24,11 @@ import docs  # noqa: E402
 
 DATA = "test/walk/docs/prose.tsv"
 SENTENCE, CELL, PARAGRAPH = 30, 40, 90 # words; 90 are five lines of 100 columns
+END = re.compile(r"[.!?][)\"”]?\s+(?=[A-Z\"“(])|$")
+# In a comment, a sentence may begin with a name in small letters.
+COMMENT_END = re.compile(r"(?<!\be\.g)(?<!\bi\.e)(?<!\beq)(?<!\bfig)[.!?][)\"”]?\s+|$")
 WORD = re.compile(r"[^\W_][\w'’.,·/-]*")
+COMMENT = re.compile(r'/\*(.*?)\*/|//([^\n]*)|"(?:[^"\\\n]|\\.)*"|\'(?:[^\'\\\n]|\\.)*\'', re.S)
 
 
 class Data:
@@ -68,6 +74,22 @@ def blocks(text):
         yield "prose", block
 
 
+def comments(text):
+    """The paragraphs of the comments of a C source, as blocks() has those of a page."""
+    for m in COMMENT.finditer(text):
+        body, n = m[1] or m[2] or "", text.count("\n", 0, m.start()) + 1
+        block = []
+        for k, line in enumerate([] if re.match(r"@| SPDX", body) else body.split("\n")):
+            line = re.sub(r"^\s*\*?", "", line)
+            if block and re.match(r"\s*$|\s*[*+-]\s|   ", line):
+                yield "prose", block
+                block = []
+            if line.strip():
+                block.append((n + k, line.strip()))
+        if block:
+            yield "prose", block
+
+
 def plain(line):
     """A line without code, targets of links and marks."""
     line = re.sub(r"`[^`]*`", "Code", line.lstrip("> "))
@@ -75,7 +97,7 @@ def plain(line):
     return re.sub(r"https?://\S+|[*_|]+", " ", line)
 
 
-def sentences(block):
+def sentences(block, end=END):
     """(line number, words) of each sentence of a paragraph."""
     text, starts = "", []
     whole = "\n".join(line for _, line in block)
@@ -84,7 +106,7 @@ def sentences(block):
         starts.append((len(text), block[k][0]))
         text += plain(line) + " "
     at = 0
-    for m in list(re.finditer(r"[.!?][)\"”]?\s+(?=[A-Z\"“(])|$", text)):
+    for m in list(end.finditer(text)):
         words = WORD.findall(text[at:m.end()])
         if words:
             lead = at + len(text[at:]) - len(text[at:].lstrip())
@@ -124,15 +146,17 @@ def names(path, text, program, world):
 class Page:
     def __init__(self, path, text, data):
         self.path, self.text, self.data = path, text, data
-        self.blocks = list(blocks(text))
+        source = path.endswith((".c", ".h"))
+        self.end = COMMENT_END if source else END
+        self.blocks = list((comments if source else blocks)(text))
         self.lengths = [len(w) for kind, b in self.blocks if kind == "prose"
-                        for _, w in sentences(b)]
+                        for _, w in sentences(b, self.end)]
         self.words = sum(len(WORD.findall(plain(line))) for _, b in self.blocks for _, line in b)
 
     def style(self):
         for kind, block in self.blocks:
             if kind == "prose":
-                found = list(sentences(block))
+                found = list(sentences(block, self.end))
                 for n, words in found:
                     if len(words) > SENTENCE:
                         yield n, "a sentence of %d words: %s ..." % (len(words),
@@ -163,11 +187,19 @@ class Page:
 def stats(pages):
     print("%-44s %6s %9s %5s %7s %4s %6s" %
           ("page", "words", "sentences", "mean", "longest", ">30", "faults"))
+    rooms = {}
     for p in pages:
-        n = len(p.lengths)
+        if p.path.endswith((".c", ".h")):
+            rooms.setdefault("comments of %s/" % os.path.dirname(p.path), []).append(p)
+            rooms.setdefault("comments of all %s/" % p.path.split("/")[0], []).append(p)
+        else:
+            rooms[p.path] = [p]
+    for name, parts in rooms.items():
+        lengths = [n for p in parts for n in p.lengths]
         print("%-44s %6d %9d %5.1f %7d %4d %6d" %
-              (p.path, p.words, n, sum(p.lengths) / max(n, 1), max(p.lengths, default=0),
-               sum(k > SENTENCE for k in p.lengths), len(list(p.style()))))
+              (name, sum(p.words for p in parts), len(lengths),
+               sum(lengths) / max(len(lengths), 1), max(lengths, default=0),
+               sum(n > SENTENCE for n in lengths), sum(len(list(p.style())) for p in parts)))
 
 
 def update(text, found):
@@ -184,13 +216,19 @@ def update(text, found):
 
 def main(args):
     options = [a for a in args if a.startswith("-")]
-    program, world = ([os.path.abspath(a) for a in args if not a.startswith("-")] + [""] * 2)[:2]
+    *files, program, world = ["", ""] + [a for a in args if not a.startswith("-")]
+    program, world = os.path.abspath(program), os.path.abspath(world)
     os.chdir(docs.ROOT)
     rows = docs.read(DATA)
     data = Data(rows)
     pages = [Page(p, docs.read(p), data) for p in docs.documents()]
+    if "--comments" in options:
+        print("\n".join("%s:%d: %s" % (p, n, what) for p in files if p
+                        for n, what in Page(p, docs.read(p), data).style()))
+        return 0
     if "--stats" in options:
-        stats(pages)
+        stats(pages + [Page(p, docs.read(p), data) for top in ("lib", "ports", "test")
+                       for p in sorted(glob.glob(top + "/**/*.[ch]", recursive=True))])
         return 0
     found, bad = {}, 0
     for p in pages:
