@@ -51,7 +51,7 @@ what=${1:-}
 [ $# = 0 ] || shift
 case $what:$# in
 make:[2-9] | make:[1-9][0-9]) make_root "$@" ;;
-copy:2) new "$2" && cp -a "$1/." "$2" ;;
+copy:2) new "$2"; cp -a "$1/." "$2" ;;
 run:2)
     # shellcheck disable=SC2016 # expanded there
     exec unshare -m sh -ec 'mount --bind /proc "$0/proc"; mount --bind /dev "$0/dev";
