@@ -178,8 +178,8 @@ static void glove_start(void)
 
 static int in_parts(void) { return box.cfg.glove == EXH_BOX_LAST && box.cfg.mm32xat.slice > 0; }
 
-/* What the first tick hands over is begun here: it has as little to wait for as the others. A scan
- * that is taken in parts is begun when it is first asked for. */
+/* Begins the conversions that the first tick reads, so that this tick does not wait for them. A
+ * scan that is read in parts begins at the first request. */
 static void start(void)
 {
     box.open = 1;
@@ -357,8 +357,9 @@ static void put_lines(const struct exh_drive_out *out)
     }
 }
 
-/* exh_box_safe() may fall between any two accesses here. What it put is then overwritten, for
- * as long as it takes to see that: it is asked for again before anything is put out, and after. */
+/* exh_box_safe() may interrupt this function between any two accesses. The rest of the function
+ * would overwrite the safe values. So safe_calls is compared before each output takes effect, and
+ * at the end exh_box_safe() is called again. */
 int exh_box_write_drive(const struct exh_drive_out *out)
 {
     const uint32_t calls = box.safe_calls;
@@ -385,15 +386,15 @@ int exh_box_write_drive(const struct exh_drive_out *out)
     return 0;
 }
 
-/* --- glove, asked for --- */
+/* --- glove, on request --- */
 
 /* Takes the scan that runs, if it has ended or is worth waiting for. */
 static int glove_take(struct exh_card_fault *f)
 {
     struct exh_mm32xat *m = &box.mm32xat;
     int got;
-    if (in_parts()) {                                 /* not even for the first */
-        if (m->running) { box.counts.glove_waits++; } /* begun when it was last asked for */
+    if (in_parts()) {                                 /* no wait, not even for the first */
+        if (m->running) { box.counts.glove_waits++; } /* begun at the last request */
         box.fresh = 0;
         if (!m->running) { glove_start(); }
         return 0;

@@ -28,10 +28,10 @@ enum exh_box_card { EXH_BOX_A, EXH_BOX_B, EXH_BOX_GLOVE, EXH_BOX_CARDS };
 enum exh_box_when {
     EXH_BOX_NEVER, /* not at all: monitors and supply are 0, the glove is absent */
     EXH_BOX_NOW,   /* in the tick that reads it, which waits for the converter */
-    EXH_BOX_LAST,  /* begun when the one before was read, the first when the box was opened: no
-                    * wait while a tick is longer than a conversion. A glove's scan that is taken in
-                    * parts  (mm32xat.slice) is begun when it is asked for: the first time there is
-                    * none */
+    EXH_BOX_LAST,  /* begun when the previous one was read, the first when the box was opened. There
+                    * is no wait while a tick is longer than a conversion. A glove's scan that is
+                    * read in parts (mm32xat.slice) begins at the request: the first request has no
+                    * frame */
     EXH_BOX_WHENS
 };
 
@@ -95,14 +95,14 @@ struct exh_box_report {
     struct exh_s526_id s526[2];                /* of those that passed */
 };
 
-/* What happened and was dealt with; nothing of it is an error alone. */
+/* Events that were handled. None of them alone is an error. */
 struct exh_box_counts {
     uint32_t reads;             /* exh_box_read_drive() that ended well */
     uint32_t clamped;           /* D/A codes beyond dac_span_raw */
-    uint32_t overtaken;         /* writes into which exh_box_safe() fell */
+    uint32_t overtaken;         /* writes that exh_box_safe() interrupted */
     uint32_t quad[EXH_FINGERS]; /* illegal transitions an encoder input captured */
     uint32_t glove_frames;      /* scans handed over */
-    uint32_t glove_waits;       /* asked for while the scan still ran: the last again */
+    uint32_t glove_waits;       /* requests while the scan ran: they got the last scan */
     uint32_t glove_short;       /* scans with samples missing, */
     uint32_t glove_long;        /* with too many, */
     uint32_t glove_overflow;    /* from a FIFO that overflowed: dropped, FIFO reset */
@@ -121,10 +121,10 @@ int exh_box_read_drive(struct exh_drive_in *in);
 int exh_box_write_drive(const struct exh_drive_out *out);
 int exh_box_read_glove(struct exh_glove_in *in);
 
-/* Drives disabled, by the first access to each board, then D/A at 0 V: any time, from any
- * context, any number of times, also between any two accesses of the others.
- * EXH_S526_SAFE_ACCESSES port accesses a board, no wait. Boards whose signature was never seen
- * are not written to. */
+/* Disables the drives, by the first access to each board, then sets the D/A to 0 V. It may be
+ * called at any time, from any context, repeatedly, and between any two accesses of the other
+ * functions. It makes EXH_S526_SAFE_ACCESSES port accesses to a board and does not wait. It does
+ * not write to boards whose signature was never seen. */
 void exh_box_safe(void);
 
 /* The first since it was opened; code 0: none. */

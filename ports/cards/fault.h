@@ -32,7 +32,7 @@ enum exh_card_what {
     EXH_CARD_DA_OFFSET,    /* EEPROM: implausible; at: channel; 0.001 codes */
     EXH_CARD_AD_VREF,      /* EEPROM: implausible; microvolts */
     EXH_CARD_REF_0V,       /* implausible; the sum of ten conversions */
-    EXH_CARD_REF_10V,      /* likewise */
+    EXH_CARD_REF_10V,      /* implausible; the sum of ten conversions */
     EXH_CARD_REF_NOISE,    /* ten conversions of a reference too far apart */
     EXH_CARD_AD_GAIN,      /* implausible with all three together; ppm */
     EXH_CARD_FOLLOW,       /* its high word is not what its low words came to; at: counter */

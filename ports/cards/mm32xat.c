@@ -138,7 +138,8 @@ void exh_mm32xat_start(struct exh_mm32xat *m)
     m->asked = 0;
 }
 
-/* A card whose channel is none of the scan's is gone: all ones say so at once. */
+/* A card that is gone reads as ones. They are checked first, because they have the busy bit, too.
+ */
 static int busy(const struct exh_mm32xat *m, struct exh_card_fault *f)
 {
     const uint8_t got = in(m, MM_MISC);

@@ -55,13 +55,15 @@ int exh_mm32xat_done(struct exh_mm32xat *m, struct exh_card_fault *f);
 /* The same, waiting. 0 or -EXH_E_IO (1 + polls beyond the first). */
 int exh_mm32xat_wait(struct exh_mm32xat *m, struct exh_card_fault *f);
 
-/* Its samples: 1; 0: lost, the FIFO was reset and the frame is as it was; -EXH_E_IO with *f:
- * too many lost in a row (3 + 2 a channel, or 1 where words are read). */
+/* Reads the samples of the scan. Returns 1, or 0 if samples are missing: the FIFO was reset and the
+ * frame is unchanged. Returns -EXH_E_IO with *f if too many scans were lost in a row. It makes 3
+ * accesses and 2 a channel, or 1 a channel where words are read. */
 int exh_mm32xat_read(struct exh_mm32xat *m, int16_t *code, struct exh_card_fault *f);
 
-/* Both in parts: nothing while no scan runs, one look while it runs, then at most par.slice samples
- * a call. 1: these were the last, code has them all; 0: not yet, or lost; -EXH_E_IO with *f (at
- * most 2 + 2 a sample of the slice, or 1 where words are read). */
+/* Does both in parts. A call does nothing while no scan runs, polls once while one runs, and then
+ * reads at most par.slice samples. Returns 1 if code has all samples, 0 if not yet or if the scan
+ * is lost, -EXH_E_IO with *f. It makes at most 2 accesses and 2 a sample, or 1 a sample where words
+ * are read. */
 int exh_mm32xat_some(struct exh_mm32xat *m, int16_t *code, struct exh_card_fault *f);
 
 #endif

@@ -16,7 +16,8 @@ int s526_wait(const struct exh_s526 *s, unsigned flags, uint32_t limit_us, unsig
     struct exh_wait w = exh_wait_us(limit_us);
     do {
         *isr = s526_in(s, S526_ISR);
-        /* All flags at once are no flags: the EEPROM's is only ever set where it is waited for. */
+        /* All ones are no flags but an empty bus: the EEPROM's flag is set only after its command.
+         */
         if (*isr == S526_ALL_ONES) { return exh_card_fault(f, EXH_CARD_EMPTY, at, *isr, 0, 0); }
         if (*isr & flags) { return 0; }
     } while (exh_wait_more(&w));

@@ -11,8 +11,9 @@
 #define REF_RUNS 10 /* conversions of each reference */
 #define GAIN_1   (INT32_C(1) << 30)
 
-/* Plausible: D/A gain and offset within 5 % and 1000 codes of nominal; reference 10 V +- 2 %;
- * 0 V within 1 % of the range of 0, 10 V within 4 % of its code below the end of the range. */
+/* Plausible values: D/A gain and offset are within 5 % and 1000 codes of nominal. The reference is
+ * 10 V +- 2 %. 0 V reads within 1 % of the range of 0. 10 V reads within 4 % of its code, below the
+ * end of the range. */
 #define DA_GAIN_LO  3087
 #define DA_GAIN_HI  3411
 #define DA_ZERO_OFF 1000

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* What a unit has not: model exchange, scheduled execution, clocks, derivatives, variables of other
- * types. Importers ask for all names at once, so all are there, and say no. */
+/* Functions that a unit does not support: model exchange, scheduled execution, clocks, derivatives,
+ * variables of other types. Importers look up all names of FMI, so all are here and return an
+ * error. */
 #include "fmi3Functions.h"
 
 #include <stddef.h>

@@ -73,9 +73,9 @@ static const struct unit_var own_var[OWN] = {
 };
 static int32_t command;
 
-/* With all defaults the run is that of `exhand drop --rate 2000 --falls 1 --runs 1`: these are its
- * values, raw, where they are not the scene's: the paper's gains at that rate, the wall where seed
- * 1 draws it, scales of the simulated device, which has no calibration. */
+/* With all defaults the run is that of `exhand drop --rate 2000 --falls 1 --runs 1`. These are its
+ * raw values that differ from the scene's: the paper's gains at that rate, the wall's place that
+ * seed 1 draws, and the scales of the simulated device, which has no calibration. */
 static const struct {
     const char *name;
     int32_t raw;
@@ -229,7 +229,8 @@ int unit_step(void)
     return 0;
 }
 
-/* What is set up from period and parameters is in no state: it is made of what came with it. */
+/* A saved state does not contain the results of set-up. Period and parameters of the state restore
+ * them. */
 static void set_up_anew(struct exh_bytes *c)
 {
     const struct exh_scene_board board = {T, (uint8_t)enc_bits};

@@ -21,7 +21,8 @@ enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_FAULT = 5 };
 #define SYST_RUN     7u /* the processor's clock, interrupt, enabled */
 #define SYST_MAX     0x1000000u
 
-/* Timer 0 of the board: counts down. A real Cortex-M3 has DWT's cycle counter besides; QEMU none.
+/* Timer 0 of the board: counts down. A real Cortex-M3 also has DWT's cycle counter; QEMU's has
+ * none.
  */
 #define TIMER_CONTROL MPS2_REG(0x40000000)
 #define TIMER_VALUE   MPS2_REG(0x40000004)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A box of nothing, without a watchdog that could fire: every current that is asked for flows, no
+/* A box without hardware and without a watchdog: every commanded current flows, no
  * string moves, the glove is at rest. A hand takes hold of the dead-man switch after a while. Raw
  * codes, as the Sensoray cards have them. */
 #include "box.h"

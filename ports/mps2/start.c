@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Start: vectors, .data, .bss, main(). What goes wrong leads to mps2_fault(). */
+/* Start: vectors, .data, .bss, main(). Every exception leads to mps2_fault(). */
 #include "mps2.h"
 
 #define PAINT 0xA5A5A5A5u /* stack that was never used */

@@ -3,7 +3,7 @@
 #include "pc104.h"
 
 #define STUCK_READS 100000u /* 0.07 s and more on ISA; 16 characters take 1.4 ms */
-#define BURST_B     16u     /* what the UART's FIFO takes at once */
+#define BURST_B     16u     /* size of the UART's FIFO */
 
 int pc104_fifo_put(struct pc104_fifo *f, const uint8_t *byte, uint32_t len_B)
 {
@@ -12,7 +12,8 @@ int pc104_fifo_put(struct pc104_fifo *f, const uint8_t *byte, uint32_t len_B)
     return (int)len_B;
 }
 
-/* What is cut at the end of the ring waits for nothing more. 1: there is more to do at once. */
+/* A piece that ends at the end of the ring is sent without waiting for more. Returns 1 if more can
+ * be sent now. */
 static int out_udp(struct pc104_fifo *f, int now)
 {
     const uint32_t at = f->got & (f->size_B - 1);

@@ -89,8 +89,9 @@ void pc104_guard_open(void)
     open_tasks();
 }
 
-/* Firmware may put a card below DEVICES where there is little memory. What caches hold of it is
- * written back: it would overwrite later what goes past them. */
+/* On a machine with little memory, firmware may map a card below DEVICES. Its page becomes
+ * uncached. Cached lines are written back now, because they would overwrite later, uncached writes.
+ */
 int pc104_guard_device(uint32_t address)
 {
     const uint32_t i = address / LARGE_B;

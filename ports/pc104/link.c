@@ -316,7 +316,7 @@ void pc104_link_log_new(void) { stream_open(exh_board_cycles()); }
 
 /* --- what it costs --- */
 
-/* With a key: what goes out has a tag, and what comes has a wrong one, which is dearest. */
+/* The worst case with a key: each packet sent gets a tag, and each one received has a wrong tag. */
 static void dry_key(void)
 {
     static uint8_t longest[EXH_KEYED_MAX_B] = {

@@ -207,7 +207,7 @@ void pc104_modbus_start(struct exh_scene_board board)
     /* 99 % of what the line takes */
     tick_B_q16 = (uint32_t)exh_udiv64((UINT64_C(99) << 16) * (uint32_t)par.baud * board.T.num,
         UINT64_C(1000) * board.T.den, NULL);
-    pc104_out8(COM2(UART_FIFO), UART_FIFO_EMPTY); /* what came before is no request */
+    pc104_out8(COM2(UART_FIFO), UART_FIFO_EMPTY); /* earlier characters are no request */
 }
 
 /* --- ticks --- */
@@ -235,7 +235,7 @@ static int apply(void)
     return err;
 }
 
-/* All that a request has asked for, between two ticks. */
+/* Carries out the commands of a request, between two ticks. */
 static void carry_out(void)
 {
     const uint32_t asked = exh_regs_poll(&regs);
@@ -288,7 +288,7 @@ void pc104_modbus_poll(const struct exh_scene_in *in)
     if (hear() > 0 || !exh_modbus_rtu_poll(&line, tick_us * (1u + in->missed))) { return; }
     if (safety) { exh_regs_update(&regs, safety, in->drive.din); }
     regs.locked = params ? params->locked : 0;
-    (void)exh_scene_signals(scene); /* for who reads them */
+    (void)exh_scene_signals(scene); /* a request may read them */
     answer_B = (uint32_t)exh_modbus_rtu_answer(&line, &regs, answer, sizeof answer);
     sent_B = 0;
     in_fifo_q16 = 0;

@@ -144,7 +144,7 @@ static enum net_take take_arp(struct net *n, const uint8_t *f, size_t len_B, uin
     return op == ARP_ASK ? take_asked(n, f) : take_answer(n, f, now_us);
 }
 
-/* Whether an IPv4 header is one, whole and for us; else NET_DROPS is not what comes back. */
+/* The reason to drop an IPv4 packet; NET_DROPS if it is valid, complete and for us. */
 static enum net_drop why_not_ip(const struct net *n, const uint8_t *f, size_t len_B)
 {
     const size_t length = get16(f + I_LENGTH), head = (size_t)(f[I_VERSION] & 15) * 4;

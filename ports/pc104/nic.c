@@ -216,7 +216,7 @@ static int reset(void)
     if (!becomes(STATUS, STATUS_MASTER, 0, 100000)) { return fails("does not let go of the bus"); }
     put(EXTCNF_CTRL, get(EXTCNF_CTRL) | MDIO_OURS);
     (void)becomes(
-        EXTCNF_CTRL, MDIO_OURS, MDIO_OURS, 10000); /* firmware of its own, if there is any */
+        EXTCNF_CTRL, MDIO_OURS, MDIO_OURS, 10000); /* the card's own firmware, if there is any */
     put(CTRL, get(CTRL) | CTRL_RESET);
     pause_us(1000);
     if (!becomes(CTRL, CTRL_RESET, 0, 10000)) { return fails("does not come back from its reset"); }

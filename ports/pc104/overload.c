@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Are too many ticks late? They leak: firmware that takes the processor once a minute never adds
- * up to a halt, a loop that is too slow for its rate does at once. Portable:
+/* Are too many ticks late? The count of late ticks decreases with time. So firmware that takes the
+ * processor once a minute does not halt the box, and a loop that is too slow does. Portable:
  * test/closed/sim/pc104_overload_test.c. */
 #include "pc104.h"
 

@@ -14,7 +14,7 @@
  * time is given up, so that a missing UART costs a moment and never the program --- */
 void pc104_uart_open(void);
 void pc104_uart_put(char c);
-unsigned pc104_uart_offer(const uint8_t *byte, unsigned n); /* taken at once: 0 .. n */
+unsigned pc104_uart_offer(const uint8_t *byte, unsigned n); /* bytes taken: 0 .. n */
 
 /* --- say.c: text for people, over the UART --- */
 void pc104_say(const char *text);
@@ -110,7 +110,7 @@ struct pc104_fifo {
     uint32_t size_B, put, got; /* bytes in all, modulo 2^32 */
 };
 int pc104_fifo_put(struct pc104_fifo *f, const uint8_t *byte, uint32_t len_B); /* all or 0 */
-int pc104_fifo_out(struct pc104_fifo *f, int32_t where, int now); /* 1: more to do at once */
+int pc104_fifo_out(struct pc104_fifo *f, int32_t where, int now); /* 1: more can be sent now */
 int pc104_fifo_wait(struct pc104_fifo *f, int32_t where);         /* 1: all is out; 0: stuck */
 /* All out, or what is stuck is given up: so many bytes. */
 uint32_t pc104_fifo_flush(struct pc104_fifo *f, int32_t where);
@@ -132,7 +132,7 @@ void pc104_log_flush(void); /* what waits goes out, or is given up */
 int pc104_log_take(const void *rec, size_t len_B); /* as exh_board_log() */
 
 /* --- dump.c: the black box and its way out; dump_none.c: the scene has none --- */
-int pc104_dump_open(void); /* 1: it was asked for; halts where it cannot be */
+int pc104_dump_open(void); /* 1: an option requests it; halts if it is impossible */
 void pc104_dump_start(const struct exh_scene *sc, struct exh_scene_board board);
 void pc104_dump_dry(void); /* the next record of a dry tick is followed by a keyframe */
 void pc104_dump_before(uint32_t tick, struct exh_scene_in *in);
@@ -223,22 +223,22 @@ uint32_t pc104_guard_eip(void); /* where the double fault came from */
 int pc104_link_option(
     const char *name, const char *value); /* 0: not one of its; halts on bad ones */
 void pc104_link_open(
-    const struct exh_scene *sc); /* finds the card, if one was asked for; says so */
-void pc104_link_poll(void);      /* what came since the last tick: bounded work */
+    const struct exh_scene *sc); /* finds and prints the card, if an option names one */
+void pc104_link_poll(void);      /* packets since the last tick: bounded work */
 void pc104_link_dry(void);       /* the work of the worst tick, to be timed */
 void pc104_link_report(void);
 int pc104_link_up(void); /* 1: there is a card */
 /* Of the log: bytes taken, 0: not now. now 0: may wait for more, 1: do not, 2: the last. */
 unsigned pc104_link_log(const uint8_t *byte, unsigned n, int now);
-void pc104_link_log_new(void); /* what comes now is another stream */
+void pc104_link_log_new(void); /* the next bytes are another stream */
 
-/* --- modbus.c: the scene's registers on COM2, where asked for --- */
+/* --- modbus.c: the scene's registers on COM2, if an option says so --- */
 int pc104_modbus_option(const char *name, const char *value); /* 0: not its; halts on bad ones */
 void pc104_modbus_check(const struct exh_scene *sc);   /* halts where a card has COM2's ports */
 void pc104_modbus_open(const struct exh_scene *sc);    /* finds the UART; says so */
 void pc104_modbus_start(struct exh_scene_board board); /* halts where the rate does not hold it */
 void pc104_modbus_poll(const struct exh_scene_in *in); /* behind a tick's outputs: bounded work */
-uint8_t pc104_modbus_command(void); /* enum exh_command asked for since the last call */
+uint8_t pc104_modbus_command(void); /* enum exh_command of the last request; then none */
 /* The work of a tick, to be timed: part 0 the dearest request, 1 APPLY, else characters. 1: what
  * was staged may be applied in it */
 int pc104_modbus_dry(unsigned part);

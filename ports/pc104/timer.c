@@ -154,7 +154,7 @@ int pc104_timer_set(uint32_t rate_Hz, struct exh_period *achieved)
         offer_nearest(rate_Hz);
         return -EXH_E_RATE;
     }
-    (void)exh_io_time_us(); /* up to here in the counts of before */
+    (void)exh_io_time_us(); /* the time until here, in the old counts */
     counts = nearest(rate_Hz);
     *achieved = period();
     if (!is_hpet) { pc104_pit_load(counts); }
@@ -282,7 +282,7 @@ void pc104_timer_kill(void)
     if (is_hpet) {
         pc104_hpet_stop();
     } else {
-        pc104_pit_load(65536); /* as slow as it goes: mode 2 cannot be stopped */
+        pc104_pit_load(65536); /* the slowest rate: mode 2 cannot be stopped */
     }
 }
 

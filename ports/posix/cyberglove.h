@@ -26,7 +26,7 @@ enum cyberglove_cause {
     CYBERGLOVE_LENGTH,    /* it does not end where it should */
     CYBERGLOVE_FORM,      /* whole, but with a status byte where the others have none, or without */
     CYBERGLOVE_UNPLUGGED, /* its status or "eg" says: no glove on the unit */
-    CYBERGLOVE_FAST,      /* "es": asked for more than the unit can sample */
+    CYBERGLOVE_FAST,      /* "es": the requested rate is above that of the unit */
     CYBERGLOVE_CAUSES
 };
 
@@ -43,7 +43,7 @@ struct cyberglove {
     uint8_t held[CYBERGLOVE_FRAME_B + 2]; /* since the last 0, */
     uint32_t n;                           /* so many, and those beyond */
     uint8_t form, sure;                   /* in use, 0: not known; frames of the other in a row */
-    uint8_t rest;                         /* 1: what comes may be the rest of a discarded frame */
+    uint8_t rest;                         /* 1: the next bytes may belong to a discarded frame */
     uint8_t bare;                         /* 1: the last 0 may have been a status */
 };
 

@@ -34,7 +34,7 @@ struct glove_tty {
  * serial line. */
 int glove_tty_open(struct glove_tty *t, const char *path, double rate_Hz);
 
-/* What has come until now: 1, a new whole frame is in t->in; 0. */
+/* Reads the received bytes. Returns 1 if a new complete frame is in t->in, else 0. */
 int glove_tty_poll(struct glove_tty *t, double now_s);
 
 /* Stops the stream. */

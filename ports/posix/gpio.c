@@ -117,7 +117,7 @@ static void say_problem(char *said, const struct gpio_problem *p)
     }
 }
 
-/* --- open, close, and what comes between them unasked --- */
+/* --- open, close, and events between them --- */
 
 /* 0, or -1: they may be high still. An expander on a bus may fail once: that is no reason to leave
  * a motor on. */

@@ -47,11 +47,11 @@ static inline void gpio_lines_busy(struct gpio_problem *p, unsigned line, const 
     snprintf(p->who, sizeof p->who, "%s", who ? who : "");
 }
 
-/* All inputs at once: level[i] 0 or 1. 0, or -1 with errno. */
+/* Reads all inputs together: level[i] is 0 or 1. Returns 0, or -1 with errno. */
 int gpio_lines_get(int *level);
 
-/* All outputs at once. 0, or -1 with errno. Allocates nothing and takes no lock: signal handlers
- * call it. */
+/* Writes all outputs together. Returns 0, or -1 with errno. It allocates nothing and takes no lock,
+ * because signal handlers call it. */
 int gpio_lines_put(const int *level);
 
 #endif

@@ -48,7 +48,7 @@ struct posix_line_drops {
 };
 struct posix_line_drops posix_line_drops(void);
 
-/* What came to a socket with a key, counted; NULL: there is no key. */
+/* Counts of the packets that a socket with a key received; NULL: there is no key. */
 const struct exh_keyed *posix_line_keyed(void);
 
 /* The ways, for their counts and for changes on the way. */

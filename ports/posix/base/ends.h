@@ -3,7 +3,7 @@
 #ifndef CLI_ENDS_H
 #define CLI_ENDS_H
 
-/* Call it first in main(). From then on SIGINT and SIGTERM end the program at once with status
+/* Call it first in main(). From then on SIGINT and SIGTERM end the program immediately with status
  * 128 + their number. SIGHUP, SIGQUIT and SIGPIPE act as usual. Incomplete files are removed first
  * (outpart.h). Ignored signals stay ignored. A full disk is an error of write(), no signal. Each
  * handler acts once: a module with other plans for a terminating signal replaces it, and raises the

@@ -34,14 +34,14 @@ struct logfile {
     struct exh_record_header header;
     const struct exh_scene *scene;
     uint8_t *head;         /* payload of the header */
-    const uint8_t *params; /* in it, the parameter image and what follows */
+    const uint8_t *params; /* in it: the parameter image, and the rest of the header */
     uint32_t params_len;
     int shows;      /* not 0: how far it is, in percent, on a terminal, once that takes long */
     double shown_s; /* when next */
 };
 
 /* Opens the file, reads its header, finds the scene, and checks versions and tables. Text may
- * precede the header and stand between records, as on a serial line. Returns 0, 2 after a line on
+ * precede the header and may be between records, as on a serial line. Returns 0, 2 after a line on
  * stderr with the reason, or 3: no such file. */
 int logfile_open(struct logfile *l, const char *path);
 void logfile_close(struct logfile *l);

@@ -9,8 +9,9 @@
 
 #define WORDS_LINE_B 1024
 
-/* paced: a line that finds no room is lost and counted; else it waits for some, 2 s. Complaints
- * (option.h) go this way, too. Without a thread lines are written at once. */
+/* If paced, a line that finds no room is lost and counted. Otherwise it waits for room, 2 s at
+ * most. Error messages (option.h) take this way, too. Without a thread, lines are written
+ * immediately. */
 void words_begin(int paced);
 void words_end(void); /* waits 1 s at most for what was said before; repeatable */
 

@@ -37,8 +37,8 @@ struct cli_more {
     const char *moved; /* names of options that the lab's program has, blanks between; or NULL */
 };
 
-/* Parses; operands go to operand[]. 0 go on, 1 help or the version was asked for and printed,
- * 2 bad usage, said on stderr. */
+/* Parses the options; operands go to operand[]. Returns 0 to go on, 1 after printing help or the
+ * version, 2 after an error message on stderr. */
 int cli_parse(const struct cli_command *c, int argc, char **argv, const char **operand);
 int cli_parse_more(const struct cli_command *c, const struct cli_more *more, int argc, char **argv,
     const char **operand);

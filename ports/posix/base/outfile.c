@@ -24,7 +24,7 @@ static struct entry {
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 
-/* NULL: a free one, which is taken at once by that stream. */
+/* NULL: finds a free entry. The caller stores its stream there. */
 static struct entry *find(FILE *f)
 {
     struct entry *e = NULL;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The files that a command leaves. Each is whole at its name, or is not there (outpart.h). Options
- * are named without their dashes; NULL: none asked for this file. */
+/* The files that a command leaves. Each is complete at its name, or is not there (outpart.h).
+ * Options are named without their dashes; NULL: no option names this file. */
 #ifndef CLI_OUTFILE_H
 #define CLI_OUTFILE_H
 

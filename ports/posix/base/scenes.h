@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The scenes of this program, by their descriptors alone. Who needs a scene's own parameters or
- * signals includes its header. */
+/* The scenes of this program, by their descriptors alone. A source that needs a scene's own
+ * parameters or signals includes its header. */
 #ifndef CLI_SCENES_H
 #define CLI_SCENES_H
 

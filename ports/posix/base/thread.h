@@ -5,9 +5,9 @@
 
 #include <pthread.h>
 
-/* Starts a thread that receives no signals, except those of its own crash: signals belong to the
- * loop. Handled here, they could end the program without setting the outputs low (gpio.h). 0 or an
- * errno. */
+/* Starts a thread that receives no signals, except those of a crash of this thread. The loop
+ * handles signals. Handled here, they could end the program without setting the outputs low
+ * (gpio.h). 0 or an errno. */
 int thread_start(pthread_t *thread, void *(*run)(void *), void *ctx);
 
 #endif

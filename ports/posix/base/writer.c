@@ -8,7 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#define PIECE_B     65536u /* at most at once, so that room comes back soon */
+#define PIECE_B     65536u /* at most in one write, so that room is free soon */
 #define LOOK_NS     100000000L
 #define LOOKS_PER_S 10
 

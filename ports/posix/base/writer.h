@@ -24,7 +24,7 @@ struct writer {
     size_t cap_B;
     size_t head, held;                /* where the thread reads, and how much of it is its */
     uint64_t put_B, written_B, cut_B; /* in all; where the cut is */
-    int cuts;                         /* one is asked for */
+    int cuts;                         /* number of cuts requested */
     struct writer_hooks hooks;
     int error;      /* errno of what ended it: nothing is taken any more */
     int ends, over; /* asked to, has */
@@ -34,13 +34,13 @@ struct writer {
 
 /* 0, or the errno of a thread that could not be made. */
 int writer_start(struct writer *w, int fd, void *ring, size_t cap_B);
-/* The same, to a file of this name, which is whole once writer_end() has said 0, or is not there
- * (outpart.h). The thread opens it, too, since that may take long: what comes of it is known by the
- * end. */
+/* The same, to a file of this name. The file is complete when writer_end() has returned 0;
+ * otherwise it is not there (outpart.h). The thread opens it, too, because that may take long.
+ * writer_end() reports a failure. */
 int writer_start_file(struct writer *w, const char *path, void *ring, size_t cap_B);
 
-/* One caller, in its order: 1: all of it will be written, unless the file fails; 0: none, there was
- * no room, and nothing moved for so long; -1: the file failed. */
+/* For one calling thread. Returns 1: all bytes will be written in order, unless the file fails. 0:
+ * no byte, because there was no room for patience_s. -1: the file failed. */
 int writer_put(struct writer *w, const void *bytes, size_t n, double patience_s);
 
 /* To be given before anything is put. */

@@ -106,7 +106,7 @@ static void name_dump(char path[DUMPFILE_PATH_B + 12])
     box.dumps++;
 }
 
-/* Writes the whole dump at once: virtual time does not advance. */
+/* Writes the whole dump in one call: virtual time does not advance. */
 static void write_dump(void)
 {
     const struct exh_blackbox_is is = exh_blackbox_is();

@@ -237,7 +237,7 @@ int bilateral_stage(const struct bilateral_run_cfg *c)
     if (err == 0 && c->k_Npm >= 0) { err = cli_param_set_by(p, "--k: ", "mat_k", c->k_Npm); }
     if (err == 0 && c->b_Nspm >= 0) { err = cli_param_set_by(p, "--b: ", "mat_b", c->b_Nspm); }
     if (err == 0) { err = run_image(&c->live, p); }
-    /* Who is there now, whatever was there when that was saved. */
+    /* Fingers and session are those of this run, not those of the saved image. */
     for (size_t i = sizeof known / sizeof known[0] - 2;
          err == 0 && i < sizeof known / sizeof known[0]; i++) {
         err = cli_param_set(p, known[i].name, known[i].value);

@@ -81,7 +81,7 @@ static void take(struct peer *p, const void *buf, size_t len_B)
     struct exh_wire_packet in;
     const int type = exh_wire_decode(&p->rx, &in, buf, len_B);
     if (type == EXH_WIRE_HELLO) {
-        p->hello_s = -1; /* it is new here: answer at once */
+        p->hello_s = -1; /* a new peer: answer in this tick */
         pace_pull(&p->pace, &in.u.hello);
     }
     if (type == EXH_WIRE_TRACE) { take_trace(p, &in.u.trace); }

@@ -61,7 +61,7 @@ struct peer {
     uint32_t echo_seq, echo_stamp_us;
     double hello_s, param_s; /* when the last went out */
     double met_s;            /* when the controller was first heard of; < 0: not yet */
-    double heard_s;          /* when it last looked what came */
+    double heard_s;          /* when it last looked for packets */
     unsigned acked, refused; /* masks of parameters */
     uint64_t frames, answers;
     int told; /* a state has come */

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Hand record: what a glove recorded, as string for simulated fingers.
  *
- * Rows of 22 angles as recording.h reads them, equally far apart, or with time, which jitters: then
- * they are put on an even 60 Hz grid, on straight lines between rows. Rows of 30 numbers are known
- * without columns: a date (year, month, day, hour, minute, second), a flag and 23 angles in
+ * Rows have 22 angles as recording.h reads them. They are equally spaced in time, or have a time
+ * that jitters. Then linear interpolation puts them on an even 60 Hz grid. Rows of 30 numbers are
+ * known without columns: a date (year, month, day, hour, minute, second), a flag and 23 angles in
  * radians. What is flexion counts as in hand.h; whether up or down is
  * seen from the rows.
  */

@@ -126,7 +126,7 @@ static void begin(struct pieces *p, const struct pieces_try *t, struct pieces_pa
     p->next = t->number;
     p->place = t->place;
     p->end = p->low = t->header_B + part->more_n;
-    p->seen = UINT64_MAX; /* what comes late of before is too late */
+    p->seen = UINT64_MAX; /* older pieces are too late */
     p->pieces = t->pieces;
     for (unsigned i = 0; i < PIECES_BACK; i++) { p->was[i].at = p->end; }
     for (unsigned i = 0; i < PIECES_TRIES; i++) {

@@ -22,8 +22,8 @@
 
 struct recording {
     double (*row)[EXH_GLOVE_SENSORS]; /* codes, or rad; NAN: there was no number */
-    double *t_s;                      /* of each row, from the first on; NULL: not asked for */
-    char (*label)[RECORDING_LABEL_B]; /* of each row; NULL: not asked for */
+    double *t_s;                      /* of each row, from the first on; NULL: not wanted */
+    char (*label)[RECORDING_LABEL_B]; /* of each row; NULL: not wanted */
     long rows;
     int codes; /* 1: codes, not always whole */
 };

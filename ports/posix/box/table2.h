@@ -43,8 +43,8 @@ struct table2_result {
 
 #define TABLE2_PATH_B 1024 /* a path with its zero */
 
-/* What of a run is asked for, each with all before it: the longer the log, the more of the time is
- * judging. */
+/* How much of a run is judged; each includes those before it. Judging takes longer for longer logs.
+ */
 enum table2_ask {
     TABLE2_REST, /* falls, and which came to rest */
     TABLE2_LINE, /* the stiffness, aligned */
@@ -55,7 +55,7 @@ enum table2_ask {
 struct table2_result table2_measure(
     const struct run_cfg *c, const char *plot_prefix, enum table2_ask ask);
 
-/* Judges a run besides: what it finds goes to reading_Npm. */
+/* Another judge of a run. Its result goes to reading_Npm. */
 typedef void table2_judge(
     const struct fall_log *log, const struct sim_device *d, struct table2_result *r);
 struct table2_result table2_measure_more(

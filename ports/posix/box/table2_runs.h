@@ -36,8 +36,9 @@ struct table2_runs {
 struct table2_runs table2_runs(
     const struct table2_result *at_1, const struct table2_result *at_15, int runs);
 
-/* Which order statistic of n, from 1, ends the 95 % interval of the median at the low end (the
- * high end is n + 1 less it): the binomial distribution, no assumption besides. 0: too few. */
+/* The order statistic of n, from 1, at the low end of the 95 % interval of the median. The one at
+ * the high end is n + 1 less it. It follows from the binomial distribution; no distribution of the
+ * values is assumed. 0: n is too small. */
 int table2_median_rank(int n);
 
 #endif

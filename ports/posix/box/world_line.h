@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* World line: the world at the other end of --udp, and whether it is there. What changes is said on
- * stderr, each line with the option and its value; the box goes on. */
+/* World line: whether there is a world at the other end of --udp. A change is printed on stderr,
+ * with the option and its value. The box goes on. */
 #ifndef BOX_WORLD_LINE_H
 #define BOX_WORLD_LINE_H
 

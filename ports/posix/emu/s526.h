@@ -20,9 +20,9 @@ struct emu_s526_config {
     uint16_t base;
     uint16_t signature; /* 0x526A or 0x526B */
     uint8_t present;
-    uint32_t settle_ns;  /* A/D: settling, if asked for, */
+    uint32_t settle_ns;  /* A/D: settling, if commanded, */
     uint32_t convert_ns; /* each channel, */
-    uint32_t update_ns;  /* D/A update: when it says done; it acts at once */
+    uint32_t update_ns;  /* D/A update: until the flag; the output changes immediately */
     uint32_t eeprom_ns;  /* one word */
     int32_t ref_V_q16;   /* the A/D's reference */
     int32_t ad_gain_q16; /* the A/D as it is: code = gain * nominal + offset */
@@ -38,7 +38,7 @@ struct emu_s526_config emu_s526_nominal(void);
 /* Makes the EEPROM say what the card is: D/A gains and zeros, reference. */
 void emu_s526_describe(struct emu_s526_config *c);
 
-/* What goes wrong inside the card, now. */
+/* Faults inside the card, now. */
 struct emu_s526_wrong {
     uint8_t busy;                   /* no operation ever says done */
     uint8_t lost;                   /* the next start of the A/D is not taken */

@@ -20,9 +20,9 @@ extern const struct fall_rest_opt fall_rest_opt_default;
 
 enum fall_rest_class {
     FALL_AT_REST,
-    FALL_BUZZ, /* at rest, but the encoder moves by one or two counts: no more
-                  than a position on the edge of a count does by itself. Counts
-                  as rest; three counts, below travel_m, are slow creep: rest */
+    FALL_BUZZ, /* at rest, but the encoder changes by one or two counts, as a
+                  position at the edge of a count may do without motion. It counts
+                  as rest. Three counts, below travel_m, are slow creep: rest */
     FALL_OSCILLATES,
     FALL_INCOMPLETE, /* no contact, the log ends before the observation does, or the
                         mass is in flight through the whole window, or ran away to

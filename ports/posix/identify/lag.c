@@ -14,7 +14,7 @@
 #define FEW     20    /* steps, too few for a fit */
 #define LEAST_S 10e-6 /* of a lag */
 #define MOST_S  0.01
-#define FAR_S   50e-6 /* a wait moves no farther at once */
+#define FAR_S   50e-6 /* largest change of a wait in one step */
 #define STEPS   60
 #define ENOUGH  1e-7 /* a plain step that lowers the cost by a smaller share is the last */
 #define PLAIN   1e-2

@@ -39,7 +39,7 @@ struct model {
     double value[MODEL_PARS];
 };
 
-/* Both dry frictions of the string. A run tells this sum better than its two parts. */
+/* Both dry frictions of the string. A run determines this sum better than its two parts. */
 double model_mu(const struct model *m);
 
 /* What the simulated device is in these terms, at a period of T_s. */

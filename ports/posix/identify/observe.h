@@ -28,8 +28,8 @@ struct observations {
  * `rounds` of these stages (bits); 0: of all. 0, or -1: out of memory. Free it in any case. */
 int observe(struct observations *to, const struct identify_data *d, unsigned stages,
     unsigned rounds, double group_s);
-/* The same without the square wave and what follows it until a slow pull, where the string may have
- * slackened and struck. */
+/* The same without the square wave and the time after it until a slow pull. There the string may
+ * have slackened and struck. */
 int observe_calm(struct observations *to, const struct identify_data *d, unsigned stages,
     unsigned rounds, double group_s);
 void observe_free(struct observations *o);

@@ -174,7 +174,7 @@ static void *serve_rtu(void *unused)
         } else if (len < 0 && errno != ETIMEDOUT) {
             const int damaged = errno == EMBBADCRC;
             (void)modbus_flush(server.ctx);
-            if (!damaged) { (void)poll(NULL, 0, WAIT_MS); } /* a line that is gone fails at once */
+            if (!damaged) { (void)poll(NULL, 0, WAIT_MS); } /* a closed line fails immediately */
         }
         mail_save();
     }

@@ -11,7 +11,7 @@
  * is cut off at that colon. */
 long modbus_cut_number(char *text, long most);
 
-/* A connection, for who needs its place. */
+/* A connection, which a new one may replace. */
 struct place {
     uint32_t address; /* its source, in network order */
     int asked;        /* 1: a whole request has come */

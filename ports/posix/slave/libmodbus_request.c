@@ -4,7 +4,7 @@
 
 #include "slave/slave.h"
 
-static modbus_mapping_t *map; /* of every address, filled as asked for */
+static modbus_mapping_t *map; /* has every address, and values for the requested ones */
 
 int request_open(void)
 {

@@ -22,7 +22,7 @@ static struct {
     uint32_t touched[EXH_REGS_WORDS(EXH_REGS_VALUES)];
     struct exh_trace own, shown; /* own: the loop's, of every tick */
     struct exh_trace_frame own_frame[EXH_TRACE_FRAMES], shown_frame[EXH_TRACE_FRAMES];
-    int save;       /* asked for; the image is made behind the next tick */
+    int save;       /* 1: requested; the image is made after the next tick */
     int32_t made_B; /* bytes of image to be written; 0: none, or -EXH_E… */
     uint8_t image[IMAGE_B];
 } mail;

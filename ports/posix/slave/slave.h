@@ -33,7 +33,7 @@ int mail_show(const struct exh_scene_in *in);
 struct exh_regs *mail_take(void);
 void mail_give(void);
 
-/* Between requests: writes what SAVE asked for. */
+/* Between requests: writes the image that SAVE requested. */
 void mail_save(void);
 
 /* After the last tick and the last response: executes commands that were confirmed but found no

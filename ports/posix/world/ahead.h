@@ -31,7 +31,7 @@ struct ahead {
 };
 
 struct ahead_stats {
-    unsigned long tested, culled; /* bodies asked for their distance; of these by their ball */
+    unsigned long tested, culled; /* bodies; of these, bodies that their ball excluded */
 };
 
 /* The reported result of a finger. */

@@ -181,7 +181,7 @@ static void meshes(struct gl_solid *g, const struct draw_list *l, const struct d
     }
 }
 
-/* --- what goes into the batch, in the order it is painted --- */
+/* --- parts of the batch, in the order of painting --- */
 
 /* How round is round: corners cost, too. Finest when pixels are sampled many times, for pictures
  * that stay; of the rest large objects; the palm least: outlines are the same. */

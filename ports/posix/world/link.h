@@ -60,7 +60,7 @@ struct link {
     unsigned misfits; /* of keys that were said, bits */
     uint32_t echo_seq, echo_stamp_us;
     int64_t hello_us; /* when the last HELLO went out */
-    int64_t heard_us; /* when it was last looked what came */
+    int64_t heard_us; /* when packets were last read */
     struct exh_wire_hello theirs;
     unsigned differs;        /* enum exh_wire_difference, of the newest HELLO */
     unsigned long odd;       /* HELLOs that differed */
@@ -103,7 +103,7 @@ int link_trace_open(
  * written. */
 int link_trace_close(struct link *l);
 
-/* Takes what has come till now. 1 if a newer state is in *state. */
+/* Reads the received packets. Returns 1 if a newer state is in *state. */
 int link_receive(struct link *l, struct exh_wire_state *state, int64_t now_us);
 
 /* Sends HELLO when due, and answers the newest state. planes NULL: not of that state's hand; none

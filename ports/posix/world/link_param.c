@@ -8,8 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#define AGAIN_US   100000  /* without an answer for so long: it is asked for again */
-#define A_FRAME    2       /* asked for at once: a tick of the controller takes few packets */
+#define AGAIN_US   100000  /* without an answer for so long, the request is repeated */
+#define A_FRAME    2       /* requests in one frame: a tick of the controller takes few packets */
 #define PATIENT_US 1000000 /* without an answer for so long it goes on without */
 
 static void say(const struct link *l, const struct link_want *w, double value, const char *what)

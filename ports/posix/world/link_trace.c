@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A trace of the controller's outputs, asked for until it is answered, as CSV: a line a frame. */
+/* A trace of the controller's outputs as CSV, a line a frame. Requests are repeated until the
+ * answer. */
 #include "link_part.h"
 
 #include "base/none.h"
@@ -10,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define AGAIN_US 100000 /* without an answer for so long: it is asked for again */
+#define AGAIN_US 100000 /* without an answer for so long, the request is repeated */
 
 /* "name" or "name[instance]": its index in the table; -1: none. */
 static int32_t index_of(const struct exh_signal_table *t, const char *name, size_t len)

@@ -59,7 +59,7 @@ static void sleep_till(int64_t us)
 
 /* --- the exchange --- */
 
-/* What goes from frame to frame on the exchange's side alone. */
+/* State from frame to frame that only the exchange uses. */
 struct exchange {
     struct draw_moment m;
     struct solo solo;

@@ -20,8 +20,8 @@ void pace_pull(struct pace *p, const struct exh_wire_hello *hello)
     }
 }
 
-/* Whether a joint of any finger turned by more than TURN_Q32 between the two: of all at once, since
- * mostly none did. */
+/* Did a joint of any finger turn by more than TURN_Q32 between the two? One test for all joints,
+ * because mostly none did. */
 static int turned(const struct pace_at *a, const struct pace_at *b)
 {
     const int32_t *from = a->joint_turn_q32[0], *to = b->joint_turn_q32[0];

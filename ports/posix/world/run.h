@@ -19,7 +19,7 @@ struct run {
 /* In a window or not, paced by the clock, linked or not. Exit status. */
 int run_live(struct run *r);
 
-/* Headless and without a link: in the scene's own time, as fast as it goes. */
+/* Headless and without a link: in the scene's own time, as fast as possible. */
 int run_alone(struct run *r);
 
 /* The table of frames and looks a second. */

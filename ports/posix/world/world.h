@@ -17,8 +17,8 @@
 /* since world_load() or as the caller cleared them */
 struct world_stats {
     unsigned long frames, looks, hits;
-    unsigned long tests;  /* bodies asked for their distance */
-    unsigned long culled; /* bodies of these put aside by the ball around them */
+    unsigned long tests;  /* bodies whose distance was computed */
+    unsigned long culled; /* of these, bodies that the ball around them excluded */
     unsigned long slept;  /* objects not looked at, summed over the frames */
     unsigned long moved;  /* objects whose place was computed */
 };

@@ -24,8 +24,7 @@ static int32_t raw(double si, unsigned frac) { return (int32_t)floor(ldexp(si, (
 
 static double mm(int32_t m_q30) { return ldexp(1000.0 * m_q30, -EXH_Q_POS); }
 
-/* The index before a wall, glove and scene as `exhand bilateral` has them: what was not asked for.
- */
+/* The options that were not given have the values of `exhand bilateral`: wall, glove and scene. */
 static int fill(struct asked *a)
 {
     static struct bilateral_options o;

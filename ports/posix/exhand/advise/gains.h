@@ -29,7 +29,8 @@ struct gains_rate {
     struct exh_gains_par rule;
 };
 
-/* What the lab does besides. An exit status after a line on stderr, or 0; NULL: nothing. */
+/* Additional work of exhand-lab. Returns an exit status after a line on stderr, or 0. NULL: none.
+ */
 struct gains_study {
     struct cli_more more;
     int (*begin)(struct gains_options *a);            /* may choose the rates */

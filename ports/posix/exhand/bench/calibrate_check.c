@@ -14,8 +14,8 @@
 #include <string.h>
 
 /* what is written into the files */
-/* Whose, when, and the scales of the device as they are now. The monitor's zero is for
- * who uses the image to copy, so here it is the image's. */
+/* The device, the day, and the scales as they are now. The user of an image copies the monitor's
+ * zero from it, so here it is the image's. */
 static struct exh_calib_target here_and_now(
     const struct calibrate_options *o, const struct exh_calib *c)
 {

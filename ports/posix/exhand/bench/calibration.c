@@ -208,8 +208,8 @@ static double active(const struct exh_params *p, const char *name)
     return row ? cli_signal_value(row, p->active[at]) : 0;
 }
 
-/* A product of values: a mass that what takes up the slack might lift, a speed that is
- * beyond the travel limit within a dwell. 1 if it was one of them. */
+/* Checks combinations of values: a mass so small that the slack's force could lift it, and a speed
+ * that reaches the travel limit within a dwell. Returns 1 if one of them is bad. */
 static int say_product(const struct exh_params *p)
 {
     const double least_kg = active(p, "slack_cur") * active(p, "kf_min") / active(p, "gravity");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* One calibration on the simulated device's bench, and what comes of it as files. */
+/* One calibration on the simulated device's bench, and the files of its results. */
 #ifndef CLI_CALIBRATION_H
 #define CLI_CALIBRATION_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What comes of a calibration: lines through its points, tables for people and as CSV. */
+/* The results of a calibration: lines through its points, tables for people and as CSV. */
 #include "bench/calibration.h"
 
 #include "exhand/error.h"

@@ -46,7 +46,7 @@ static void defaults(struct options *o)
     o->s.board = posix_config_default();
 }
 
-/* --- what came out --- */
+/* --- results --- */
 
 /* truth: of a simulated device, or NULL. */
 static void print(

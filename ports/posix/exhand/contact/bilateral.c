@@ -172,7 +172,7 @@ static int refuse(const struct bilateral_options *o)
     return 0;
 }
 
-/* What --set asks for holds in the run, whatever else was asked for: so it is what is said. */
+/* --set has priority over the other options in the run, so its value is printed. */
 static void gain(const struct bilateral_options *o, const char *name, double paper, double *value)
 {
     if (*value < 0) { *value = paper; }

@@ -60,7 +60,7 @@ int bilateral_out_csv(
 int bilateral_out_pictures(const char *dir, const struct bilateral_result *r, int n, double k_Npm,
     double b_Nspm, const char *link);
 
-/* What the lab does with the options besides. */
+/* Additional work of exhand-lab with the options. */
 struct bilateral_study {
     struct cli_more more;
     int (*refuse)(struct bilateral_options *o, double rate_Hz); /* 0 or 2; NULL: nothing */

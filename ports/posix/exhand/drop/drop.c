@@ -71,7 +71,7 @@ static int watched(const struct drop_options *o)
     return o->pace || o->gpio.given || o->blackbox || o->let_go_s > 0 || o->guarded;
 }
 
-/* Whether what was asked for can be run at all: 0, or 2 after a line on stderr. */
+/* Can the requested run be made? Returns 0, or 2 after a line on stderr. */
 static int refuse(struct drop_options *o, const struct drop_study *study)
 {
     int err = assign_step(&o->device, 0, 0);

@@ -28,13 +28,13 @@ struct drop_options {
     struct images images;
     struct exh_period T;
     struct contacts gpio;
-    /* Of a study: it chooses the gains itself; runs at 1.5 times both gains, too, and judges both
-     * gates; judges each run besides. */
+    /* For a study: it chooses the gains; it also runs at 1.5 times both gains and judges both
+     * gates; it judges each run, too. */
     int plane, gates;
     table2_judge *more;
 };
 
-/* What the lab does with the options besides. */
+/* Additional work of exhand-lab with the options. */
 struct drop_study {
     struct cli_more more;
     int (*refuse)(struct drop_options *o); /* 0, or 2 after a line on stderr; NULL: nothing */

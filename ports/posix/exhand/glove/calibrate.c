@@ -26,8 +26,8 @@ struct poses_options {
     struct glove_bench bench;
 };
 
-/* What came out, as it is printed and written. */
-/* --- options with a syntax of their own --- */
+/* The results, for printing and writing. */
+/* --- options with their own syntax --- */
 
 static int take_fault(void *ctx, const char *text)
 {
@@ -91,7 +91,7 @@ static int refused(const char *path, int err, const struct exh_glove_error *bad)
     return 1;
 }
 
-/* A sound image that may not be used: whose it is, and who is here. */
+/* A valid image that may not be used: prints its user, and the present one. */
 static int not_here(const struct poses_options *o, const struct exh_glove_cal *c, int err,
     const struct exh_glove_error *bad)
 {

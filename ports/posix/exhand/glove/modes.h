@@ -67,7 +67,7 @@ void glove_line(
 /* Options that do not go together: 2 after a line on stderr. */
 int glove_bad(const char *what);
 
-/* What the lab does with the options besides. */
+/* Additional work of exhand-lab with the options. */
 struct glove_study {
     struct cli_more more;
     int (*check)(struct glove_options *o); /* 0 or 2; NULL: nothing */

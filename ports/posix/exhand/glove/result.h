@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What comes of a user's calibration of the glove. */
+/* The result of a user's calibration of the glove. */
 #ifndef GLOVE_RESULT_H
 #define GLOVE_RESULT_H
 

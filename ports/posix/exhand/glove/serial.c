@@ -147,7 +147,7 @@ static int go(const struct glove_options *o, FILE *log)
     c.log = log;
     c.max_ticks = o->seconds > 0 ? (uint32_t)(o->seconds * run.rate_Hz + 1) : 0;
     posix_configure(&c);
-    setvbuf(stdout, NULL, _IOLBF, BUFSIZ); /* a reader sees each row at once */
+    setvbuf(stdout, NULL, _IOLBF, BUFSIZ); /* a reader gets each row immediately */
     until_catch(UNTIL_RESTARTS);
     err = exh_loop(&exh_scene_glove, 0, &hooks);
     if (err < 0) {

@@ -102,7 +102,7 @@ static int fresh(struct watch_box *b)
     int err = 0, first = w.picked == NULL;
     if (w.picked != b->scene) {
         err = pick(b);
-        if (err || w.modbus) { return err; } /* those chosen are asked for from now on */
+        if (err || w.modbus) { return err; } /* from now on only these are requested */
     }
     if (!due(b)) { return 0; }
     first |= !w.taken;

@@ -28,7 +28,7 @@ struct watch_box {
     double since_s;      /* when watching began */
     const char *trouble; /* of the link at present; NULL */
     int ended;           /* the box has said so */
-    int all_values;      /* else those from..to alone are asked for, of Modbus */
+    int all_values;      /* else only from..to are requested over Modbus */
     uint32_t from, to;
     uint32_t every;                    /* of Modbus: a trace of every so many ticks; 0: none */
     uint32_t index[EXH_TRACE_SIGNALS]; /* and of what */
@@ -43,8 +43,8 @@ int watch_scene(struct watch_box *b, const char *name, uint32_t crc, uint32_t co
 
 /* --- sources: open, then look until it is over; 0, or a status after a line on stderr --- */
 
-/* Pieces of a log that come to ADDRESS:PORT, of this peer alone (NULL: of whose header comes
- * first). Takes what comes until then. */
+/* Opens a log that arrives at ADDRESS:PORT, from this peer only. NULL: from the first peer that
+ * sends a header. Receives until the header has come. */
 int watch_stream_open(const char *at, const char *peer, const char *key);
 int watch_stream_look(struct watch_box *b, double until_s, watch_fresh fresh);
 void watch_stream_close(void);

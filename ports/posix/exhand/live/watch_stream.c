@@ -130,7 +130,7 @@ static void add(const uint8_t *byte, uint32_t n)
     in.n += n;
 }
 
-/* In their order; what comes late is not waited for. */
+/* Takes the pieces in their order. It does not wait for a late one. */
 static int take(struct watch_box *b, const struct pieces_part *part, watch_fresh fresh)
 {
     if (part->more) { /* a log begins */

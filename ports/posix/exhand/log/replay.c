@@ -23,7 +23,7 @@ struct replay {
     struct exh_scene_in in; /* what crosses inward at the coming tick */
     struct exh_drive_out out;
     int running;         /* a start (tick 0 or a keyframe) was reached */
-    uint64_t from;       /* asked for; 0: from the beginning */
+    uint64_t from;       /* first tick wanted; 0: from the beginning */
     uint64_t last_tick;  /* of the last frame in the file, or of a keyframe behind `from` */
     int32_t faults_at;   /* index of the signal; < 0: the scene has none */
     uint32_t faults;     /* of the last frame */
@@ -243,8 +243,8 @@ static int find_from(struct replay *p)
     return is_found;
 }
 
-/* Asked for none: the beginning; of a dump, and of a log that begins with a later one, the first
- * keyframe: a dump's header has the parameters of its end. */
+/* Without a tick wanted, the replay begins at the log's beginning. For a dump, and for a log that
+ * begins later, it begins at the first keyframe: a dump's header has the parameters of its end. */
 static void find_begin(struct replay *p)
 {
     struct exh_record r;

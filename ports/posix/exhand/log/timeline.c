@@ -140,7 +140,7 @@ static void count(struct walk *w, struct timeline_span *s, double n, uint64_t ti
     }
 }
 
-/* --- what changes from frame to frame --- */
+/* --- changes from frame to frame --- */
 
 static void said_inputs(struct walk *w, uint64_t tick)
 {
