@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Check: the test API, written once for every place a test runs.
+/* Check: the test API, written once for every place where a test runs.
  *
- * A test file is a list of TEST(name) bodies and one TEST_MAIN("group", name, ...).
- * On a host it maps onto CMocka, one group a binary. With -DEXH_CHECK_PLAIN it
- * uses its own printer, which needs nothing but a putchar (EXH_CHECK_PUTCHAR
- * names another), so that the same file runs on bare metal; the last line is then
- * "N passed, N failed". Integers only, since a target may have no floats.
+ * A test file is a list of TEST(name) bodies and one TEST_MAIN("group", name, ...). On a host it
+ * uses CMocka, one group a binary. With -DEXH_CHECK_PLAIN it uses its own printer, which needs only
+ * a putchar (EXH_CHECK_PUTCHAR names another). So the same file runs on bare metal. The last line
+ * is then "N passed, N failed". It uses integers only, since a target may have no floats.
  *
  * Environment on hosts, -D on targets: EXH_SEED, EXH_CASES (cases of a property).
  * Hosts only: EXH_TEST=name runs one test, EXH_CASE=i one case of its properties,

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* Whatever a socket with a key brings: who has the true packets, and now and then the key.
+/* A socket with a key gets any packets: from an attacker who has the true packets, and sometimes
+ * from one who has the key.
  *
- * An input is a row of datagrams as wire_fuzz.c has them, so its corpus is this one's, too: a byte,
- * and a length (u16), whose upper 7 bits say how late it is. Put right by the byte's bits: 0
- * length, 1 CRC, and behind the packet 2 number, 3 echo, 4 tag. Bit 5: the box says one before, 6:
- * the world starts again, 7: it comes twice.
+ * An input is a sequence of datagrams in the format of wire_fuzz.c, so both share a corpus. Before
+ * each are a byte and a length (u16), whose upper 7 bits are its delay. Bits of the byte repair the
+ * datagram: 0 length, 1 CRC, and behind the packet 2 number, 3 echo, 4 tag. Bit 5: the box sends
+ * one before. Bit 6: the world starts again. Bit 7: the datagram comes twice.
  *
- * What must hold: no read outside; one count rises; what is handed on has a tag of the key, a
- * number that never came, an echo of a number of ours, and of the run before none that is older
- * than this run; all else changes a count alone, or the next echo; after it all two that are there
- * are heard. */
+ * Rules: No read is outside the datagram. Each datagram raises one count. An accepted packet has a
+ * tag of the key, a new number, and an echo of a number of ours. No packet of an earlier run is
+ * accepted that is older than this run. A refused one changes only a count or the next echo.
+ * Afterwards two honest peers hear each other. */
 #include "fails.h"
 #include "must.h"
 

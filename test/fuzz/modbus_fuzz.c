@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* Whatever a Modbus client or a serial line brings: the slave, fed with anything.
+/* The slave gets any requests from a Modbus client or a serial line.
  *
- * An input is a row of requests, each behind two bytes: what is put right about it, and its length.
- * Put right are, by bit: 0 a function that there is, 1 an address of a block, 2 a count that fits,
- * 3 the length. Bit 4: it comes over the serial line as a frame with its CRC, 5: the CRC is wrong,
- * 6: the bytes go to the line as they are. Bit 7: what was asked for is carried out behind it.
+ * An input is a sequence of requests. Before each are two bytes: repairs, and its length. Repairs
+ * by bit: 0 a function that exists, 1 an address of a block, 2 a count that fits, 3 the length. Bit
+ * 4: the request comes over the serial line as a frame with its CRC. Bit 5: the CRC is wrong. Bit
+ * 6: the bytes go to the line unchanged. Bit 7: the command is carried out afterwards.
  *
- * What must hold: no read or write outside; an answer is at most 253 bytes, an exception two; a
- * request that got one changes nothing; nothing is ever staged outside its range, nor what it may
- * not be while locked; nothing is commanded that may not be.
+ * Rules: No read or write is outside. An answer has at most 253 bytes, an exception two. A request
+ * that got an exception changes nothing. Nothing is staged outside its range or against a lock. No
+ * command is given that is not allowed.
  *
  * LLVMFuzzerTestOneInput() is libFuzzer's; the rest makes inputs without it: [SECONDS [SEED]]. */
 #include "fails.h"

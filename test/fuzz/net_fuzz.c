@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* Whatever a network card brings: the image's receiving end, fed with anything.
+/* The receiving end of the image gets any frames from a network card.
  *
- * An input is a row of frames, each behind three bytes: what is put right about it, and its length
- * (u16). Put right are, by bit: 0 to us, 1 IPv4's type, version and addresses, 2 UDP and its ports,
- * 3 sums, 4 ARP's head; bit 5: a second passes before it, 6: we ask where the peer is, 7: it is to
- * all.
+ * An input is a sequence of frames. Before each are three bytes: repairs, and its length (u16).
+ * Repairs by bit: 0 our address, 1 IPv4's type, version and addresses, 2 UDP and its ports, 3 sums,
+ * 4 ARP's head. Bit 5: a second passes first. Bit 6: we ask where the peer is. Bit 7: a broadcast.
  *
- * What must hold: no read or write outside; each frame is counted, once; one that is dropped
- * changes nothing but its count; what is handed over is the peer's, to us, and lies in the frame;
- * only an answer that was asked for says where the peer is; what we send is what we would take.
+ * Rules: No read or write is outside. Each frame raises exactly one count. A dropped frame changes
+ * nothing else. A frame that is handed over is from the peer, to us, and its data are in the frame.
+ * Only an answer to a request sets the peer's address. We would accept the frames that we send.
  *
- *   net_fuzz SECONDS [SEED]     bent frames for so long
+ *   net_fuzz SECONDS [SEED]     damaged frames for that time
  *   net_fuzz FILE...            these inputs
  * LLVMFuzzerTestOneInput() is libFuzzer's; with it, -DFUZZ_NO_MAIN. */
 #include "frames.h"

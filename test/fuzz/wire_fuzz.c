@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* Whatever a socket brings: a controller's receiving end, fed with anything.
+/* The receiving end of a controller gets any bytes from a socket.
  *
- * An input is a row of datagrams, each behind three bytes: what is put right about it before it
- * is sent, and its length (u16). Put right are, by bit: 0 magic and version, 1 length, 2 session,
- * 3 sequence number, 4 CRC; so that a mutation reaches what lies behind the checks. Bit 5: some
- * time passes before it, 6: a silence; 7: it comes twice.
+ * An input is a sequence of datagrams. Before each are three bytes: repairs before it is sent, and
+ * its length (u16). The repairs let a mutation pass the first checks. By bit: 0 magic and version,
+ * 1 length, 2 session, 3 sequence number, 4 CRC. Bit 5: some time passes first. Bit 6: a silence.
+ * Bit 7: the datagram comes twice.
  *
- * What must hold: no read or write outside; a packet that is not accepted changes nothing
- * but one counter; one that is accepted is, written anew, the same bytes, and next or a HELLO
- * that may begin; after it all, a silence and its HELLO, any peer is heard; the law never touches
- * before the freeze.
+ * Rules: No read or write is outside. A refused packet changes only one counter. An accepted packet
+ * encodes to the same bytes again; it is the next one, or a HELLO that may begin a session. After a
+ * silence, a HELLO of any peer is accepted. The law does not touch before the freeze.
  *
  * LLVMFuzzerTestOneInput() is libFuzzer's; driver.c calls it without libFuzzer. */
 #include "fails.h"

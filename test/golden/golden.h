@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Golden: every module's ticks against the independent generator's (README.md).
+/* Golden: every module's ticks against those of the independent generator (README.md).
  *
- * A module's run is a function that plays the stimuli of README.md at one rate and
- * hands each tick's row to a sink: values by golden_put(), the state's bytes by
- * GOLDEN_STATE(), then golden_tick(). It knows neither digests nor files.
+ * A module's run is a function that plays the stimuli of README.md at one rate. It hands each
+ * tick's row to a sink: values by golden_put(), the state's bytes by GOLDEN_STATE(), then
+ * golden_tick(). It knows neither digests nor files.
  */
 #ifndef TEST_GOLDEN_GOLDEN_H
 #define TEST_GOLDEN_GOLDEN_H

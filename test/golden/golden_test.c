@@ -1,13 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* Every module at every rate against the digests of the independent generator: a CRC each hundred
- * rates. Where one differs, the generator is called for its rates, then for the first rate that
- * differs, and the first tick that differs is told.
+/* Every module at every rate against the digests of the independent generator. A digest is a CRC of
+ * a hundred rates. Where one differs, the generator runs for its rates, then for the first rate
+ * that differs. The test prints the first tick that differs.
  *
- * Environment on hosts: EXH_TEST=name takes one module, EXH_RATES=lo..hi:step every step-th of
- * these rates alone, up to 20000, EXH_HUNDREDS=2001,2301 of those the hundreds alone that begin so,
- * EXH_EXPLAIN=0 counts without telling, EXH_CELLS=1 says what ran. EXH_DIGESTS=file has the digests
- * of single rates, EXH_WRITE=file gets them. EXH_TRACES=folder has traces of the paper's six rates,
- * which are compared tick by tick. */
+ * Environment on hosts:
+ *   EXH_TEST=name           one module
+ *   EXH_RATES=lo..hi:step   every step-th of these rates, up to 20000
+ *   EXH_HUNDREDS=2001,2301  of those, only the hundreds that begin so
+ *   EXH_EXPLAIN=0           count without an explanation
+ *   EXH_CELLS=1             print what ran
+ *   EXH_DIGESTS=file        has the digests of single rates
+ *   EXH_WRITE=file          gets them
+ *   EXH_TRACES=folder       traces of the paper's six rates, which are compared tick by tick */
 #include "explain.h"
 #include "modules.h"
 

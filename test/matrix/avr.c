@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* One module's golden vectors on an AVR: which rates stands behind a mark in the image, where
- * avr_run.c writes it; what ran, and the CRC of its digests, leave by a register that avr_run.c
- * reads. */
+/* One module's golden vectors on an AVR. avr_run.c writes the rates behind a mark in the image. It
+ * reads what ran, and the CRC of the digests, from a register. */
 #include "modules.h"
 
 #include <avr/interrupt.h>

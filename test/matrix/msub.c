@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* What clang before 15 makes wrong for 32-bit MIPS: of a product less something it
- * makes `msub`, which takes the product from that something, so that the sign is wrong
- * (LLVM issue 50458, mended in 15). In the library: peak^2 - cont^2 of the heat in
- * lib/src/act/drive.c and its like.
+/* An error of clang before 15 for 32-bit MIPS. For "a product less a value" it emits `msub`,
+ * which subtracts the product from the value, so the sign is wrong (LLVM issue 50458, fixed in 15).
+ * In the library that affects peak^2 - cont^2 of the heat in lib/src/act/drive.c, and similar
+ * terms.
  *
  *     for cc in "clang-14 --target=mips-linux-gnu -isystem /usr/mips-linux-gnu/include" \
- *               "clang-19 --target=mips-linux-gnu -isystem /usr/mips-linux-gnu/include"
- * mips-linux-gnu-gcc; do $cc -O2 -c test/matrix/msub.c -o msub.o && mips-linux-gnu-gcc -static -o
- * msub msub.o && qemu-mips ./msub done
+ *               "clang-19 --target=mips-linux-gnu -isystem /usr/mips-linux-gnu/include" \
+ *               mips-linux-gnu-gcc; do
+ *         $cc -O2 -c test/matrix/msub.c -o msub.o && mips-linux-gnu-gcc -static -o msub msub.o &&
+ *         qemu-mips ./msub
+ *     done
  *
- * says -58, 58, 58; the status is 1 where it is wrong. Not part of a build. */
+ * prints -58, 58, 58. The status is 1 where it is wrong. Not part of a build. */
 #include <stdint.h>
 #include <stdio.h>
 

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* The contract of a port, against exhand/board.h alone: link it to any port and run it
- * there. Where drives are connected, finger 0 is told 0.5 A for 50 ms and the samples
- * behind them, some times with its drive not enabled.
+/* The contract of a port, against exhand/board.h alone. Link it to any port and run it there. Where
+ * drives are connected, finger 0 is commanded 0.5 A for 50 ms, sometimes with its drive not
+ * enabled, and the samples after it are read.
  *
- * A board is set up once a run, at contract_rate_Hz. Where -DCONTRACT_REAL_TIME says that time
- * goes on while a tick computes, missed ticks and the counter of cycles are held against each
- * other, and against -DCONTRACT_CYCLES_HZ, where the port knows it. What cannot be asked of a
- * board through board.h (that wait says stop, the outputs after halt) is up to those who run
- * this: README.md. */
+ * A board is set up once a run, at contract_rate_Hz. -DCONTRACT_REAL_TIME means that time goes on
+ * while a tick computes. Missed ticks and the counter of cycles are then compared, also with
+ * -DCONTRACT_CYCLES_HZ if the port knows it. Some rules cannot be tested through board.h: that wait
+ * returns stop, and the outputs after halt. The person who runs this tests them: README.md. */
 #include "contract.h"
 
 #include "check.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* First power-up, rehearsed: every stage comes through when all is well, whichever the finger, with
- * and without the cards; whatever is wrong ends it within stated limits of time, current and way,
- * and from then on nothing comes out. */
+/* First power-up, rehearsed. Every stage passes if all is well, with any finger, with and without
+ * the cards. A fault ends a stage within stated limits of time, current and travel. After that no
+ * current flows. */
 #include "said.h"
 
 #include "bench/bringup_run.h"

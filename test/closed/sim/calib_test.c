@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Calibrations of fingers in the scenes that pull: a good one vouches for two steps of arming and
- * forces go by its points; one that is damaged, another device's or finger's, too old or made with
- * other scales is refused at set-up by name, and nothing of it is used; without one nothing arms,
- * unless that is waived. */
+/* Calibrations of fingers in the scenes that pull. With a good one, two steps of arming pass, and
+ * forces follow its points. Set-up refuses by name a damaged one, one of another device or finger,
+ * one that is too old, and one made with other scales. It then uses none of it. Without a
+ * calibration nothing arms, unless that is waived. */
 #include "said.h"
 
 #include "bilateral/bilateral.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Materials that a rate does not hold: refused by the rule of gains wherever they come from, the
- * default one softened; and where the rule is waived, the contact that buzzes ends in a fault. */
+/* Materials that are too stiff for a rate. The rule of gains refuses them, wherever they come from,
+ * and softens the default one. Where the rule is waived, a contact that oscillates ends in the
+ * fault chatter. */
 #include "check.h"
 
 #include "base/param.h"

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* The intervals of the analysis cover the mean of the estimator in 95 % of runs; how far
- * that mean lies from k is another question, and printed apart.
+/* The intervals of the analysis cover the mean of the estimator in 95 % of runs. How far that mean
+ * is from k is another question, and printed separately.
  *
- * `make coverage` runs 10^4 runs of ten falls of each model, `make test` a tenth; only the
- * former shows beside it what percentiles of a bootstrap would have covered, which takes
- * nearly all of the time and decides nothing. */
+ * `make coverage` runs 10^4 runs of ten falls of each model, `make test` a tenth. Only the former
+ * also prints the coverage of bootstrap percentiles, which takes nearly all of the time and decides
+ * nothing. */
 #include "check.h"
 
 #include "falls/analysis.h"

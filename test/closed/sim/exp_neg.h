@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* exp(-x), x >= 0, for what a closed form has: Taylor up to 1/2, then squaring; relative error <
- * 1e-15 up to 700 (2^11 times some half LSBs of a long double with 64 bits). */
+/* exp(-x), x >= 0, for closed forms: Taylor up to 1/2, then squaring. The relative error is below
+ * 1e-15 up to 700: 2^11 times some half LSBs of a long double with 64 bits. */
 #ifndef TEST_SIM_EXP_NEG_H
 #define TEST_SIM_EXP_NEG_H
 

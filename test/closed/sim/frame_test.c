@@ -108,8 +108,8 @@ TEST(a_frame_is_whole_by_the_next)
     CHECK(r.box.finger[4].tip_m_q30.x != 0, "a finger has never been seen");
 }
 
-/* A fault holds from the first tick of the frame that has it to the last tick of the one that has
- * it no more: as long as a finger may be of a held angle, it is not known. */
+/* A fault holds from the first tick of the frame that has it to the last tick of the first frame
+ * without it. Until then a finger may still be computed from a held angle. */
 TEST(a_fault_begins_at_once_and_ends_with_the_last_finger)
 {
     static struct rig r;

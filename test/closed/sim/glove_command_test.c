@@ -202,8 +202,8 @@ TEST(its_own_output_is_an_input)
     said_clean(dir);
 }
 
-/* A real one, of lines that end in CR with a letter behind them: every stable angle lies within
- * the quantizer's (Q + H)/2, 26 codes of 2^-16 turn, and half a code, of what was recorded. */
+/* A real recording: lines end in CR, with a letter behind it. Every stable angle is within the
+ * quantizer's (Q + H)/2, 26 codes of 2^-16 turn, and half a code, of the recorded one. */
 TEST(a_real_recording_comes_through)
 {
     const char *data = getenv("EXH_DATA") ? getenv("EXH_DATA") : "$EXH_DATA";

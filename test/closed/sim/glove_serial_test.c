@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* A stock glove on a serial line as the board's glove, on a pseudo-terminal with an emulated one at
- * its other end: frames as they were sent and no others, ages, silence, the device gone and back;
- * and the command. */
+/* A stock glove on a serial line as the board's glove: a pseudo-terminal with an emulated glove at
+ * its other end. The board gets the frames that were sent and no others, their ages, a silence, and
+ * a device that goes and returns. The command is tested, too. */
 #define _XOPEN_SOURCE 700 /* pseudo-terminals */
 
 #include "glove_said.h"

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* The rest of a fall that need not be run is, digit by digit, what running it gives: over stable,
- * marginal and unstable walls, with little and much friction, at slow and fast rates; and where
- * something would still happen behind a mass that stands, it is run. */
+/* The simulator may skip the rest of a fall in which nothing changes any more. The result is then
+ * the same, digit by digit, as that of a full run: with stable, marginal and unstable walls, little
+ * and much friction, slow and fast rates. Where something would still happen after the mass has
+ * come to rest, the rest is run. */
 #include "check.h"
 
 #include "box/table2.h"

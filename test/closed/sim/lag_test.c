@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Steps through a drive and its monitor, integrated a microsecond at a time: what they are made of
- * is found again, at any loop rate that can show it, and nothing is found where nothing shows. */
+/* Steps through a drive and its monitor, integrated a microsecond at a time. The fit finds their
+ * lag and delay at any loop rate that can show them, and finds nothing where nothing shows. */
 #include "check.h"
 
 #include "identify/lag.h"

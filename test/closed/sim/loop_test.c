@@ -274,8 +274,8 @@ TEST(setup_values_are_refused_while_locked)
     remove(path);
 }
 
-/* missed_max is 1: one missed tick is tolerated, two are a fault: the force falls from that very
- * tick on, those missed being steps of it, and there is none until somebody clears it. */
+/* missed_max is 1: one missed tick is tolerated, two are a fault. The force falls from that tick
+ * on, and the missed ticks count as steps of the fall. It is zero until the fault is cleared. */
 TEST(missed_ticks_reach_safety)
 {
     static const struct act act[] = {

@@ -322,11 +322,11 @@ TEST(exp_neg_is_good_to_1e_12)
 
 /* ---- Energy ------------------------------------------------------------------ */
 
-/* Leapfrog does not keep the energy E but D = E - h^2/8 dU''(v, v), exactly where the force is
- * linear (E changes by h times the mean speed times what is not of U, and by h^2/8 U'' of the
- * speeds). So D must not grow, except by 5/8 k (v h)^2 in a sub-step in which the string goes slack
- * or taut, by h^2/2 (1/m + 1/mr) F Fl where a loss Fl is taken at another speed than the mean, F
- * being all forces, and by rounding. */
+/* Leapfrog conserves not the energy E but D = E - h^2/8 dU''(v, v), exactly where the force is
+ * linear. Without this term, E changes by h times the mean speed times the forces outside U, and by
+ * h^2/8 U'' of the speeds. So D must not grow, with three exceptions. A sub-step in which the
+ * string becomes slack or taut may add 5/8 k (v h)^2. A loss Fl taken at a speed other than the
+ * mean may add h^2/2 (1/m + 1/mr) F Fl, where F is the sum of all forces. Rounding is the third. */
 struct energy {
     double e_J, d_J; /* energy, and the one that the method keeps */
     double may_J;    /* how much D may grow in the sub-step that begins here */
@@ -468,9 +468,8 @@ TEST(friction_is_of_second_order)
 
 /* ---- Steps that are short enough ------------------------------------------------ */
 
-/* By how many times its first deviation a taut string's force is off after 2000 steps, that of its
- * damping besides; the motor carries the mass's weight, or the mass is held by a hand that stands
- * still. */
+/* The force error of a taut string after 2000 steps, and that of its damping, as multiples of the
+ * first deviation. The motor carries the mass's weight, or a hand at rest holds the mass. */
 static double grown(const struct sim_device *d, double hand_npm, double hand_nspm, double step_s)
 {
     const double weight_N = d->mass_kg * SIM_GRAVITY, rest_m = weight_N / d->cable_npm;

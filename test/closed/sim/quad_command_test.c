@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand quad: recorded and synthetic captures decode to the counts, the illegal steps and
- * the shortest gaps of their descriptions, as bytes and as CSV; whatever is wrong with
- * options or input is refused by name. */
+/* exhand quad: recorded and synthetic captures decode to the counts, illegal steps and shortest
+ * gaps of their descriptions, as bytes and as CSV. Bad options and bad input are refused by name.
+ */
 #include "said.h"
 
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))

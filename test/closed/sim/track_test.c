@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* A D/A that stands still is told in time in closed loop, at any rate; and no current that does
- * follow is ever told, whatever is commanded, with the latest outputs that the device allows. */
+/* A D/A that no longer changes is detected in time in closed loop, at any rate. A current that does
+ * follow never gives this fault, for any commands, with the latest outputs that the device allows.
+ */
 #include "check.h"
 
 #include "posix.h"

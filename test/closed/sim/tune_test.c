@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Parameters that change while a finger presses: no force step beyond the slew limit, whatever is
- * staged in whichever tick; what a finger feels of one change; a log of it replays from the middle
- * of it. */
+/* Parameters that change while a finger presses. No force step exceeds the slew limit, for any
+ * value staged in any tick. One test has what a finger feels of a change; one replays a log from
+ * the middle of a change. */
 #include "logs.h"
 
 #include "box/run.h"
@@ -165,10 +165,10 @@ static void press(const struct run_cfg *c, enum how how, uint32_t at, uint32_t p
     run_free(&r);
 }
 
-/* k from 500 to 5000 N/m under a finger that presses: the largest step of force in a tick that k
- * makes where the finger is, and that of the force commanded, which moves the finger, too: at 90 Hz
- * 5000 N/m swings by itself. At once; 2^-s of the rest; and a straight ramp that takes as long as
- * 95 % of that do. */
+/* k changes from 500 to 5000 N/m under a finger that presses. Printed is the largest step of force
+ * in a tick, first due to k alone at the finger's place, then of the commanded force. The latter
+ * also moves the finger: at 90 Hz a wall of 5000 N/m oscillates. Three ways to change k: in one
+ * tick; 2^-s of the rest a tick; a straight ramp that takes as long as 95 % of the second way. */
 TEST(what_a_finger_feels)
 {
     static const struct {

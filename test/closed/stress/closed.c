@@ -105,14 +105,17 @@ static void run_closed(const struct closed *c)
     }
 }
 
-/* Travel is from the start, +-1 mm; the wall is at 70 mm. Where the loop is much faster than
- * the mass, the drive's 27 N must stop 0.55 kg, 0.34 J, within 17 mm, and the first tick
- * and the output delay let pass 2 mm more: 90 mm. (At 90 Hz 11 ms let pass 13 mm: 110.)
- * What a late force throws up may not go above where it came from: -3 mm. Not asked of
- * motion: below 90 Hz (the mass has passed before the loop looks), 5 kg (more than
- * the motor can hold), no gains, an encoder that lies. F0 outweighs 1 g: it is wound up,
- * against 3 Ns/m of friction by no more than 36 mm/s for 3 s; and 1 g on a rotor without
- * friction is thrown back by a late wall with more than it had: 300 mm are allowed. */
+/* Travel is from the start, +-1 mm; the wall is at 70 mm. Where the loop is much faster than the
+ * mass, the drive's 27 N must stop 0.55 kg, 0.34 J, within 17 mm. The first tick and the output
+ * delay add 2 mm: 90 mm. (At 90 Hz 11 ms add 13 mm: 110.) A late force may throw the mass up, but
+ * not above its start: -3 mm.
+ *
+ * Some cases have no limits of motion. Below 90 Hz the mass has passed before the loop reads it. 5
+ * kg are more than the motor can hold. Others have no gains, or a wrong encoder.
+ *
+ * F0 outweighs 1 g and winds it up, against 3 Ns/m of friction at 36 mm/s at most for 3 s.
+ * On a rotor without friction, a late wall throws 1 g back with more energy than it had: 300 mm are
+ * allowed. */
 static const struct closed closed_case[] = {
     {"paper, 2000 Hz", 20000, 60, 0.5, {1, 2000}, PLAIN, -3, 90, 0},
     {"k 1e6 N/m", 1e6, 0, 0.5, {1, 2000}, PLAIN, -3, 90, 0},

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* All inputs at their ends at once, the other end in the next tick; all parameters likewise; in
- * every scene that takes defaults. What has to hold is what no scene may ever do: a code that
- * pushes or is beyond its span, a drive that is not enabled and has one, a count of ticks that
- * stands still. Besides, the signs of what saturates. */
+/* All inputs jump from one end of their range to the other in one tick, then all parameters do; in
+ * every scene that takes defaults. No code may push or be beyond its span. A drive that is not
+ * enabled may have no code. The count of ticks must rise. The signs of saturated values are tested,
+ * too. */
 #include "stress.h"
 
 #include <math.h>

@@ -1,28 +1,33 @@
 /* SPDX-License-Identifier: MIT */
-/* Stress: the drop scene at and beyond the ends of its ranges, alone and in closed loop
- * over the simulated device; and sine and cosine of every angle there is. `make stress` builds
- * it with -fsanitize=address,undefined, runs it, and runs the property tests with
- * EXH_CASES=100000000 for the laws themselves.
+/* Stress: the drop scene at and beyond the ends of its ranges, alone and in closed loop with the
+ * simulated device; sine and cosine of every angle. `make stress` builds it with
+ * -fsanitize=address,undefined and runs it. It also runs the property tests with
+ * EXH_CASES=100000000.
  *
- * Prints one table: case, what must hold besides the rules below, what held, ok or FAIL.
- * Exit status 1 on any FAIL. In every tick of every case must hold:
+ * Prints one table: the case, its own rules, what held, ok or FAIL. Exit status 1 on any FAIL.
+ * These rules hold in every tick of every case:
  *
- *   output     the scene gives what its modules give in their documented order
- *   state      of the box, causes and faults latched are those of box.c, which knows SAFETY.md and
- * no table; alive counts ledgers    force and current terms sum to the last bit force      open:
- * what the law asks for, within 0, f_max, the table's end and the ramp's share of them, or as near
- * as slew lets it; in a release the force at its beginning less equal steps, whatever the law asks
- * for, and 0 after the last; else 0 slew       open: |change of F| <= slew * T + 1 LSB speed
- * velocity into the law is what was measured within speed_limit; for longer than speed_time it is a
- * fault slewed     parameters that act on force go 1/2^s of what is left a tick, rounded up, all
- * others at once code       dac_zero <= code <= dac_zero + dac_span: a string is never pushed;
- * shut, and on axes not in use, dac_zero and disabled; in a release never further out than in the
- * tick before current    0 <= i <= i_peak, coded to half a code heat       the integral of i^2 -
- * i_cont^2 stays within i_peak for peak_time, in whole ticks rounded up, and one tick more signals
- * c is 0 or 1 and agrees with q and q_lim, enums and bit sets are known ones, the monitored force
- * lies on its table
+ *   output    The scene's output is that of its modules, called in the documented order.
+ *   state     State of the box, latched causes and faults are those of box.c, a model written from
+ *             docs/SAFETY.md without a table. `alive` counts.
+ *   ledgers   The terms of force and current sum to the last bit.
+ *   force     Gate open: the law's force, limited to 0, f_max, the table's end and the ramp's share
+ *             of them, or as near as the slew limit allows. Release: the force at its beginning
+ *             less equal steps, whatever the law commands, and 0 after the last step. Else 0.
+ *   slew      Gate open: |change of F| <= slew * T + 1 LSB.
+ *   speed     The law gets the measured velocity, limited to speed_limit. A higher speed for longer
+ *             than speed_time is a fault.
+ *   slewed    Parameters that act on force change by 1/2^s of the rest in a tick, rounded up. All
+ *             others change in one tick.
+ *   code      dac_zero <= code <= dac_zero + dac_span: a string is never pushed. Gate shut, or axis
+ *             not in use: dac_zero and disabled. Release: never above the code of the tick before.
+ *   current   0 <= i <= i_peak, coded to half a code.
+ *   heat      The integral of i^2 - i_cont^2 stays within i_peak for peak_time, in whole ticks
+ *             rounded up, and one tick more.
+ *   signals   c is 0 or 1 and agrees with q and q_lim. Enums and bit sets have known values. The
+ *             monitored force is on its table.
  *
- * ends.c: other scenes, of which less is asked, and the signs of what saturates.
+ * ends.c has the other scenes, with fewer rules, and the signs of saturated values.
  */
 #include "stress.h"
 

@@ -40,8 +40,8 @@ static void tick_counter_wraps(void)
     report("tick counter wraps, fault at it", "same bits as from tick 0; its tick is kept");
 }
 
-/* The log of the scene's own instance over ticks that pass 2^32, and back out of it: ticks
- * run on, a keyframe stands at tick 0, and from it the rest replays bit for bit. */
+/* The log of the scene's instance over ticks that pass 2^32. Ticks go on, a keyframe is at tick 0,
+ * and from it the rest replays bit for bit. */
 static char *write_wrapping_log(uint32_t first, uint32_t ticks, size_t *len_B)
 {
     const struct exh_scene *sc = &exh_scene_drop;

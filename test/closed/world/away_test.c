@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Distances from bodies and the planes that touch them, beside a search that knows no more of a
- * body than whether a point is inside; and what a finger touches first, beside a walk in steps of
- * 50 um. */
+/* Distances from bodies and the planes that touch them, against a search that only knows whether a
+ * point is inside a body. What a finger touches first, against a walk in steps of 50 um. */
 #include "check.h"
 
 #include "world/ahead.h"

@@ -422,8 +422,8 @@ static void read_all(const char *path, char *to, size_t cap_B)
     to[n] = '\0';
 }
 
-/* Asked for until it is answered; what comes is lines, what does not is counted; a controller that
- * has started anew is asked anew, and frames of what was asked of the one before are nobody's. */
+/* A request is repeated until the answer. Each frame gives a line, a missing frame is counted. A
+ * controller that has started again gets a new request, and frames of the old one are ignored. */
 TEST(a_trace_is_asked_for_and_written)
 {
     static const char want[] =

@@ -182,9 +182,9 @@ TEST(safe_touches_no_port_where_no_board_was_found)
     CHECK_EQ_I64(bus.n, 0);
 }
 
-/* Before every access of a write, a read, an opening: at the end of that call outputs are safe,
- * and after it no access but a few finds one that is not: those of a write that was overtaken,
- * until it has seen that. */
+/* exh_box_safe() is called before every access of a write, a read and an opening. At the end of
+ * that call the outputs are safe. After it only a few accesses find unsafe outputs: those of an
+ * interrupted write, until it compares safe_calls. */
 TEST(safe_may_come_before_any_access)
 {
     struct exh_box_config c = five();

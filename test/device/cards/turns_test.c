@@ -174,8 +174,8 @@ static struct exh_box_config parts(unsigned slice)
     return c;
 }
 
-/* At 10 kHz on the bus's own clock, a frame every 20 ticks: no access of a tick waits for a
- * converter, none has more than a slice to read, and each frame is of one scan. */
+/* At 10 kHz on the bus's clock, with a frame every 20 ticks: no access waits for a converter.
+ * No tick reads more than a slice. Each frame is of one scan. */
 static unsigned most_accesses(unsigned slice)
 {
     unsigned most = 0, frames = 0;

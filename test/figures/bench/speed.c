@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* How much faster than the clock the simulation runs, through the port and the loop that firmware
- * runs: the paper's two experiments at 2 kHz, ten falls, and a hand with one finger and with five
- * at the three speeds. Usage: speed [EXPERIMENT [MAX_TICKS]]. */
+/* How much faster than real time is the simulation? It runs through the port and the firmware's
+ * loop. The runs are the paper's two experiments at 2 kHz: ten falls, and a hand with one and with
+ * five fingers at the three speeds. Usage: speed [EXPERIMENT [MAX_TICKS]]. */
 #include "box/hand_options.h"
 #include "posix.h"
 

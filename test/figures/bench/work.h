@@ -65,9 +65,9 @@ struct freeze_case {
 void freeze_path(uint32_t i, uint32_t f, struct freeze_case *c);
 long double freeze_any(struct freeze_case *c);
 
-/* The contact of an hour: energy_next() moves it by a tick and tells the exact energy, J, the
- * count, and the force that is asked for next; what the bench can hold of that is told by
- * energy_hold(). energy_cnt: the counts of the ops. */
+/* The contact of an hour. energy_next() moves it by a tick. It returns the exact energy, J, the
+ * count and the next commanded force. energy_hold() returns what the bench can hold of that.
+ * energy_cnt has the counts of the ops. */
 #define ENERGY_F_MOST_N 22
 #define ENERGY_WAY_M    (3.0 / 2000)
 extern int32_t energy_cnt[BENCH_OPS];

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* Runs a scene's tick and nothing else, for whoever counts its instructions: every input healthy,
- * the string at rest until the box runs (armed, ramp over), then pulled out and let in one count a
- * tick, so that a wall is entered and left, the glove bent and stretched along with it. Counted,
- * in counted_tick(), are the ticks of the sweep that are asked for:
+/* Runs only a scene's ticks, so that a tool can count their instructions. All inputs are healthy.
+ * The string is at rest until the box runs: armed, ramp over. Then it moves out and in by one count
+ * a tick, so that the finger enters and leaves a wall. The glove bends with it. counted_tick() has
+ * the ticks of the sweep that the option selects:
  *     contact   RUN or LIMIT, and the tick before coded a current for finger 0
  *     run       RUN or LIMIT
  *     all       all: a scene without safety
  * Their number goes to stdout. Usage: ticks N contact|run|all [WORD...]
- *     0xID=RAW    a parameter, of every finger or whatever there are several of; 0xID.N=RAW: of one
- * With any other word a tick is what the loop makes of it, parameters applied, and with
- *     link=0|1|2  the link not called; packets written, nobody there; a world that answers
+ *     0xID=RAW    a parameter, of every finger or every item; 0xID.N=RAW: of one
+ * With any other word, a tick is one of the loop with parameters applied, and with
+ *     link=0|1|2  the link not called; packets written without a peer; a world that answers
  *     log=1       lib/src/run/log.c, to a board that takes every record
  *     glove=0     no glove frame ever came */
 #include "world.h"

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Drift: laws that are cheap enough to run for 10^9 ticks, at 20 kHz half a day. The input repeats
- * every 1000 ticks, so once what was before has died away every period must give the bits of an
- * early one, and what is summed must grow by the same number in each. Where a state has bits below
- * those that come out, these may go round on their own, and the last bits of what comes out with
- * them: so much is allowed, and no more after 10^9 ticks than early on. Counters begin just below
- * their ends and pass them in every period. */
+/* Drift: laws that are cheap enough to run for 10^9 ticks, half a day at 20 kHz. The input repeats
+ * every 1000 ticks. So after the transient every period must give the bits of an early one, and
+ * sums must grow by the same number in each. Where a state has bits below those of the output,
+ * these bits may cycle, and the last bits of the output with them. The test allows as much after
+ * 10^9 ticks as early on, and no more. Counters begin just below their ends and pass them in every
+ * period. */
 #include "stability.h"
 
 #include <math.h>

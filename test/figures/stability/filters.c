@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Filters at rest: from any state that inputs can cause, a constant input must bring each to a
- * state that does not change any more, or to states that follow each other in a circle while the
- * output stands: then nothing moves ever again. Beside them direct forms, as others build them. */
+/* Filters at rest. A constant input must bring each filter from any reachable state to a state that
+ * no longer changes, or to a cycle of states with a constant output. Direct forms, as
+ * others build them, run beside them. */
 #include "stability.h"
 
 #include <math.h>

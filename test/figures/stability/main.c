@@ -2,15 +2,17 @@
 /* Stability: stiff and extreme cases against theory. `make stability`; parts of it are sections of
  * `make report`.
  *
- *   map      every rate, k to 10^6 N/m, b to 10^3 Ns/m, 1 g to 5 kg, 0 to 3 ticks of delay: does
- * the library's law with an exact mass grow or decay as the spectral radius says? device   the same
- * with dry friction, encoder steps and a string that only pulls and a peak force, one by one and
- * together plane    limit cycles of encoder steps over friction and damping (the sigma-beta plane),
- * against its borders filters  every filter and velocity estimator comes to rest, exactly, from any
- * state; beside direct forms drift    10^9 ticks of cheap laws: the last period gives the bits of
- * the first, counters wrap on the way
+ *   map      Every rate, k to 10^6 N/m, b to 10^3 Ns/m, 1 g to 5 kg, 0 to 3 ticks of delay. Does
+ *            the library's law with an exact mass grow or decay as the spectral radius says?
+ *   device   The same with dry friction, encoder steps, a string that only pulls and a peak force,
+ *            one by one and together.
+ *   plane    Limit cycles of encoder steps over friction and damping (the sigma-beta plane),
+ *            against its borders.
+ *   filters  Every filter and velocity estimator comes to rest exactly, from any state; direct
+ *            forms for comparison.
+ *   drift    10^9 ticks of cheap laws. The last period gives the bits of the first. Counters wrap.
  *
- * Prints one line a rule: what must hold, what held, ok or FAIL; exit status 1 on any FAIL. */
+ * Prints one line for each rule: the rule, what held, ok or FAIL. Exit status 1 on any FAIL. */
 #include "stability.h"
 
 #include "sim/linear.h"

@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* The sigma-beta plane: a virtual spring alone, steps of D, dry friction Fc = sigma K D, viscous
- * friction c = beta K T. Where it rests, where it cycles by a step or so, and from where it grows.
- * Theory: rest at sigma >= 1/2; nothing grows where rho < 1, that is from beta = 1/2 + d on where
- * the swing is slow beside the rate; below, what starts larger than A* = 4 sigma D / (pi
- * sqrt(alpha) (that - beta)) grows, alpha = K T^2 / m; without dry friction cycles of at most (2 /
- * pi) (1 + d) / beta steps either side. */
+/* The sigma-beta plane: a virtual spring alone, encoder steps of D, dry friction Fc = sigma K D,
+ * viscous friction c = beta K T. Where does it rest, where has it a cycle of about a step, and
+ * where does it grow? Theory:
+ *
+ *   It rests at sigma >= 1/2.
+ *   Nothing grows where rho < 1. If the oscillation is slow compared to the rate, that is from
+ *   beta = 1/2 + d on.
+ *   Below that, amplitudes above A* = 4 sigma D / (pi sqrt(alpha) (1/2 + d - beta)) grow, with
+ *   alpha = K T^2 / m.
+ *   Without dry friction cycles have at most (2 / pi) (1 + d) / beta steps to either side. */
 #include "stability.h"
 
 #include <math.h>

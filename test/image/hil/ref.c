@@ -77,9 +77,9 @@ static void delay_monitor(struct exh_drive_in *in)
     last = now;
 }
 
-/* Of each board the tick before began one channel, in turn: of A those of monitors 0..3, or of
- * monitor 0 and the supply of a box for one finger, of B those of monitor 4 and the supply. The
- * first tick has what stood there when the box was opened: nothing. */
+/* In each tick every board begins one channel, in turn, which the next tick reads. Board A converts
+ * monitors 0..3, or monitor 0 and the supply in a box for one finger. Board B converts monitor 4
+ * and the supply. The first tick reads the values of the opening: nothing. */
 static void take_turns(uint32_t tick, struct exh_drive_in *in)
 {
     static struct exh_drive_in held, last;

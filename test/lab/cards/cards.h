@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* How the box ends when something is wrong with a card: one kind of misbehaviour of one card that
- * begins in one phase of its driver, at one access of that phase after the other. */
+/* How does the box end when a card fails? One fault of one card begins in one phase of its driver,
+ * at each access of that phase in turn. */
 #ifndef CLI_CARDS_H
 #define CLI_CARDS_H
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Fingers and hands over which contacts are judged: from the light finger of a child to a heavy one
- * with the exoskeleton; from a hand that lets itself be pushed to one that is clenched. All press
- * alike. */
+/* Fingers and hands for the judgement of contacts. They range from the light finger of a child to a
+ * heavy one with the exoskeleton, and from a hand that yields to a clenched one. All press with the
+ * same force. */
 #ifndef LAB_CONTACT_HANDS_H
 #define LAB_CONTACT_HANDS_H
 

@@ -6,10 +6,10 @@
 
 #include <stdio.h>
 
-/* Prints a text in which {p:k} becomes a parameter of the drop scene with its default and unit,
- * {s:q} an output with its unit, {P:mat_k} and {S:d} those of the bilateral scene, {d:mass} a value
- * of the simulated device, {#:crc} the CRC-32 of what stands before it.
- * 0, or 1 after a line on stderr: the text names a row that does not exist. */
+/* Copies a text and expands its marks. {p:k} becomes a parameter of the drop scene with its default
+ * and unit, {s:q} an output with its unit. {P:mat_k} and {S:d} are those of the bilateral scene.
+ * {d:mass} is a value of the simulated device. {#:crc} is the CRC-32 of the text before it.
+ * Returns 0, or 1 after a line on stderr: the text names a row that does not exist. */
 int diagram_expand(FILE *in, FILE *out);
 
 #endif

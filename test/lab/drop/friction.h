@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* exhand-lab drop --friction N: the stability border against the friction of the string.
  *
- * At each rate both gains are raised together, along the ray through the paper's point,
- * until the falls no longer come to rest; with N amounts of friction from none to twice
- * the device's: all of it, its dry part alone, its viscous part alone. */
+ * At each rate both gains are raised together, along the ray through the paper's point, until falls
+ * no longer come to rest. N amounts of friction are tried, from none to twice the device's. Each
+ * amount is tried for the whole friction, for its dry part alone, and for its viscous part alone.
+ */
 #ifndef CLI_FRICTION_H
 #define CLI_FRICTION_H
 

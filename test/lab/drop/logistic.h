@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* Logistic: from counts of falls that rest along a ray of rising gains to the gain at which half of
- * them do, with its interval.
+/* Logistic: the gain at which half of the falls come to rest, with its interval, from counts of
+ * falls that rest along a ray of rising gains.
  *
  *   P(rest) = e + (1 - 2 e) / (1 + exp((x - m) / s)),   x the gain in octaves, e = 0.5 %
  *
- * by maximum likelihood; the interval of m is where the likelihood, at its best s for each m, is
- * not too far below its maximum (chi square of one degree, times how far the counts scatter beyond
- * binomial where they do). e keeps one odd fall far from the border from moving it. Both hang
- * little on how close the gains lie or how many falls each has: these make the interval wide or
- * narrow. */
+ * m and s are those of maximum likelihood. The interval of m has every m whose likelihood, at its
+ * best s, is near enough to the maximum, by chi square of one degree. If the counts scatter more
+ * than binomial, the limit grows by that factor. e prevents that one odd fall far from the border
+ * moves it. The result depends little on the distance of the gains and the number of falls. These
+ * make the interval wide or narrow. */
 #ifndef LAB_DROP_LOGISTIC_H
 #define LAB_DROP_LOGISTIC_H
 

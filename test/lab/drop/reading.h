@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Readings of the paper's analysis: what its text leaves open, as options.
  *
- * The text says which steps are made, not which of two regressions ("the stiffness as
- * ratio of force over position"), whether the monitor is paired with the position of
- * its own tick or with the one it answers, and which samples of a "contact situation"
- * belong to it. One table names every combination.
+ * The text gives the steps, but leaves three choices. "The stiffness as ratio of force over
+ * position" can be either of two regressions. The monitor can be paired with the position of its
+ * own tick or of the tick that it answers. A "contact situation" can include different samples.
+ * One table names every combination.
  */
 #ifndef CLI_READING_H
 #define CLI_READING_H

@@ -20,9 +20,9 @@ struct score {
     float swing[TABLE2_ROWS]; /* share that does not at 1.5x */
 };
 
-/* The cost is the sum of the squares of what rows lack of 99.5 % and 95 %, in parts of the room
- * between gate and 100 %: more than the gates ask for, so that what is found is inside of them.
- * Gives up once it must be above bound. */
+/* The cost is the sum of the squares of each row's distance below 99.5 % and 95 %, in parts of the
+ * room between gate and 100 %. These are above the gates, so that the best point is inside of them.
+ * Stops when the cost must be above bound. */
 struct score score_plant(const struct plant_point *p, enum estimate_kind kind,
     const struct score_plan *plan, double bound);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Inputs that take scene minimal through all its states: armed with the string at rest, through the
- * wall and back while it runs, and then something happens, another thing each time; a round ends
- * when it was let go or latched. */
+/* Inputs that take scene minimal through all its states. In each round the box arms with the string
+ * at rest, runs, and goes through the wall and back. Then one event happens, a different one in
+ * each round. The round ends when the switch was let go or a fault is latched. */
 #ifndef TEST_FROZEN_RIDE_H
 #define TEST_FROZEN_RIDE_H
 

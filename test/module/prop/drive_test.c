@@ -87,8 +87,8 @@ TEST(table_set_follows_its_contract)
     }
 }
 
-/* Through the steeper direction and back: half an LSB each way and 2^-31 of the span by
- * each slope, so an integer of at most 1, or 2 from a span of 2^30. */
+/* The inverse and back, through the steeper direction. Each way adds half an LSB, each slope 2^-31
+ * of the span. So the integer error is at most 1, or 2 from a span of 2^30 on. */
 TEST(inverse_round_trip)
 {
     while (check_case(2)) {

@@ -142,9 +142,10 @@ TEST(a_constant_input_is_reached_exactly)
     }
 }
 
-/* A few LSB from rest at any speed: no cycle keeps it away. Such cycles live in narrow ranges of
- * fc (NUMERICS.md, "Choices"), so many cut-offs are tried, all of a low kind's upper half; and
- * those of a high kind, whose state comes to stand within 2^-17 LSB of rest. */
+/* From a few LSB away, at any speed, no cycle keeps the filter from rest. Such cycles exist in
+ * narrow ranges of fc (docs/NUMERICS.md, "Choices"), so many cut-offs are tried. These are all of
+ * the upper half of a low kind, and those of a high kind whose state settles within 2^-17 LSB of
+ * rest. */
 TEST(no_cycle_around_rest)
 {
     while (check_case(100)) {

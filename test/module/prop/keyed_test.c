@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* keyed.h against who records, holds back, repeats, reorders, damages and makes up packets, of runs
- * of both ends that come and go: not one of them acts that the model does not hold for said now. */
+/* keyed.h against an attacker who records, delays, repeats, reorders, damages and forges packets,
+ * while both ends start and stop. No packet acts that the model does not accept as sent now. */
 #include "exhand/keyed.h"
 
 #include "check.h"

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Everything upstream of the gate replaced by noise: whatever the modules before it say and
- * whatever is in memory, no code leaves the span of its zero, none but zero leaves a gate that is
- * shut, no drive but those in use is enabled; and behind drive.h the force moves no faster than it
- * may. */
+/* Noise instead of all modules before the gate, and in memory. No code leaves the span above its
+ * zero. A shut gate gives only zero codes. Only drives in use are enabled. After drive.h the force
+ * keeps its slew limit. */
 #include "exhand/exhand.h"
 
 #include "check.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Slewed parameters, for any values and shifts: monotone, never beyond, at the goal in no more
- * ticks than the header says, the rest as exact division has it; the guard's sum whatever is staged
- * and applied. */
+/* Slewed parameters, for any values and shifts. They are monotone, never beyond the goal, and at
+ * the goal in at most the ticks that the header gives. The rest is that of exact division. The
+ * guard's sum is right after anything that is staged and applied. */
 #include "exhand/fix.h"
 #include "exhand/params.h"
 #include "exhand/signal.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* passivity.h: whatever the law asks and however the string moves within the speed limit, what a
- * contact has given out at any moment is within the bound; a trajectory that turns as badly
- * as it can comes up to it, and without the controller goes beyond it. */
+/* passivity.h: the energy that a contact has given out is within the bound at any moment, for any
+ * commands of the law and any motion within the speed limit. The worst trajectory reaches the
+ * bound, and exceeds it without the controller. */
 #include "exhand/passivity.h"
 
 #include "exhand/fix.h"
@@ -271,9 +271,9 @@ TEST(missed_ticks_count_for_ticks)
     }
 }
 
-/* Every state of a small drive, f_max of 24 LSB and a way of 3 counts: of those that keep what
- * docs/NUMERICS.md says of them, each step leads to one that does, whatever is moved, touched and
- * asked. on = 2; on = 1 is the same with late = held and half the bound. */
+/* Every state of a small drive, with f_max of 24 LSB and a travel of 3 counts. From each state that
+ * keeps the invariant of docs/NUMERICS.md, each step leads to another one that does, for any
+ * motion, contact and command. on = 2; on = 1 is the same with late = held and half the bound. */
 #define SMALL 24
 #define WAY   3
 #define BOUND (SMALL * WAY)

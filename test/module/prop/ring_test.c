@@ -33,8 +33,9 @@ static void put(uint8_t type, uint32_t tick, uint32_t len_B)
     CHECK_EQ_I64(exh_ring_put(&ring, type, tick, p->payload, len_B), 1);
 }
 
-/* What the ring holds must be the end of the list, begin with a keyframe, and be no shorter than
- * promised: frames, packets and events of a tick and two keyframes less than 7/8 of the memory. */
+/* The ring's content must be the end of the list and begin with a keyframe. It must have the
+ * promised length: 7/8 of the memory less a tick's frames, packets and events, and less two
+ * keyframes. */
 static void compare(uint32_t tick_B)
 {
     struct exh_ring_place p = exh_ring_first(&ring);

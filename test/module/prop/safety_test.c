@@ -176,9 +176,10 @@ static uint32_t causes_of(const struct exh_safety_in *in, struct memory *m)
     return now;
 }
 
-/* Whatever comes: the gate opens by RUN, small force and a ramp alone; a cause ends an open gate in
- * its tick; FAULT is left by CLEAR alone, with no cause and the dead-man opened since the last
- * other one; the first cause does not change; a release ends after its ticks. */
+/* Rules for any input. The gate opens only by RUN, a small force and a ramp. A cause shuts an open
+ * gate in its tick. Only CLEAR leaves FAULT, without a cause, and after the dead-man switch was
+ * open since the last other cause. The first cause does not change. A release ends after its ticks.
+ */
 static void check_step(const struct exh_safety *old, const struct exh_safety *s,
     const struct exh_safety_in *in, uint32_t now, struct memory *m)
 {

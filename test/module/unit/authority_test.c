@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* authority: every source, class, state and direction, in the table and on every way to a
- * parameter: as the person at the box, an image, a register by TCP's slave and by the serial one, a
- * packet. The command line is in sim/modbus_writes. */
+ * parameter. The ways are the person at the box, an image, a register over TCP and over the serial
+ * line, and a packet. closed/sim/modbus_writes_test.c has the command line. */
 #include "exhand/exhand.h"
 
 #include "check.h"

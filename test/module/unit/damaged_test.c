@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Configuration in damaged memory, until the guard says so: what comes out of a tick is anything
- * within its limits, but no index leaves its array, no shift its word and no loop its end. The
- * sanitizers that unit tests run under are what tells. */
+/* Configuration in damaged memory, until the guard detects it. A tick may give any values within
+ * its limits, but no index leaves its array, no shift its word and no loop its end. The sanitizers
+ * of the unit tests detect that. */
 #include "exhand/drive.h"
 #include "exhand/filter.h"
 #include "exhand/frame.h"

@@ -258,8 +258,8 @@ TEST(not_running_is_no_force)
 }
 
 /* The release against its definition, at every number of ticks that any rate and time give, from
- * any force: in every tick no more than force/R + 1 LSB goes, whatever the law says, and R are
- * enough. */
+ * any force. In every tick the force changes by at most force/R + 1 LSB, whatever the law commands,
+ * and R ticks are enough. */
 TEST(release_is_bounded_and_ends)
 {
     struct axis a;

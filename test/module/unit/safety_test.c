@@ -403,9 +403,9 @@ TEST(release_ends_at_every_rate)
 
 /* --- clearing --- */
 
-/* All sequences of six ticks, each healthy with a command to clear, healthy, let go, or with the
- * cause: FAULT is left by the first tick that clears, held, with no cause, after a tick let go
- * since the cause was there. */
+/* All sequences of six ticks. Each tick is healthy with a command to clear, healthy, let go, or has
+ * the cause. The first tick leaves FAULT that clears, is held, has no cause, and follows a tick let
+ * go after the last cause. */
 TEST(clearing_in_every_order)
 {
     const struct exh_safety_cfg cfg = cfg_of(par, 1000);

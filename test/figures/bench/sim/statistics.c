@@ -1,19 +1,21 @@
 /* SPDX-License-Identifier: MIT */
-/* What Table II and the time until rest become when the simulator's plant is integrated in another
- * way.
+/* How do Table II and the time until rest change if the simulator's plant is integrated in another
+ * way?
  *
  *   statistics [--short] [RUNS]
- *   statistics [--short] count: a fall at 500 Hz by each method and step, twice, for callgrind (the
- * first has what is worked out once); prints method,step_s,seconds. The plant's own share is that
- * of plant_advance_piece()
+ *   statistics [--short] count
  *
- * The whole simulator and the real scene, the paper's rows, ten falls a run, with
- * plant_advance_piece() taken from here. Prints for every method, step and row
+ * The first runs the whole simulator and the real scene with the paper's rows and ten falls a run.
+ * plant_advance_piece() is replaced by that of this folder. For each method, step and row it prints
  *   method,step_s,rate_Hz,runs,b_Npm,b_se,rest_s,rest_se,rest,oscillates
- * b_Npm: mean stiffness of the runs (as `exhand drop` reads it), se its standard error; rest_s:
- * from the first contact of a fall until motor and force keep within the bounds of "at rest", of
- * the falls that do; rest: share of them; oscillates: share at 1.5 times both gains. RUNS at the
- * gains, half as many at 1.5 times; the same seeds for all methods. */
+ * b_Npm is the mean stiffness of the runs, as `exhand drop` reads it; b_se is its standard error.
+ * rest_s is the time from the first contact of a fall until motor and force stay within the bounds
+ * of "at rest", over the falls that come to rest. rest is their share. oscillates is the share at
+ * 1.5 times both gains. RUNS runs are at the gains and half as many at 1.5 times. All methods have
+ * the same seeds.
+ *
+ * count is for callgrind. It runs a fall at 500 Hz twice by each method and step, since the first
+ * run includes one-time work, and prints method,step_s,seconds. */
 #include "method.h"
 
 #include "base/jobs.h"

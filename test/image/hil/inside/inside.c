@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* The emulated cards inside an image, in the place of its port instructions, and behind them a
- * device of integers: strings that are drawn out and let in in turn, so that walls are met and
- * left. For emulators of the machine that have no such cards: the drivers, the timer and its
- * interrupt are the image's own. It is a load to keep a period under, not a model of anything. */
+/* The emulated cards inside an image, instead of its port instructions, with a device of integers
+ * behind them. Strings are pulled out and let in in turn, so that they meet and leave walls. It is
+ * for emulators of the machine that have no such cards. The drivers, the timer and its interrupt
+ * are the image's. It is a load under which a period is kept, not a model of a device. */
 #include "cards/io.h"
 
 #include "posix/emu/emu.h"

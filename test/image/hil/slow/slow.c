@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A scene that is too slow on purpose: every SLOW_EVERY-th tick computes for so long that two
- * instants of the timer find it at work: at the first of these a tick is missed, at the second one
- * begins late. Whoever counts them must find exactly these. */
+/* A scene that is too slow on purpose. Every SLOW_EVERY-th tick computes past two instants of the
+ * timer. So one tick is missed, and the next begins late. The port must count exactly these. */
 #include "exhand/run/scene.h"
 
 #define SLOW_EVERY 100u
