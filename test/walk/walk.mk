@@ -74,7 +74,7 @@ doc-names: $(exhand) $(lab)
 	@PYTHONDONTWRITEBYTECODE=1 test/walk/docs/docs.py $(exhand) $(world)
 
 ## Check the style of the documents (docs/STYLE.md): sentences, idioms, links, commands, budgets
-## (ARGS=--stats).
+## (ARGS=--stats, ARGS="--comments FILE...").
 .PHONY: prose
 prose: $(exhand) $(lab)
 	@PYTHONDONTWRITEBYTECODE=1 test/walk/docs/prose_test.py $(exhand) $(world) 2> $(B)/prose.txt || \

@@ -100,6 +100,19 @@ class Prose(unittest.TestCase):
         self.assertIn("20 at most", found[0][1])
         self.assertEqual(len(self.faults(FINE, "")), 1) # a page that prose.tsv does not list
 
+    def test_comments_of_a_source(self):
+        long = LONG.replace("many ", "many\n * ", 9)
+        found = prose.Page("a.c", """/* SPDX-License-Identifier: MIT */
+/* Short. a name in small letters begins this one, eq. 2 is in it, i.e. it is one sentence.
+ *
+ * """ + long + """ */
+int hangs_on; /* it hangs on a word */
+const char *s = "hangs on /* hangs on"; // hangs on
+/*@ requires a specification that hangs on nothing */
+""", prose.Data(DATA))
+        self.assertEqual(found.lengths, [1, 18, 31, 5, 2])
+        self.assertEqual([n for n, _ in found.style()], [4, 14, 15])
+
     def test_a_ceiling_only_falls(self):
         rows = "page\ta.md\t9\t5\npage\tb.md\t9\t5\npage\tc.md\t9\t5\n"
         self.assertEqual(prose.update("# x\n" + rows, {"a.md": (1, 3), "b.md": (12, 8)}),
