@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""prose.py [--stats | --update | --comments PATH...] EXHAND WORLD: the documents keep the rules of docs/STYLE.md.
+"""prose.py [--stats | --update | --comments FILE...] EXHAND WORLD: the documents keep the rules of
+docs/STYLE.md.
 
 Prints each fault as PAGE:LINE: a sentence or paragraph that is too long, an idiom of prose.tsv, a
 link that leads nowhere, a command or name that the tree does not have (by docs.py), too many words.
