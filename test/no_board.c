@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A board that nobody is at, for programs that run a scene's tick and nothing else. No port's, so
- * that what is counted holds nothing of one. */
+/* A board without hardware, for programs that run only a scene's tick. It belongs to no port, so
+ * counted instructions include none of a port. */
 #include "exhand/board.h"
 
 const struct exh_board_info exh_board_info = {.name = "nobody"};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* main() of an image of the contract test. It ends in exh_board_halt() with current on: whoever
- * runs it sees that none is left. */
+/* main() of an image of the contract test. It ends in exh_board_halt() with current on. The
+ * caller of the image checks that no current is left. */
 #include "contract.h"
 #include "say.h"
 

@@ -57,7 +57,8 @@ TEST(a_log_replays_bit_for_bit_without_a_world)
     said_clean(dir);
 }
 
-/* A session that nobody gave is the clock's, and no replay has that clock. */
+/* Without an option the session comes from the clock. A replay has another clock, so the log has
+ * it. */
 TEST(a_log_of_a_session_that_was_made_up_replays)
 {
     const char *dir = said_dir();
@@ -177,7 +178,7 @@ TEST(over_hands_there_is_a_row_each)
     said_clean(dir);
 }
 
-/* From the freeze on nothing hangs on the world, and without one in time nothing is felt. */
+/* After the freeze nothing depends on the world. Without a world in time nothing is felt. */
 TEST(a_world_that_dies_or_never_comes_is_told_beside_a_perfect_link)
 {
     const char *dir = said_dir();

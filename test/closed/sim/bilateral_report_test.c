@@ -70,8 +70,8 @@ TEST(pictures_say_the_gains_there_are)
     said_clean(dir);
 }
 
-/* All by default, of all fingers. A finger that presses for long and does not tremble is no dead
- * encoder; whoever wants that found has it found. */
+/* All faults by default, of all fingers. A finger that presses for long and does not tremble looks
+ * like a dead encoder. That fault is off unless an option turns it on. */
 TEST(all_fingers_come_to_their_end)
 {
     const char *dir = said_dir();

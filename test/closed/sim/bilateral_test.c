@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The full box in closed loop with a hand, a link and a world: what is felt hangs on the plane that
- * was known before the contact, and on nothing the link does after. */
+/* The full box in closed loop with a hand, a link and a world: the contact depends on the plane
+ * known before it, and not on the link during it. */
 #include "felt.h"
 
 #include <stdio.h>

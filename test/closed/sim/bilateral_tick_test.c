@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The full box a tick at a time, with packets and glove frames made here: what is felt while nobody
- * knows where the finger is, and what goes out. */
+/* The full box a tick at a time, with packets and glove frames made here: the contact while the
+ * finger's place is unknown, and the packets sent. */
 #include "check.h"
 
 #include "bilateral/bilateral.h"
@@ -358,7 +358,7 @@ TEST(a_shorter_time_between_states_acts_at_once)
     CHECK_EQ_I64(tick(1, EXH_WIRE_STATE), 1);
     for (int k = 0; k < 4; k++) { CHECK_EQ_I64(tick(1, EXH_WIRE_STATE), 0); }
     CHECK_EQ_I64(tick(1, EXH_WIRE_STATE), 1);
-    box.wire.wait_ticks = UINT32_MAX; /* restored from what nobody wrote */
+    box.wire.wait_ticks = UINT32_MAX; /* as restored from a forged state */
     CHECK_EQ_I64(tick(1, EXH_WIRE_STATE), 1);
 }
 

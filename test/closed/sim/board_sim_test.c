@@ -393,7 +393,7 @@ TEST(every_fall_is_watched_to_its_end)
     }
 }
 
-/* In a process of its own, since there is no way back. */
+/* In a separate process, since there is no way back. */
 TEST(an_interruption_outlasts_a_new_run)
 {
     const pid_t pid = fork();

@@ -295,7 +295,7 @@ TEST(one_of_five_that_is_refused_refuses_all)
 
 #define FORGED_DAYS 36500
 
-/* As nobody calibrates: 0.1 N/A of a motor with 3.3, good for a hundred years; its CRC is right. */
+/* An impossible calibration: 0.1 N/A of a motor with 3.3, valid for a hundred years, CRC right. */
 static void forge(unsigned i, struct exh_calib c, uint32_t valid_days)
 {
     static struct exh_calib_point weak[2] = {
@@ -364,7 +364,8 @@ TEST(one_point_far_from_kf_is_named)
     point[1] = was;
 }
 
-/* All within half of kf, one not within half of the median; of two nobody knows which is wrong. */
+/* All are within half of kf, one is not within half of the median. Two fingers cannot show which is
+ * wrong. */
 TEST(one_finger_far_from_the_others_is_named)
 {
     const struct exh_scene *sc = &exh_scene_bilateral;

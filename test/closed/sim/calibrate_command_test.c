@@ -95,7 +95,7 @@ TEST(exit_status_says_what_happened)
     CHECK_EQ_I64(rmdir(dir), 0);
 }
 
-/* In a process of its own, with its words. */
+/* In a separate process, with these words. */
 #define SAYS(dir, wanted, text, ...) \
     do { \
         static struct said s; \

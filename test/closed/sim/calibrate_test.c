@@ -221,7 +221,7 @@ TEST(reversed_is_seen_at_the_least_current)
     }
 }
 
-/* Nobody in time, after steps that were done: they are not the calibration. */
+/* No confirmation in time after finished steps: they are not a calibration. */
 TEST(nobody_after_a_finished_step_is_no_calibration)
 {
     static const struct {
@@ -525,7 +525,7 @@ TEST(no_movement_while_the_zero_is_measured)
     }
 }
 
-/* Nobody says that the next step is prepared. */
+/* No confirmation that the next step is prepared. */
 TEST(it_does_not_wait_for_ever)
 {
     struct rig r;

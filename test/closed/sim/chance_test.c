@@ -32,8 +32,8 @@ TEST(the_monitors_noise_is_as_wide_as_its_row)
     CHECK(most <= 0.015 + 1e-6 && most > 0.8 * 0.015, "%g A", most);
 }
 
-/* At each release the drive's clock stands anywhere in its period, and the height anywhere in its
- * range: no tenth is empty, and their means are those of a uniform. */
+/* At each release the phase of the drive's clock and the height are random. Both are uniform: no
+ * tenth of their range is empty, and the means are those of a uniform distribution. */
 TEST(each_fall_has_its_own_clock_and_height)
 {
     enum { FALLS = 300 };

@@ -92,7 +92,7 @@ TEST(bad_usage_is_refused_by_name)
     said_clean(dir);
 }
 
-/* Those of a study, which stand beside the others. */
+/* The options of a study, in addition to the others. */
 TEST(bad_usage_of_a_study)
 {
     static const struct {
@@ -274,7 +274,7 @@ TEST(medians_are_of_runs_with_a_line)
     CHECK(s.b_Npm == 0 && s.swing == 0, "of one in four: %g, %g", s.b_Npm, s.swing);
 }
 
-/* A fault, or a fall that nobody saw the end of, is a reason and never a number. */
+/* After a fault, or a fall whose end was not observed, there is a reason and never a number. */
 TEST(a_row_that_was_not_seen_is_blank)
 {
     for (int how = 0; how < 2; how++) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Who waits for the other end of a FIFO says so, and Ctrl-C ends it; standard output that nobody
- * takes is named. */
+/* A command that waits for the other end of a FIFO prints so, and Ctrl-C ends it. An unread
+ * standard output is named. */
 #include "said.h"
 
 #include "base/ends.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A file of its own with this text; the caller removes it before the next. */
+/* A new file with this text. The caller removes it before the next. */
 #ifndef TEST_SIM_FILE_OF_H
 #define TEST_SIM_FILE_OF_H
 

@@ -220,7 +220,7 @@ TEST(polynomials_come_as_the_equation_says)
 
 /* ---- Scan, multiplexer, noise ---------------------------------------------------------- */
 
-/* A ramp on all channels: each code is that of its own instant, so the instants show. */
+/* A ramp on all channels: each code shows its instant. */
 TEST(channels_are_held_one_interval_apart)
 {
     static const double interval_s[] = {4e-6, 5e-6, 10e-6, 15e-6, 20e-6};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Recordings of others: sensors, time and label stand where --columns says. */
+/* Third-party recordings: --columns gives the places of sensors, time and label. */
 #include "glove_said.h"
 
 #include "base/cli.h"
@@ -149,7 +149,7 @@ TEST(no_number_is_no_fault_of_a_neighbour)
     end();
 }
 
-/* Time of a column stands in the answer, from 0, and says the rate. */
+/* The time of a column is in the output, from 0, and gives the rate. */
 TEST(time_is_taken_from_its_column)
 {
     static const struct {
@@ -189,7 +189,7 @@ TEST(uneven_time_is_said)
     end();
 }
 
-/* A label stands behind its row; one that is a number, too. */
+/* A label is at the end of its row, also if it is a number. */
 TEST(labels_stand_in_the_answer)
 {
     char text[2000], want[SAID_B], *line;

@@ -226,7 +226,7 @@ TEST(frames_come_at_the_rate_that_was_asked_for)
     end();
 }
 
-/* A unit that understands nothing and streams by itself, slower, without a status. */
+/* A unit that ignores all commands and streams at a lower rate, without a status. */
 TEST(a_glove_that_takes_no_command_is_heard_all_the_same)
 {
     if (begin() < 0) { return; }

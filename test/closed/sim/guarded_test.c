@@ -125,7 +125,7 @@ TEST(its_log_replays)
 
 /* --- the scene's own box --- */
 
-/* Whoever runs the image sees in which state it is: a grip could clear no fault without. */
+/* The person sees the state of the image: without it, no grip could clear a fault. */
 TEST(its_state_is_seen)
 {
     CHECK(exh_scene_guarded.safety != NULL, "the dead-man does not see the state");
@@ -147,8 +147,8 @@ static void at(int32_t cnt, uint8_t command)
     guarded_tick(&box, &box_cfg, &in, &out, &told);
 }
 
-/* A finger that is owed energy to stays in the wall. What passivity takes away then is no reason to
- * believe that it stands free. */
+/* A finger that still gets back energy stays in the wall. The force that passivity removes does not
+ * mean that the finger is free. */
 TEST(no_run_in_a_wall_that_owes)
 {
     static struct guarded_par par, staged;

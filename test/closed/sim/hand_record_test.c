@@ -129,7 +129,7 @@ TEST(a_recording_again_has_no_seam)
     hand_record_free(&h);
 }
 
-/* Time and angles in columns of somebody else's order: on the even grid, too. */
+/* Time and angles in a different order of columns, also on the even grid. */
 TEST(columns_say_where_time_and_angles_are)
 {
     char text[1000] = "";

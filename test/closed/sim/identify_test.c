@@ -97,8 +97,8 @@ TEST(a_stiff_string_on_a_light_rotor_is_told_apart)
 }
 
 /* A square wave through the resonance of a string that hardly brakes: it slackens and strikes, and
- * what it does then hangs on when the drive took each command over. The stiff one fits with other
- * whole cycles, too. */
+ * its motion then depends on the instant at which the drive took each command. The stiff string
+ * also fits with another number of whole cycles. */
 TEST(a_string_that_slackens_is_told_apart)
 {
     static const double value[2][LEN(row_name)] = {

@@ -244,7 +244,7 @@ TEST(what_is_called_still_does_not_move)
     CHECK(still > 1000 && moved > 2000, "%d still, %d moved", still, moved);
 }
 
-/* A drive that is late: what is on its way to it will move what stands. */
+/* A late drive: a command on its way to the drive will move the mass at rest. */
 static void one_output(uint16_t dac_raw)
 {
     const struct exh_drive_out out = {.dac_raw = {dac_raw}, .enable = 1};

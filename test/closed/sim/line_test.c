@@ -152,7 +152,7 @@ TEST(a_peer_that_takes_nothing_stops_nobody)
         CHECK_EQ_I64(exh_board_link_send(&n, sizeof n), sizeof n);
     }
     CHECK_EQ_I64(peer.frames, 99);
-    c.line.frame = NULL; /* nobody at all: the queue fills, the loop goes on */
+    c.line.frame = NULL; /* no reader: the queue fills, the loop goes on */
     start(&c);
     CHECK_EQ_I64(ticks(&a, &b), 0);
     CHECK_EQ_I64((int64_t)posix_link()->way[SIM_LINK_OUT].counts.overflow, TICKS - SIM_LINK_QUEUE);
@@ -226,7 +226,7 @@ TEST(strangers_and_cut_packets_are_dropped)
     snprintf(at, sizeof at, "127.0.0.1:%u", udp_port(&a));
     CHECK_EQ_I64(udp_open(&b, "127.0.0.1:0", at), 0);
     snprintf(to, sizeof to, "127.0.0.1:%u", udp_port(&b));
-    CHECK_EQ_I64(udp_send(&a, buf, 8), 0); /* nobody known yet */
+    CHECK_EQ_I64(udp_send(&a, buf, 8), 0); /* no peer known yet */
     CHECK_EQ_I64((int64_t)a.unsent, 1);
     CHECK_EQ_I64(udp_open(&c, "127.0.0.1:0", to), 0);
     CHECK_EQ_I64(udp_send(&c, buf, 8), 8);
@@ -236,7 +236,7 @@ TEST(strangers_and_cut_packets_are_dropped)
     CHECK_EQ_I64(udp_send(&b, buf, 10), 10);
     CHECK_EQ_I64(udp_recv(&a, buf, 63), 10); /* the one that does not fit is gone */
     CHECK_EQ_I64((int64_t)a.bad_length, 1);
-    CHECK_EQ_I64(udp_send(&a, buf, 8), 0); /* nobody has looked at it */
+    CHECK_EQ_I64(udp_send(&a, buf, 8), 0); /* not yet accepted */
     udp_learn(&a);
     udp_learn(&b); /* has its peer */
     CHECK_EQ_I64(udp_send(&a, buf, 8), 8);
@@ -283,7 +283,7 @@ static void post(struct udp *u, struct exh_wire_tx *tx, uint8_t type, int spoil)
     CHECK_EQ_I64(udp_send(u, buf, (size_t)n), n);
 }
 
-/* A controller that waits for its world: nobody's junk turns its answers away. */
+/* A controller that waits for its world: a stranger's junk does not redirect its answers. */
 TEST(the_peer_is_whose_packet_was_good)
 {
     struct posix_config c = linked();
@@ -301,14 +301,14 @@ TEST(the_peer_is_whose_packet_was_good)
     post(&world, &good, EXH_WIRE_HELLO, 0);
     for (int n = 0; n < 20; n++) {
         post(&other, &bad, EXH_WIRE_HELLO, 1);  /* damaged */
-        post(&other, &bad, EXH_WIRE_PLANES, 0); /* of nobody who has said HELLO */
+        post(&other, &bad, EXH_WIRE_PLANES, 0); /* from a peer without HELLO */
         CHECK_EQ_I64(exh_board_wait(), 0);
         while (exh_board_link_recv(buf, sizeof buf) > 0) {}
         CHECK_EQ_I64(exh_board_link_send(&ours, sizeof ours), sizeof ours);
         CHECK(udp_recv(&world, buf, sizeof buf) == sizeof ours, "tick %d: no answer", n);
         CHECK_EQ_I64(udp_recv(&other, buf, sizeof buf), 0);
     }
-    post(&other, &bad, EXH_WIRE_HELLO, 0); /* while the world is heard nobody else begins */
+    post(&other, &bad, EXH_WIRE_HELLO, 0); /* while the world is heard no other begins */
     CHECK_EQ_I64(exh_board_wait(), 0);
     while (exh_board_link_recv(buf, sizeof buf) > 0) {}
     CHECK_EQ_I64(exh_board_link_send(&ours, sizeof ours), sizeof ours);

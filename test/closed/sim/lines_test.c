@@ -53,7 +53,7 @@ static void check_words(const char *what, unsigned n)
     CHECK(at > 10, "%s %u: no word", what, n);
 }
 
-/* Whoever reads a file of any bytes. */
+/* Every reader of files gets a file of any bytes. */
 TEST(no_byte_of_a_file_reaches_the_terminal)
 {
     char *dir = said_dir();

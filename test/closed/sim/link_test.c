@@ -177,7 +177,7 @@ TEST(packets_arrive_in_the_order_of_time)
         uint64_t overtaken = 0;
         p.delay_s = 0.05;
         p.jitter = k < 3 ? SIM_LINK_UNIFORM : SIM_LINK_CORRELATED;
-        p.jitter_s = k % 3 == 0 ? 0.001 : 0.02; /* less than the gap between: nobody overtakes */
+        p.jitter_s = k % 3 == 0 ? 0.001 : 0.02; /* less than the gap between: no packet overtakes */
         p.in_order = k % 3 == 2;
         run(&p, NULL, 5);
         for (int n = 0; n < seen.arrived; n++) {

@@ -125,7 +125,7 @@ static int call(int n, const char *const *words)
     return cli_listen(n + 1, argv);
 }
 
-/* Of its own process, at a port that was free just now; it listens when its file is there. */
+/* In a separate process, at a port that was just free. It listens when its file is there. */
 static void start(int with_peer)
 {
     const struct timespec a_while = {0, 20000000};
@@ -272,7 +272,7 @@ TEST(what_is_not_the_logs_changes_nothing)
     }
 }
 
-/* Whoever knocks first, without a log's beginning; and a box of another release. */
+/* A stranger that sends first, without a log's beginning; and a box of another release. */
 TEST(a_stranger_who_is_first_is_not_the_box)
 {
     static const uint8_t old[24] = {'E', 'X', 'H', 'L'};

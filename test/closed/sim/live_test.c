@@ -111,7 +111,7 @@ static int ended(pid_t pid)
     return waitid(P_PID, (id_t)pid, &is, WEXITED | WNOHANG | WNOWAIT) == 0 && is.si_pid == pid;
 }
 
-/* By itself within so many seconds; else it is ended and -1. */
+/* Waits for its end for so many seconds; else ends it and returns -1. */
 static int ends_within(pid_t pid, double limit_s)
 {
     const struct timespec a_while = {0, 10000000};
@@ -181,7 +181,7 @@ TEST(what_goes_by_while_it_is_stopped_is_missed)
     if (tries > 1) { check_note("a busy machine: in RUN at try %d", tries); }
 }
 
-/* A pipe that nobody reads is full soon: the box goes on by its clock, and what is lost is said. */
+/* An unread pipe is soon full. The box goes on by its clock, and reports the loss. */
 TEST(a_log_that_nobody_takes_stalls_nobody)
 {
     char *dir = said_dir();
@@ -280,7 +280,7 @@ TEST(dumps_of_a_paced_box)
     said_clean(dir);
 }
 
-/* A pipe that nobody opens: the box goes on by its clock, and at the end gives the dump up. */
+/* No program opens the pipe. The box goes on by its clock, and at the end gives up the dump. */
 TEST(a_dump_that_nobody_takes_stalls_nobody)
 {
     char *dir = said_dir();
@@ -335,7 +335,7 @@ TEST(a_slow_log_is_complete_in_virtual_time)
     said_clean(dir);
 }
 
-/* Whoever holds the mass catches it: else it is metres deep when somebody grips again. */
+/* The person catches the mass: else it is metres deep at the next grip. */
 TEST(it_runs_again_wherever_the_fault_found_the_mass)
 {
     static const char *const at[] = {"0.9", "1.05", "2", "4", "7"}, *const rate[] = {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* For tests of logs: a path of its own for each, and the host program's replay of it. */
+/* For tests of logs: a new path for each, and the host program's replay of it. */
 #ifndef TEST_SIM_LOGS_H
 #define TEST_SIM_LOGS_H
 
@@ -12,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* A file of its own for each log; the caller removes it. */
+/* A new file for each log; the caller removes it. */
 static inline const char *log_path(void)
 {
     static char path[64];

@@ -347,8 +347,8 @@ TEST(missed_ticks_reach_safety)
     remove(path);
 }
 
-/* A cause through the whole scene: what it does to the force, its name, and that nothing comes
- * before somebody lets go, holds, clears, and runs outside of the wall. */
+/* A cause through the whole scene: its effect on the force, and its name. No force follows until a
+ * person lets go, holds, clears, and runs outside the wall. */
 static void cause(struct act what, int32_t fault)
 {
     const struct act act[] = {
@@ -477,7 +477,7 @@ TEST(a_card_that_fails_is_seen_by_one_last_tick)
     }
 }
 
-/* Nobody commands RUN: the box stays off and says why not. */
+/* Without the command RUN the box stays off and gives the reason. */
 TEST(the_loop_commands_nothing_by_itself)
 {
     const char *path = log_path();

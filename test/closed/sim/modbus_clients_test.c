@@ -13,7 +13,7 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
-/* Asks for all there is and fetches nothing, until its connection ends or nobody takes more. */
+/* Requests everything and reads no answer, until its connection ends or is full. */
 static void ask_and_never_read(modbus_t *bad)
 {
     static const uint8_t ask[12] = {0, 1, 0, 0, 0, 6, 1, 4, 0x04, 0x40, 0, 125};
@@ -46,7 +46,7 @@ TEST(a_client_that_fetches_no_answer)
     said_clean(r.dir);
 }
 
-/* Sixteen who say nothing more keep nobody out: who is silent longest goes. */
+/* Sixteen idle clients exclude no new one: the longest idle is replaced. */
 TEST(silent_clients_keep_nobody_out)
 {
     struct rig r;

@@ -34,7 +34,7 @@ TEST_MAIN("modbus_fuzz", nothing_without_the_package);
 #define VALUES 256
 #define PDU_B  253
 
-/* Ours: the slave of lib, over arrays of its own. */
+/* The slave of lib, over these arrays. */
 static struct {
     struct exh_params p;
     struct exh_regs r;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand run --modbus: no torn reads, and the same bits of force whoever reads. */
+/* exhand run --modbus: no torn reads, and the same bits of force with any readers. */
 #define _XOPEN_SOURCE 700
 
 #include "modbus_rig.h"

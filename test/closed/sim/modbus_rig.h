@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* `exhand run --modbus` in a process of its own, and libmodbus clients of it. */
+/* `exhand run --modbus` in a separate process, and its libmodbus clients. */
 #ifndef TEST_SIM_MODBUS_RIG_H
 #define TEST_SIM_MODBUS_RIG_H
 

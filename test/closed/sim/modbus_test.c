@@ -50,7 +50,7 @@ TEST(over_a_serial_line)
                   answer[2] == EXH_MODBUS_FUNCTION,
             "function %d: %d %d %s", shortest[1], answer[1], answer[2], modbus_strerror(errno));
     }
-    modbus_set_slave(c, 2); /* somebody else */
+    modbus_set_slave(c, 2); /* another slave */
     modbus_set_response_timeout(c, 0, 100000);
     CHECK(modbus_read_input_registers(c, 0, 6, word) == -1 && errno == ETIMEDOUT,
         "answered for another");

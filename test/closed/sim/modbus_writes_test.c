@@ -151,7 +151,7 @@ TEST(the_rule_of_gains_holds_here_too)
     said_clean(r.dir);
 }
 
-/* --- a person's force limit against whoever reaches the port --- */
+/* --- a person's force limit against any client of the port --- */
 
 static uint32_t value_named(const char *name)
 {

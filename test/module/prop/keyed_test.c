@@ -132,8 +132,8 @@ static void record(void)
     }
 }
 
-/* Whoever has all that was said, in any order, whole, spoilt, joined anew or without its tail, of
- * runs that are over and of this one: no packet of his acts. Now and then the world says one. */
+/* An attacker has all packets of this and earlier runs. He sends them in any order, complete,
+ * damaged, combined or cut. None of his packets acts. Sometimes the world sends a true one. */
 TEST(a_million_packets_act_never)
 {
     const uint8_t a[EXH_MAC_KEY_B] = {1}, b[EXH_MAC_KEY_B] = {2};

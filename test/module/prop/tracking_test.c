@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* tracking.h: what follows, however it is commanded, is never
- * told; what stands always is, in time; and both by a history that is looked through. */
+/* tracking.h: a current that follows any commands is never a fault. A stuck current always is, in
+ * time. An oracle searches the history for both. */
 #include "exhand/tracking.h"
 
 #include "exhand/fix.h"

@@ -93,7 +93,7 @@ TEST(measuring_needs_no_buffer)
     CHECK(same(&v, &before), "measuring changed a value");
 }
 
-/* One that somebody made by hand, with room. */
+/* A cursor made by hand, with room. */
 TEST(measuring_leaves_a_buffer)
 {
     uint8_t buf[ALL_B] = {0};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* calib_set.h: which images of a hand are believed at set-up, what vouches for a finger, and by
- * which name all else is refused. In the scenes: sim/calib. */
+/* calib_set.h: which images of a hand set-up accepts, what confirms a finger, and the name by which
+ * each other image is refused. In the scenes: sim/calib. */
 #include "exhand/run/calib_set.h"
 
 #include "exhand/bytes.h"
@@ -106,7 +106,7 @@ TEST(a_hand_that_holds_is_taken)
     }
 }
 
-/* Nothing vouches for a finger without an image but the person, who waives it. */
+/* Without an image only the person can waive the calibration of a finger. */
 TEST(without_an_image_nothing_vouches)
 {
     struct exh_calib_tables t;
@@ -134,7 +134,7 @@ TEST(a_finger_far_from_the_others_is_refused)
             for (size_t k = 0; k < LEN(far); k++) {
                 begin(n);
                 give(odd, odd, far[k]);
-                if (n > 2) { /* of two nobody knows which one is wrong */
+                if (n > 2) { /* two cannot show which one is wrong */
                     check_refused(
                         exh_calib_set_load(&g.k, &g.p, &g.par, ALL), -EXH_E_RANGE, odd, what);
                     CHECK(g.k.finger == odd && g.k.expected_NpA_q20 / 8 == N(KF) / 8, "%d",

@@ -409,7 +409,7 @@ static int64_t allowed_A_q26(const struct exh_current_ledger *i)
     return i->table_A_q26 + i->peak_A_q26 + i->i2t_A_q26;
 }
 
-/* What so many D/A codes stand for, as the set-up has them. */
+/* The current of so many D/A codes, as in the set-up. */
 static int64_t whole(const struct axis *a, int32_t codes)
 {
     return exh_gain_floor(a->cfg.dac_A_q26, codes);

@@ -319,8 +319,7 @@ TEST(a_state_beyond_any_input_starts_anew)
     }
 }
 
-/* A low kind that settles by itself stands anywhere within an LSB, not in its middle as after
- * a reset. */
+/* A low kind settles anywhere within an LSB, not in its middle as after a reset. */
 TEST(retune_keeps_every_settled_state)
 {
     const struct exh_filter_cfg low = *tuned(2, 20 << 16, 1000);

@@ -171,7 +171,7 @@ TEST(our_own_packets_come_back)
     CHECK(give(&box, &d) == -EXH_E_STALE && box.heard == 0 && box.newest == 0, "an echo");
 }
 
-/* Nobody has restarted, nothing was heard for long, all that was said comes again. */
+/* No end has restarted, there was a long silence, all recorded packets come again. */
 TEST(a_recorded_run_is_not_believed)
 {
     struct exh_keyed box = end_of(1, BOX, 1u << 20), world = end_of(1, WORLD, 2u << 20), anew;

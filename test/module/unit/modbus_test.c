@@ -397,7 +397,7 @@ TEST(what_may_not_be)
     begin();
     REFUSES(3, 5, 0, 0, 0x12, 0x34);
     REFUSES(3, 5, 0, 0, 0, 1);
-    REFUSES(3, 5, 0, 4, 0xFF, 0);                       /* RUN, which nobody has allowed */
+    REFUSES(3, 5, 0, 4, 0xFF, 0);                       /* RUN, which is not allowed */
     REFUSES(3, 5, 0, 5, 0xFF, 0);                       /* CLEAR */
     REFUSES(3, 5, 0, 2, 0xFF, 0);                       /* SAVE, with no place */
     REFUSES(3, 15, 0, 0, 0, 6, 1, 0x18);                /* OFF and RUN: all or none */
@@ -676,7 +676,7 @@ TEST(requests_of_nothing)
     GIVES(0x90, 3);
 }
 
-/* 32 values fill a word of bits: the next word is nobody's, whatever is in it. */
+/* 32 values fill a word of bits. The next word has no meaning, whatever its value. */
 TEST(a_word_full_of_values)
 {
     static const struct exh_signal_group group[] = {{par_row, 1, 32}};

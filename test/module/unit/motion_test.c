@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* watch.h: the speed limit, and the encoder that stands. */
+/* motion.h: the speed limit, and an encoder that no longer counts. */
 #include "exhand/motion.h"
 
 #include "exhand/error.h"

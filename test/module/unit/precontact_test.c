@@ -201,7 +201,7 @@ TEST(a_contact_that_the_glove_denies_is_let_go)
     CHECK(bits == EXH_PRECONTACT_TRACKS && s.doubt_ticks == 0, "as new");
 }
 
-/* Nothing of a doubt hangs on what is told meanwhile. */
+/* A doubt does not depend on the messages that arrive meanwhile. */
 TEST(a_doubt_hangs_on_no_message)
 {
     struct exh_plane p = floor_plane;

@@ -211,7 +211,7 @@ TEST(a_refusal_is_forgotten_once_it_runs)
     CHECK_EQ_I64(s.refusals, 1);
 }
 
-/* What is vouched for may be lost while the limit rises: what force there is goes gently. */
+/* A step of arming may be lost while the limit rises: the force is released, not cut. */
 TEST(a_step_lost_in_the_ramp_releases)
 {
     const struct exh_safety_cfg cfg = cfg_of(par, 1000);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* slots.h: which slot counts, and what a cut, a bit or somebody else's bytes make of that. */
+/* slots.h: which slot is valid, and the effect of a cut, a wrong bit or foreign bytes. */
 #include "exhand/slots.h"
 
 #include "exhand/bytes.h"
@@ -114,7 +114,7 @@ TEST(each_goes_to_the_other)
     }
 }
 
-/* Whoever saves all the time what stands there wears nothing out. */
+/* Saving the same values again does not wear out the flash. */
 TEST(what_stands_there_is_not_saved_again)
 {
     unsigned to = 9;
@@ -200,7 +200,7 @@ TEST(each_bit_of_one_slot)
     }
 }
 
-/* Behind the cut stands what was there before: ones, zeros, or the image before the last. */
+/* Behind the cut are the old bytes: ones, zeros, or the image before the last. */
 TEST(cut_off_at_every_byte)
 {
     static const uint32_t from[] = {1, 0xFE, 0xFFFE, 0x00FFFFFEu, 0x7FFFFFFEu, 0xFFFFFFFCu};
@@ -345,7 +345,7 @@ TEST(a_calibration_comes_back)
     }
 }
 
-/* What stands behind the image, in either place, is not of it. */
+/* The byte after the image, in either slot, does not belong to it. */
 TEST(the_byte_behind_the_image_says_nothing)
 {
     unsigned to = 9, at;

@@ -60,7 +60,7 @@ TEST(what_cannot_be_is_refused)
     CHECK(t.run == 1 && t.what.every == 3 && t.what.index[3] == 0, "it was taken");
 }
 
-/* Whoever makes signals for a reader alone asks before each tick. */
+/* A scene that makes signals only for a reader asks before each tick. */
 TEST(it_says_before_a_tick_whether_it_reads)
 {
     begin(FRAMES);

@@ -70,7 +70,7 @@ TEST(what_is_outside_its_range_is_refused)
         "the rows are not the ranges");
 }
 
-/* The D/A stands at 1 A and the command goes on to 2 A: told after so many ticks, not before. */
+/* The D/A is stuck at 1 A and the command goes to 2 A: detected after so many ticks, not before. */
 TEST(a_current_that_stands_is_told_in_time)
 {
     static const uint32_t rate[] = {1, 90, 1000, 2000, 20000};
@@ -89,7 +89,7 @@ TEST(a_current_that_stands_is_told_in_time)
     }
 }
 
-/* Also a current that nobody commanded, outside RUN; and one below. */
+/* Also a current without a command, outside RUN; and one below the command. */
 TEST(both_ways_and_at_rest)
 {
     static const int32_t mon[] = {AMPERE, -AMPERE, TOL + 1, -TOL - 1, INT32_MAX, INT32_MIN};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the ports know of a scene by name: nothing runs by itself. */
+/* The scene that the ports name for the contract test. Its tick commands no current. */
 #include "exhand/run/scene.h"
 
 static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
