@@ -154,7 +154,7 @@ STM_TICKS ?= 10000
 STM_TIMES ?= 5000
 
 ## Run the stm32f405 image in closed loop under emulation (STM_TICKS=10000 STM_TIMES=5000
-## ARGS="drop guarded box spoil faults cuts").
+## ARGS="drop guarded box spoil faults cuts jumps").
 .PHONY: stm32f405 stm32f405-built stm32f405-run
 stm32f405: stm32f405-built
 	@B=$(B) TICKS=$(STM_TICKS) TIMES=$(STM_TIMES) $(stm_dir)/stm32f405.sh $(ARGS)
@@ -164,7 +164,7 @@ stm32f405-built:
 	@$(MAKE) --no-print-directory $(if $(V),,-s) $(B)/test/stm32f405/emulator
 	@for s in drop guarded bilateral; \
 	    do $(MAKE) --no-print-directory $(if $(V),,-s) PORT=stm32f405 SCENE=$$s all || exit 1; done
-# The short form: what is built, with few ticks. Faults (ARGS=faults) may hang the emulator.
+# The short form: what is built, with few ticks.
 stm32f405-run: stm32f405-regs
 	@B=$(B) TICKS=600 TIMES=56 LIMIT=600 $(stm_dir)/stm32f405.sh \
-	    $(or $(ARGS),drop guarded box spoil cuts)
+	    $(or $(ARGS),drop guarded box spoil cuts jumps)

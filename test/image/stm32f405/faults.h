@@ -13,4 +13,7 @@ int stm_faults(struct machine *m, unsigned times, uint64_t seed);
  * says, too. */
 int stm_cuts(struct machine *m, const char *image, unsigned times);
 
+/* A small program leaves memory, each way. A line on stdout. 0: each ends in its state. */
+int stm_jumps(void);
+
 #endif

@@ -8,10 +8,13 @@
 
 #define WFE        0xBF20
 #define WFI        0xBF30
-#define BKPT       0xBE
 #define XPSR_T     0x01000000u
+#define STKERR     0x1000u
 #define RETURN     0xFFFFFFF0u /* and above: no address, but the way back from a handler */
 #define ENTRY_TIME 12u         /* cycles, into a handler; 12 back */
+#define STILL      1000u       /* passes of machine_run() in which nothing happens */
+/* Exceptions as Unicorn numbers them; from INTERNAL on they are its own. */
+enum { U_SVC = 2, U_XN = 3, U_BKPT = 7, U_RETURN = 8, U_INTERNAL = 0x10000 };
 
 uint32_t machine_reg(const struct machine *m, int id)
 {
@@ -61,7 +64,8 @@ void machine_broke(struct machine *m, const char *format, ...)
 
 /* --- exceptions --- */
 
-static void push(struct machine *m, unsigned e)
+/* 0: the stack is no memory. Its pointer moves all the same. */
+static int push(struct machine *m, unsigned e)
 {
     static const int reg[7] = {UC_ARM_REG_R0, UC_ARM_REG_R1, UC_ARM_REG_R2, UC_ARM_REG_R3,
         UC_ARM_REG_R12, UC_ARM_REG_LR, UC_ARM_REG_PC};
@@ -72,21 +76,26 @@ static void push(struct machine *m, unsigned e)
     uint8_t *to = machine_at(m, at, 32);
     for (unsigned i = 0; i < 7; i++) { frame[i] = machine_reg(m, reg[i]); }
     frame[7] = (psr & ~0x200u) | XPSR_T | pad << 9;
-    if (to == NULL) {
-        machine_broke(m, "exception %u: the stack is at 0x%x", e, (unsigned)sp);
-        return;
-    }
-    memcpy(to, frame, sizeof frame);
+    if (to) { memcpy(to, frame, sizeof frame); }
     machine_set_reg(m, UC_ARM_REG_SP, at);
     machine_set_reg(m, UC_ARM_REG_LR, ipsr ? 0xFFFFFFF1u : 0xFFFFFFF9u);
     machine_set_reg(m, UC_ARM_REG_XPSR, (psr & 0xF8000000u) | XPSR_T | e);
+    return to != NULL;
 }
 
+/* A handler runs although its frame found no memory (Cortex-M3 TRM 5.12.1); that of the hard fault,
+ * where e may wait for it. */
 static void enter(struct machine *m, unsigned e)
 {
+    if (!push(m, e)) {
+        m->s.core.scb[10] |= STKERR;
+        if (e > STM_HARDFAULT) {
+            e = STM_HARDFAULT;
+            machine_set_reg(m, UC_ARM_REG_XPSR, (machine_reg(m, UC_ARM_REG_XPSR) & ~0x1FFu) | e);
+        }
+    }
     const uint32_t vector =
         machine_word(m, (m->s.core.scb[2] ? m->s.core.scb[2] : STM_FLASH) + 4 * e);
-    push(m, e);
     m->s.core.pending[e] = 0;
     m->s.core.active[e] = 1;
     m->s.core.event = 1;
@@ -105,6 +114,10 @@ static void leave(struct machine *m)
     const uint32_t sp = machine_reg(m, UC_ARM_REG_SP);
     const uint8_t *from = machine_at(m, sp, 32);
     uint32_t frame[8];
+    if (e == 0) { /* no handler runs: nobody may execute there */
+        m->faulted = STM_MEMMANAGE;
+        return;
+    }
     if (from == NULL || e >= STM_EXCEPTIONS) {
         machine_broke(m, "back from exception %u: the stack is at 0x%x", e, (unsigned)sp);
         return;
@@ -204,12 +217,6 @@ static void on_core_write(uc_engine *uc, uint64_t off, unsigned size, uint64_t v
     on_write(uc, off + 0x20000000u, size, v, user);
 }
 
-static void stop(struct machine *m)
-{
-    m->wants_stop = 1;
-    uc_emu_stop(m->uc);
-}
-
 /* 1: the run pauses here, before the block. */
 static int go_on(struct machine *m)
 {
@@ -226,7 +233,7 @@ static int go_on(struct machine *m)
     }
     if (m->stop_at && m->stop_at < m->s.wake) { m->s.wake = m->stop_at; }
     if (wanted(m)) {
-        stop(m);
+        uc_emu_stop(m->uc);
         return 1;
     }
     return 0;
@@ -258,7 +265,7 @@ static void on_block(uc_engine *uc, uint64_t address, uint32_t size, void *user)
         return;
     }
     if (m->faulted || ((m->s.now >= m->s.wake || m->store_size) && go_on(m))) {
-        if (m->faulted) { stop(m); }
+        if (m->faulted) { uc_emu_stop(uc); }
         return;
     }
     if (m->watched[off / 16] >> (off / 2 % 8) & 1) {
@@ -279,9 +286,13 @@ static void on_block(uc_engine *uc, uint64_t address, uint32_t size, void *user)
 static void on_interrupt(uc_engine *uc, uint32_t n, void *user)
 {
     struct machine *m = user;
-    (void)n;
-    (void)user;
-    m->wants_stop = 1;
+    if (n == U_BKPT) {
+        machine_broke(m, "a breakpoint at 0x%x", (unsigned)machine_reg(m, UC_ARM_REG_PC));
+    } else if (n == U_SVC) {
+        stm_pend(&m->s, STM_SVCALL);
+    } else if (n < U_INTERNAL && n != U_RETURN) {
+        m->faulted = n == U_XN ? STM_MEMMANAGE : STM_USAGEFAULT;
+    }
     uc_emu_stop(uc);
 }
 
@@ -318,12 +329,38 @@ static void wait_for(struct machine *m, int event)
     }
 }
 
+/* A fault that no handler may take, as one runs that goes before it: the processor stands until a
+ * reset or, in a hard fault, NMI. */
+static void lock_up(struct machine *m, unsigned cause)
+{
+    snprintf(m->why, sizeof m->why, "locked up: exception %u in a handler, at 0x%x", cause,
+        (unsigned)machine_reg(m, UC_ARM_REG_PC));
+    m->s.core.event = 0;
+    wait_for(m, 1);
+}
+
 static void escalate(struct machine *m)
 {
+    static const uint32_t status[] = {
+        [STM_MEMMANAGE] = 1u, [STM_BUSFAULT] = 1u << 8, [STM_USAGEFAULT] = 1u << 16};
+    struct stm_core *c = &m->s.core;
     const unsigned cause = m->faulted;
     m->faulted = 0;
-    m->s.core.scb[10] |= cause == STM_MEMMANAGE ? 2u : 0x10000u; /* CFSR */
-    enter(m, m->s.core.scb[9] >> 16 & 1 ? cause : STM_HARDFAULT);
+    c->scb[10] |= status[cause]; /* CFSR */
+    if (c->active[STM_HARDFAULT] || c->active[STM_NMI]) {
+        lock_up(m, cause);
+    } else {
+        enter(m, c->scb[9] >> (cause + 12) & 1 && !c->active[cause] ? cause : STM_HARDFAULT);
+    }
+}
+
+/* What Unicorn ends a run with. Memory is not to hold code, though on the chip it could. */
+static void take_error(struct machine *m, uc_err err, uint32_t pc)
+{
+    const int read = err == UC_ERR_READ_UNMAPPED, write = err == UC_ERR_WRITE_UNMAPPED;
+    const int bus = read || write || err == UC_ERR_FETCH_UNMAPPED;
+    m->faulted = bus ? STM_BUSFAULT : STM_USAGEFAULT;
+    if (err == UC_ERR_FETCH_PROT) { machine_broke(m, "control went to 0x%x", (unsigned)pc); }
 }
 
 /* A function () of the image, at no cost and in no time; all registers are as they were. */
@@ -357,35 +394,46 @@ void machine_call(struct machine *m, uint32_t fn)
     uc_emu_stop(m->uc);
 }
 
+/* What ended a stretch of code. An error behind WFE is Unicorn's way to wait; what an interrupt
+ * goes before comes again. */
+static void take(struct machine *m, uc_err err, uint32_t pc)
+{
+    const int before = code_before(m, pc);
+    unsigned e = 0;
+    if (m->call) {
+        call_aside(m);
+    } else if (!m->faulted && pc >= RETURN) {
+        leave(m);
+    } else if (!m->faulted && (e = wanted(m)) == 0) {
+        if (before == WFE || before == WFI) {
+            wait_for(m, before == WFE);
+            e = wanted(m);
+        } else if (err != UC_ERR_OK) {
+            take_error(m, err, pc);
+        }
+    }
+    if (m->end != M_RUNS) { return; }
+    if (m->faulted) {
+        escalate(m);
+    } else if (e) {
+        enter(m, e);
+    }
+}
+
 enum machine_end machine_run(struct machine *m)
 {
+    unsigned still = 0;
     m->end = M_RUNS;
     while (m->end == M_RUNS) {
+        const uint64_t was = m->s.now, insns = m->insns;
         const uint32_t from = machine_reg(m, UC_ARM_REG_PC) | 1;
         const uc_err err = uc_emu_start(m->uc, from, UINT64_MAX, 0, 0);
         const uint32_t pc = machine_reg(m, UC_ARM_REG_PC);
-        const int before = code_before(m, pc);
-        unsigned e;
-        m->wants_stop = 0;
         finish_store(m);
         if (m->end != M_RUNS) { break; }
-        if (m->call) {
-            call_aside(m);
-        } else if (m->faulted) {
-            escalate(m);
-        } else if (pc >= (RETURN & ~1u)) {
-            leave(m);
-        } else if ((e = wanted(m)) != 0) {
-            enter(m, e);
-        } else if (before == WFE || before == WFI) {
-            wait_for(m, before == WFE);
-            if (m->end == M_RUNS && (e = wanted(m)) != 0) { enter(m, e); }
-        } else if (before >> 8 == BKPT) {
-            machine_broke(m, "a breakpoint at 0x%x", (unsigned)pc);
-        } else if (err != UC_ERR_OK) {
-            m->faulted = STM_USAGEFAULT;
-            escalate(m);
-        }
+        take(m, err, pc);
+        still = m->s.now != was || m->insns != insns ? 0 : still + 1;
+        if (still == STILL) { machine_broke(m, "it stands still at 0x%x", (unsigned)pc); }
     }
     return m->end;
 }
@@ -404,7 +452,7 @@ void machine_watch(struct machine *m, uint32_t address, machine_watch_fn *fn)
 
 void machine_boot(struct machine *m)
 {
-    m->wants_stop = m->faulted = 0;
+    m->faulted = 0;
     machine_set_reg(m, UC_ARM_REG_XPSR, XPSR_T);
     machine_set_reg(m, UC_ARM_REG_PRIMASK, 0);
     machine_set_reg(m, UC_ARM_REG_SP, machine_word(m, STM_FLASH));
@@ -477,7 +525,7 @@ int machine_open(struct machine *m, const char *image)
     memset(m->flash, 0xFF, STM_FLASH_B);
     memset(m->ram, 0xA5, STM_RAM_B); /* nobody clears memory for an image */
     memset(m->ccm, 0xA5, STM_CCM_B);
-    if (image_load(image, EM_ARM, place, m, &entry) < 0) {
+    if (image && image_load(image, EM_ARM, place, m, &entry) < 0) {
         fprintf(stderr, "stm32f405: %s: not an Arm image that fits\n", image);
         return -1;
     }

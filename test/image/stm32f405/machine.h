@@ -50,7 +50,7 @@ struct machine {
     } watch[WATCHES];
     unsigned watches;
     uint8_t watched[STM_FLASH_B / 2 / 8];
-    uint8_t wants_stop, faulted, guarded;
+    uint8_t faulted, guarded;
     uint32_t aside; /* where a call of the harness's returns to, while it runs */
     uint32_t call;  /* a function of the image that the harness wants run; 0: none */
     uint32_t store_at, store_was, store_value, store_size; /* a store into flash under way */
@@ -58,6 +58,7 @@ struct machine {
     void *ctx;
 };
 
+/* 0, or -1 after a line on stderr. image: ELF; NULL: an empty flash. */
 int machine_open(struct machine *m, const char *image);
 void machine_close(struct machine *m);
 /* The processor begins at the vectors. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* One run of an image: --rate HZ, --ticks N, --seed N, --spoil TICK, --say (what it prints),
- * --where (cycles by block); instead --faults N (that many, a table) or --cuts N (of a save).
+ * --where (cycles by block); instead --faults N (that many, a table), --cuts N (of a save) or,
+ * without an image, --jumps (out of memory).
  * Prints a row of figures. */
 #include "faults.h"
 
@@ -65,8 +66,8 @@ static const struct {
     const char *name;
     int takes; /* a number */
 } option[] = {{"--rate", 1}, {"--ticks", 1}, {"--seed", 1}, {"--spoil", 1}, {"--faults", 1},
-    {"--cuts", 1}, {"--say", 0}, {"--where", 0}};
-enum { RATE, TICKS, SEED, SPOIL, FAULTS, CUTS, SAY, WHERE, OPTIONS };
+    {"--cuts", 1}, {"--say", 0}, {"--where", 0}, {"--jumps", 0}};
+enum { RATE, TICKS, SEED, SPOIL, FAULTS, CUTS, SAY, WHERE, JUMPS, OPTIONS };
 
 /* The first argument that is no option; argc: there is a bad one. */
 static int options(int argc, char **argv, long value[OPTIONS])
@@ -86,9 +87,10 @@ int main(int argc, char **argv)
     long value[OPTIONS] = {[TICKS] = 2000, [SEED] = 1, [SPOIL] = -1};
     const int i = options(argc, argv, value);
     int bad;
+    if (value[JUMPS] && i == argc) { return stm_jumps(); }
     if (i + 1 != argc) {
         fprintf(stderr, "usage: stm32f405 [--rate HZ] [--ticks N] [--seed N] [--spoil TICK] "
-                        "[--faults N] [--cuts N] [--say] [--where] IMAGE\n");
+                        "[--faults N] [--cuts N] [--say] [--where] IMAGE | --jumps\n");
         return 2;
     }
     loop.rate_Hz = (uint32_t)value[RATE];

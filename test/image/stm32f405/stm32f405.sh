@@ -6,6 +6,7 @@
 #   spoil              a count more in one tick is found in that tick
 #   faults             faults from random times: drives off in time, each told by its name
 #   cuts               the supply fails in each operation of a save into flash
+#   jumps              a program that leaves memory ends in a state that has a name
 # README.md says what is reckoned. Environment: B (build), TICKS of a run at 1
 # kHz, TIMES of faults a scene, LIMIT (86400 s) of a run: what takes longer hangs.
 # Exit status: 0 all ok, 1 not, 2 bad usage, 3 something is not built.
@@ -57,12 +58,17 @@ cuts()
     run --cuts 10000 "$(image drop)" || failed=1
 }
 
-for what in ${*:-drop guarded box spoil faults cuts}; do
+jumps()
+{
+    run --jumps || failed=1
+}
+
+for what in ${*:-drop guarded box spoil faults cuts jumps}; do
     case $what in
     drop | guarded | box) rates "$what" ;;
-    spoil | faults | cuts) "$what" ;;
+    spoil | faults | cuts | jumps) "$what" ;;
     *)
-        echo "usage: stm32f405.sh [drop|guarded|box|spoil|faults|cuts]..." >&2
+        echo "usage: stm32f405.sh [drop|guarded|box|spoil|faults|cuts|jumps]..." >&2
         exit 2 ;;
     esac
 done
