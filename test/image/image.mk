@@ -151,10 +151,10 @@ $(B)/test/stm32f405/emulator: $(stm_objs) $(filter-out %/main.o,$(cli_obj)) $(si
 	    -Wl,-rpath,$(unicorn)/lib $(cli_libs)
 
 STM_TICKS ?= 10000
-STM_TIMES ?= 5000
+STM_TIMES ?= 10010
 
-## Run the stm32f405 image in closed loop under emulation (STM_TICKS=10000 STM_TIMES=5000
-## ARGS="drop guarded box spoil faults cuts jumps").
+## Run the stm32f405 image in closed loop under emulation (STM_TICKS=10000 STM_TIMES=10010
+## ARGS="drop guarded box spoil faults planted cuts jumps").
 .PHONY: stm32f405 stm32f405-built stm32f405-run
 stm32f405: stm32f405-built
 	@B=$(B) TICKS=$(STM_TICKS) TIMES=$(STM_TIMES) $(stm_dir)/stm32f405.sh $(ARGS)
@@ -166,5 +166,5 @@ stm32f405-built:
 	    do $(MAKE) --no-print-directory $(if $(V),,-s) PORT=stm32f405 SCENE=$$s all || exit 1; done
 # The short form: what is built, with few ticks.
 stm32f405-run: stm32f405-regs
-	@B=$(B) TICKS=600 TIMES=56 LIMIT=600 $(stm_dir)/stm32f405.sh \
-	    $(or $(ARGS),drop guarded box spoil cuts jumps)
+	@B=$(B) TICKS=600 TIMES=88 LIMIT=600 $(stm_dir)/stm32f405.sh \
+	    $(or $(ARGS),drop guarded box spoil faults planted cuts jumps)

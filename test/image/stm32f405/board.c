@@ -20,6 +20,7 @@ static const struct pin estop = {A, 3}, deadman = {A, 10}, sync = {B, 12}, clear
 static const struct pin spi[3] = {{B, 13}, {B, 14}, {B, 15}};
 
 void (*board_sent)(unsigned usart, uint8_t byte);
+void (*board_changed)(void);
 static struct board *board; /* the one that is wired */
 static struct stm *chip;
 
@@ -76,6 +77,7 @@ static void pins(void *ctx, unsigned port, uint16_t was, uint16_t is)
     if (port == clear.port && changed >> clear.pin & 1) {
         da_clear(&board->da, is >> clear.pin & 1);
     }
+    if (board_changed) { board_changed(); }
 }
 
 static void sent(void *ctx, unsigned usart, uint8_t byte)
@@ -106,11 +108,15 @@ static void put_pin(struct stm *s, struct pin p, int high)
     s->port[p.port].in = (uint16_t)(high ? s->port[p.port].in | bit : s->port[p.port].in & ~bit);
 }
 
+/* Of four quarters A is high in two. Where B never is, each edge of A takes back the one before. */
+static int line_a(uint32_t enc) { return (int)((enc + 1) >> 1 & 1); }
+
 static void turn(struct board *b, struct stm *s, unsigned i, uint32_t enc)
 {
     const int wired = is_function(s, encoder[i].a, encoder[i].function) &&
                       is_function(s, encoder[i].b, encoder[i].function);
     int32_t quarters = (int32_t)(enc - b->enc[i]) + b->jump[i];
+    if (b->half >> i & 1) { quarters = line_a(enc) - line_a(b->enc[i]); }
     b->enc[i] = enc;
     b->jump[i] = 0;
     if (b->stuck >> i & 1) { quarters = 0; }
@@ -139,7 +145,7 @@ static uint16_t code_of(int32_t uV)
 
 unsigned board_enables(const struct stm *s)
 {
-    unsigned on = 0;
+    unsigned on = board->welded;
     for (unsigned i = 0; i < EXH_FINGERS; i++) { on |= (unsigned)level(s, enable[i]) << i; }
     return on;
 }

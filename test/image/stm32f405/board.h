@@ -15,7 +15,9 @@ struct board {
     int16_t mon[EXH_FINGERS], supply;
     int16_t glove[EXH_GLOVE_SENSORS];
     uint32_t enc[EXH_FINGERS]; /* where they stand; at power-on at 0 */
-    uint8_t stuck, miswired;   /* bits of encoders: no count comes; lines exchanged */
+    uint8_t stuck, miswired;   /* bits of encoders: no count comes; lines exchanged; */
+    uint8_t half;              /* line B stays low */
+    uint8_t welded;            /* bits of drives: the line that enables them is high for good */
     int32_t jump[EXH_FINGERS]; /* counts that come once, by themselves */
 };
 
@@ -25,5 +27,6 @@ void board_get(const struct board *b, const struct stm *s, struct exh_drive_out 
 /* Drives that are enabled, as bits. */
 unsigned board_enables(const struct stm *s);
 extern void (*board_sent)(unsigned usart, uint8_t byte);
+extern void (*board_changed)(void); /* a pin has moved, and what hangs on it acted */
 
 #endif

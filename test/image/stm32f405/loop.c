@@ -204,7 +204,7 @@ static void on_tick(struct machine *m)
 {
     const uint8_t *in = machine_at(m, machine_reg(m, UC_ARM_REG_R0), sizeof loop.seen);
     static int watched;
-    if (loop.ticking || in == NULL) { return; }
+    if (loop.ticking || loop.quiet || in == NULL) { return; }
     loop.ticking = 1;
     loop.out = machine_reg(m, UC_ARM_REG_R1);
     memcpy(&loop.seen, in, sizeof loop.seen);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* One run of an image: --rate HZ, --ticks N, --seed N, --spoil TICK, --say (what it prints),
- * --where (cycles by block); instead --faults N (that many, a table), --cuts N (of a save) or,
- * without an image, --jumps (out of memory).
+ * --where (cycles by block); instead --faults N (that many, a table; --welded: and drive 0 is
+ * enabled for good), --cuts N (of a save) or, without an image, --jumps (out of memory).
  * Prints a row of figures. */
 #include "faults.h"
 
@@ -66,8 +66,8 @@ static const struct {
     const char *name;
     int takes; /* a number */
 } option[] = {{"--rate", 1}, {"--ticks", 1}, {"--seed", 1}, {"--spoil", 1}, {"--faults", 1},
-    {"--cuts", 1}, {"--say", 0}, {"--where", 0}, {"--jumps", 0}};
-enum { RATE, TICKS, SEED, SPOIL, FAULTS, CUTS, SAY, WHERE, JUMPS, OPTIONS };
+    {"--cuts", 1}, {"--say", 0}, {"--where", 0}, {"--jumps", 0}, {"--welded", 0}};
+enum { RATE, TICKS, SEED, SPOIL, FAULTS, CUTS, SAY, WHERE, JUMPS, WELDED, OPTIONS };
 
 /* The first argument that is no option; argc: there is a bad one. */
 static int options(int argc, char **argv, long value[OPTIONS])
@@ -90,7 +90,7 @@ int main(int argc, char **argv)
     if (value[JUMPS] && i == argc) { return stm_jumps(); }
     if (i + 1 != argc) {
         fprintf(stderr, "usage: stm32f405 [--rate HZ] [--ticks N] [--seed N] [--spoil TICK] "
-                        "[--faults N] [--cuts N] [--say] [--where] IMAGE | --jumps\n");
+                        "[--faults N [--welded]] [--cuts N] [--say] [--where] IMAGE | --jumps\n");
         return 2;
     }
     loop.rate_Hz = (uint32_t)value[RATE];
@@ -98,6 +98,7 @@ int main(int argc, char **argv)
     loop.spoil = value[SPOIL];
     machine.guarded = value[FAULTS] != 0;
     if (loop_open(&machine, argv[i], (uint64_t)value[SEED]) < 0) { return 2; }
+    loop.board.welded = value[WELDED] != 0;
     if (value[FAULTS] || value[CUTS]) {
         bad = value[CUTS] ? stm_cuts(&machine, argv[i], (unsigned)value[CUTS])
                           : stm_faults(&machine, (unsigned)value[FAULTS], (uint64_t)value[SEED]);
