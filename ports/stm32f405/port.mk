@@ -3,7 +3,9 @@ PORT_DESC      := bare-metal Cortex-M4 (STM32F405), no vendor library; BOX=real,
                   loop-back that QEMU runs
 CROSS          ?= arm-none-eabi-
 PORT_PKGS      := gcc-arm-none-eabi
-PORT_QEMU      := qemu-system-arm qemu-system-arm
+# In closed loop with a simulated hand, on an emulated chip; other images run under QEMU.
+stm_emulated   := $(if $(filter real,$(or $(BOX),real)),$(filter drop guarded bilateral,$(SCENE)))
+PORT_QEMU      := $(if $(stm_emulated),,qemu-system-arm qemu-system-arm)
 # real: encoders, D/A and A/D. none: a loop-back in their place.
 BOX            ?= real
 box_real       := box.c da.c adc.c
@@ -26,7 +28,7 @@ PORT_LDFLAGS   := -mcpu=cortex-m4 -mthumb -nostdlib -static -Wl,--build-id=none
 PORT_LDSCRIPT  := ldscripts/stm32f405.ld
 PORT_FLOAT_LIBS := -lgcc
 PORT_WHOLE     := -O3 -flto -ffat-lto-objects
-PORT_RUN       := ports/stm32f405/run.sh
+PORT_RUN       := B=$(B) test/image/stm32f405/run.sh
 PORT_SAY       := stm_say
 # TIM5. Where there is no RCC QEMU counts nanoseconds.
 PORT_CYCLES_HZ := $(if $(filter none,$(BOX)),1000000000,84000000)
@@ -40,6 +42,12 @@ $(stm_wiring): ports/stm32f405/wiring.tsv ports/stm32f405/wiring.awk
 	@awk -v want=h -f ports/stm32f405/wiring.awk $< >$@ || { rm -f $@; exit 1; }
 $(patsubst %.c,$(B)/stm32f405/$(SCENE)/%.o,$(filter ports/stm32f405/%,$(PORT_SRC) $(PORT_MAIN))): \
     $(stm_wiring)
+
+.PHONY: stm-emulator
+run: $(if $(stm_emulated),stm-emulator)
+stm-emulator:
+	@B=$(B) test/image/hil/unicorn.sh
+	@$(MAKE) --no-print-directory $(if $(V),,-s) PORT=posix $(B)/test/stm32f405/emulator
 
 # What flashing tools take, and how, behind `make image`.
 .PHONY: stm-flash

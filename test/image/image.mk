@@ -154,7 +154,7 @@ STM_TICKS ?= 10000
 STM_TIMES ?= 10010
 
 ## Run the stm32f405 image in closed loop under emulation (STM_TICKS=10000 STM_TIMES=10010
-## ARGS="drop guarded box spoil faults planted cuts jumps").
+## ARGS="drop guarded box spoil faults planted cuts jumps show").
 .PHONY: stm32f405 stm32f405-built stm32f405-run
 stm32f405: stm32f405-built
 	@B=$(B) TICKS=$(STM_TICKS) TIMES=$(STM_TIMES) $(stm_dir)/stm32f405.sh $(ARGS)
@@ -167,4 +167,4 @@ stm32f405-built:
 # The short form: what is built, with few ticks.
 stm32f405-run: stm32f405-regs
 	@B=$(B) TICKS=600 TIMES=88 LIMIT=600 $(stm_dir)/stm32f405.sh \
-	    $(or $(ARGS),drop guarded box spoil faults planted cuts jumps)
+	    $(or $(ARGS),drop guarded box spoil faults planted cuts jumps show)

@@ -121,7 +121,10 @@ static void on_instant(void *ctx)
     struct exh_glove_in glove;
     (void)ctx;
     if (!loop.begun) { return; }
-    if (!loop.ready) { start_device(); }
+    if (!loop.ready) {
+        if (loop.show_words) { loop.show_words((const char *)m->ctx); }
+        start_device();
+    }
     if (loop.open) {
         board_get(&loop.board, &m->s, &out);
         loop.last = out;

@@ -30,6 +30,7 @@ struct loop {
     uint32_t cut;  /* contacts that are open: enum exh_din */
     uint8_t quiet; /* nothing is compared */
     int64_t spoil;
+    void (*show_words)(const char *image); /* called at the first instant, or NULL */
     uint32_t scene, tick, show, back, out;
     struct exh_period T;
     struct exh_drive_in in, before; /* as the device has it; a tick ago */

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* One run of an image: --rate HZ, --ticks N, --seed N, --spoil TICK, --say (what it prints),
- * --where (cycles by block); instead --faults N (that many, a table; --welded: and drive 0 is
- * enabled for good), --cuts N (of a save) or, without an image, --jumps (out of memory).
- * Prints a row of figures. */
+/* One run of an image, or what is asked for instead: see help[]. */
 #include "faults.h"
+#include "show.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -33,13 +31,10 @@ static uint32_t most_of_99(struct loop_result *r)
 
 static double highest_Hz(uint32_t cycles) { return cycles ? CORE_HZ / cycles : 0; }
 
-static int verdict(void)
+static void row(int bad, uint32_t most)
 {
-    struct loop_result *r = &loop.r;
+    const struct loop_result *r = &loop.r;
     const double n = r->ticks > 1 ? (double)(r->ticks - 1) : 1;
-    const uint32_t most = most_of_99(r);
-    int bad = machine.end != M_DONE || r->differ || r->ticks < loop.ticks_wanted;
-    bad |= machine.s.unclocked || machine.s.unknown || machine.s.flash.latency_Hz;
     printf("%-9s %5.0f Hz %6lu ticks %6lu pull %5lu packets | insns %6.0f %6u | cycles %6.0f %6u "
            "%6u | accesses %4.0f %4u | highest Hz %6.0f %6.0f | missed %lu | %s\n",
         loop.cfg.scene->name, (double)loop.T.den / (double)loop.T.num, (unsigned long)r->ticks,
@@ -47,6 +42,19 @@ static int verdict(void)
         (double)r->cycles / n, most, r->most_cycles, (double)r->accesses / n, r->most_accesses,
         highest_Hz(most), highest_Hz(r->most_cycles), (unsigned long)r->missed,
         bad ? "NOT WELL" : "same bits");
+}
+
+static int verdict(int show)
+{
+    struct loop_result *r = &loop.r;
+    const uint32_t most = most_of_99(r);
+    int bad = machine.end != M_DONE || r->differ || r->ticks < loop.ticks_wanted;
+    bad |= machine.s.unclocked || machine.s.unknown || machine.s.flash.latency_Hz;
+    if (show) {
+        show_run(bad, most);
+    } else {
+        row(bad, most);
+    }
     if (r->differ) {
         printf("  %lu ticks differ, the first is %lu: %s\n", (unsigned long)r->differ,
             (unsigned long)r->first, r->what);
@@ -66,8 +74,28 @@ static const struct {
     const char *name;
     int takes; /* a number */
 } option[] = {{"--rate", 1}, {"--ticks", 1}, {"--seed", 1}, {"--spoil", 1}, {"--faults", 1},
-    {"--cuts", 1}, {"--say", 0}, {"--where", 0}, {"--jumps", 0}, {"--welded", 0}};
-enum { RATE, TICKS, SEED, SPOIL, FAULTS, CUTS, SAY, WHERE, JUMPS, WELDED, OPTIONS };
+    {"--cuts", 1}, {"--say", 0}, {"--where", 0}, {"--jumps", 0}, {"--welded", 0}, {"--show", 0},
+    {"--help", 0}};
+enum { RATE, TICKS, SEED, SPOIL, FAULTS, CUTS, SAY, WHERE, JUMPS, WELDED, SHOW, HELP, OPTIONS };
+
+static const char help[] =
+    "usage: emulator [OPTION...] IMAGE\n"
+    "\n"
+    "Runs an image of ports/stm32f405 (ELF; scene drop, guarded or bilateral), unmodified, on an\n"
+    "emulated chip in closed loop with a simulated hand, and prints a row of figures.\n"
+    "  --rate HZ      rate of the loop (the scene's)\n"
+    "  --ticks N      then the run ends (2000)\n"
+    "  --seed N       of hand and device (1)\n"
+    "  --show         for a person: what the image says, and how it did\n"
+    "  --say          the newest that came over its text line, records of the log too\n"
+    "  --where        cycles by block of code\n"
+    "  --spoil TICK   a count more is read in that tick: it must be found\n"
+    "Instead of a run:\n"
+    "  --faults N     N faults, each from a random time; a table\n"
+    "    --welded     and drive 0 stays enabled: it must be found\n"
+    "  --cuts N       the supply fails in N operations of a save into flash\n"
+    "  --jumps        a program leaves memory; no IMAGE\n"
+    "Exit status: 0 all well, 1 not, 2 bad usage. Nothing here was ever run on hardware.\n";
 
 /* The first argument that is no option; argc: there is a bad one. */
 static int options(int argc, char **argv, long value[OPTIONS])
@@ -88,10 +116,9 @@ int main(int argc, char **argv)
     const int i = options(argc, argv, value);
     int bad;
     if (value[JUMPS] && i == argc) { return stm_jumps(); }
-    if (i + 1 != argc) {
-        fprintf(stderr, "usage: stm32f405 [--rate HZ] [--ticks N] [--seed N] [--spoil TICK] "
-                        "[--faults N [--welded]] [--cuts N] [--say] [--where] IMAGE | --jumps\n");
-        return 2;
+    if (i + 1 != argc || value[HELP]) {
+        fputs(help, value[HELP] ? stdout : stderr);
+        return value[HELP] ? 0 : 2;
     }
     loop.rate_Hz = (uint32_t)value[RATE];
     loop.ticks_wanted = (uint32_t)value[TICKS];
@@ -105,13 +132,14 @@ int main(int argc, char **argv)
         machine_close(&machine);
         return bad;
     }
+    loop.show_words = value[SHOW] ? show_words : NULL;
     loop_run();
     if (value[SAY]) { printf("%s", loop.text); }
     for (uint32_t at = 0; value[WHERE] && at < BLOCKS; at++) {
         const struct block *k = &machine.cost.block[at];
         if (k->spent) { printf("where 0x%x %lu\n", STM_FLASH + 2 * at, (unsigned long)k->spent); }
     }
-    bad = verdict();
+    bad = verdict(value[SHOW] != 0);
     machine_close(&machine);
     return bad;
 }
