@@ -1,20 +1,34 @@
 /* SPDX-License-Identifier: MIT */
-/* What a block of code costs. The processor by its technical reference manual (DDI0439): one cycle
- * an instruction; one more a word loaded or stored, two more a change of the program counter, up to
- * ten more a division. The flash by RM0090: a line of 16 bytes that is in none of 64 buffers waits;
- * of one that follows in order the prefetch hides the time that the line before it runs. Words that
- * code loads from beside itself come through the data buffers: each counts as a hit but the first.
- */
+/* What a block of code costs: at most and at least.
+ *
+ * The processor by its technical reference manual (DDI0439). At most: one cycle an instruction; one
+ * more a word loaded or stored; two more a branch that is taken, ten more a division. At least:
+ * loads behind one another and stores take one cycle each, a branch that is taken one more, a
+ * division two.
+ *
+ * The flash by RM0090, 3.5.2, at most: 64 instruction buffers and 8 data buffers of 16 bytes; the
+ * one used longest ago goes. A line in none of them takes the wait states. A line that follows in
+ * order was asked for when the line before it began, so the time that one ran is hidden. At least:
+ * no waits at all. */
 #include "machine.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+#define REFILL 2u /* the pipeline: one to three */
+
+static void open_lines(struct lines *l, unsigned n)
+{
+    memset(l, 0, sizeof *l);
+    memset(l->line, 0xFF, sizeof l->line);
+    memset(l->place, 0xFF, sizeof l->place);
+    l->n = n;
+}
+
 void cost_open(struct cost *c)
 {
-    memset(c->line, 0xFF, sizeof c->line);
-    memset(c->place, 0xFF, sizeof c->place);
-    memset(c->used, 0, sizeof c->used);
+    open_lines(&c->code, LINES);
+    open_lines(&c->data, DATA_LINES);
 }
 
 static unsigned bits(unsigned v)
@@ -24,77 +38,132 @@ static unsigned bits(unsigned v)
     return n;
 }
 
-/* Beyond one cycle, of a Thumb instruction of 16 bits, */
-static unsigned extra16(unsigned i)
+/* What an instruction adds to its cycle. */
+struct extra {
+    uint8_t most, least, load, cond; /* cond: only if it is taken */
+};
+
+static struct extra moves(unsigned words, int load, int jumps)
 {
-    if (i >> 12 == 0xD && (i >> 8 & 15) < 14) { return 2; } /* B<cond>: taken, at worst */
-    if (i >> 11 == 0x1C || (i & 0xFF00) == 0x4700) { return 2; }
-    if ((i & 0xF500) == 0xB100) { return 2; } /* CBZ, CBNZ */
-    if ((i & 0xFE00) == 0xB400) { return bits(i & 0x1FF); }
-    if ((i & 0xFE00) == 0xBC00) { return bits(i & 0x1FF) + (i >> 8 & 1 ? 2 : 0); }
-    if (i >> 12 == 0xC) { return bits(i & 0xFF); }
-    if (i >> 11 == 9 || i >> 12 == 5 || i >> 13 == 3 || i >> 12 == 8 || i >> 12 == 9) { return 1; }
-    return 0;
+    const unsigned refill = jumps ? REFILL : 0;
+    const struct extra e = {(uint8_t)(words + refill),
+        (uint8_t)((load ? 1 : 0) + words - 1 + (jumps ? 1 : 0)), (uint8_t)load, 0};
+    return e;
+}
+static const struct extra branch = {REFILL, 1, 0, 0}, on_condition = {0, 0, 0, 1}, none;
+
+/* Of a Thumb instruction of 16 bits, */
+static struct extra extra16(unsigned i)
+{
+    if (i >> 12 == 0xD && (i >> 8 & 15) < 14) { return on_condition; }
+    if ((i & 0xF500) == 0xB100) { return on_condition; } /* CBZ, CBNZ */
+    if (i >> 11 == 0x1C || (i & 0xFF00) == 0x4700) { return branch; }
+    if ((i & 0xFE00) == 0xB400) { return moves(bits(i & 0x1FF), 0, 0); }
+    if ((i & 0xFE00) == 0xBC00) { return moves(bits(i & 0x1FF), 1, i >> 8 & 1); }
+    if (i >> 12 == 0xC) { return moves(bits(i & 0xFF), i >> 11 & 1, 0); }
+    if (i >> 11 == 9) { return moves(1, 1, 0); }
+    if (i >> 12 == 5) { return moves(1, (i >> 9 & 7) >= 3, 0); }
+    if (i >> 13 == 3 || i >> 12 == 8 || i >> 12 == 9) { return moves(1, i >> 11 & 1, 0); }
+    return none;
 }
 
 /* and of one of 32. */
-static unsigned extra32(unsigned a, unsigned b)
+static struct extra extra32(unsigned a, unsigned b)
 {
-    if ((a & 0xF800) == 0xF000 && b & 0x8000) { return 2; }             /* B, BL */
-    if ((a & 0xFE40) == 0xE800) { return bits(b) + (b >> 15 ? 2 : 0); } /* LDM, STM */
-    if ((a & 0xFE40) == 0xE840) { return 2; }                           /* LDRD, STRD, TBB */
-    if ((a & 0xFE00) == 0xF800) { return (a & 0x10) && b >> 12 == 15 ? 3 : 1; }
-    if ((a & 0xFFD0) == 0xFB90) { return 10; } /* SDIV, UDIV */
-    return 0;
+    static const struct extra division = {10, 1, 0, 0};
+    if ((a & 0xF800) == 0xF000 && (b & 0xD000) == 0x8000 && (a >> 6 & 15) < 14) {
+        return on_condition;
+    }
+    if ((a & 0xF800) == 0xF000 && b & 0x8000) { return branch; } /* B, BL */
+    if ((a & 0xFE40) == 0xE800) { return moves(bits(b), a >> 4 & 1, a >> 4 & b >> 15 & 1); }
+    if ((a & 0xFFF0) == 0xE8D0 && (b & 0xF0) <= 0x10) { return moves(1, 1, 1); } /* TBB, TBH */
+    if ((a & 0xFE40) == 0xE840) { return moves(2, a >> 4 & 1, 0); }              /* LDRD, STRD */
+    if ((a & 0xFE00) == 0xF800) { return moves(1, a >> 4 & 1, a >> 4 & 1 && b >> 12 == 15); }
+    if ((a & 0xFFD0) == 0xFB90) { return division; } /* SDIV, UDIV */
+    return none;
 }
 
 static void learn(struct block *k, const uint8_t *code, uint32_t off, uint32_t size, unsigned insns)
 {
-    unsigned cycles = insns;
+    unsigned most = insns, least = insns;
+    struct extra before = none, e = none;
     for (uint32_t at = 0; at + 1 < size;) {
         const unsigned a = code[at] | (unsigned)code[at + 1] << 8;
         const int wide = a >> 11 >= 0x1D && at + 3 < size;
         const unsigned b = wide ? code[at + 2] | (unsigned)code[at + 3] << 8 : 0;
-        cycles += wide ? extra32(a, b) : extra16(a);
+        e = wide ? extra32(a, b) : extra16(a);
+        most += e.most;
+        least += e.least - (e.load & before.load);
+        before = e;
         at += wide ? 4 : 2;
     }
     k->insns = (uint16_t)insns;
-    k->cycles = (uint16_t)cycles;
+    k->cycles = (uint16_t)most;
+    k->least = (uint16_t)least;
+    k->conditional = e.cond;
     k->lines = (uint8_t)((off + size - 1) / 16 - off / 16 + 1);
 }
 
 /* 1: it had to be fetched. The buffer used longest ago goes. */
-static int fetch(struct cost *c, uint32_t line)
+static int fetch(struct lines *l, uint32_t line)
 {
     unsigned oldest = 0;
-    c->turn++;
-    if (c->place[line] >= 0) {
-        c->used[c->place[line]] = c->turn;
+    l->turn++;
+    if (l->place[line] >= 0) {
+        l->used[l->place[line]] = l->turn;
         return 0;
     }
-    for (unsigned i = 1; i < LINES; i++) {
-        if (c->used[i] < c->used[oldest]) { oldest = i; }
+    for (unsigned i = 1; i < l->n; i++) {
+        if (l->used[i] < l->used[oldest]) { oldest = i; }
     }
-    if (c->line[oldest] != UINT32_MAX) { c->place[c->line[oldest]] = -1; }
-    c->line[oldest] = line;
-    c->used[oldest] = c->turn;
-    c->place[line] = (int16_t)oldest;
+    if (l->line[oldest] != UINT32_MAX) { l->place[l->line[oldest]] = -1; }
+    l->line[oldest] = line;
+    l->used[oldest] = l->turn;
+    l->place[line] = (int16_t)oldest;
     return 1;
 }
 
-uint32_t cost_of(struct cost *c, const uint8_t *flash, uint32_t off, uint32_t size, unsigned insns,
-    unsigned wait_states)
+struct spent cost_of(struct cost *c, const uint8_t *flash, uint32_t off, uint32_t size,
+    unsigned insns, unsigned wait_states)
 {
     struct block *k = &c->block[off / 2];
-    uint32_t stall = 0, hidden = 0;
+    struct spent t = {0, 0};
     if (k->insns == 0) { learn(k, &flash[off], off, size, insns); }
+    if (c->conditional && off != c->end) { t = (struct spent){REFILL, 1}; }
     for (unsigned i = 0; i < k->lines; i++) {
-        if (fetch(c, off / 16 + i)) {
-            stall += wait_states > hidden ? wait_states - hidden : 0;
-            c->misses++;
+        const uint32_t line = off / 16 + i;
+        if (line != c->at) { /* since: what the line before has run */
+            const uint32_t hidden = line == c->at + 1 ? c->since : 0;
+            if (fetch(&c->code, line) && wait_states > hidden) {
+                t.most += wait_states - hidden;
+                c->stalls += wait_states - hidden;
+            }
+            c->at = line;
+            c->since = 0;
         }
-        hidden = k->cycles / k->lines;
+        c->since += k->cycles / k->lines;
     }
-    c->stalls += stall;
-    return k->cycles + stall;
+    c->conditional = k->conditional;
+    c->end = off + size;
+    t.most += k->cycles;
+    t.least += k->least;
+    return t;
+}
+
+uint32_t cost_of_data(struct cost *c, uint32_t off, unsigned wait_states)
+{
+    const uint32_t waits = fetch(&c->data, off / 16) ? wait_states : 0;
+    c->data_stalls += waits;
+    return waits;
+}
+
+void cost_begin(struct cost *c)
+{
+    for (uint32_t i = 0; i < c->runs; i++) { c->run[i]->tick = 0; }
+    c->runs = 0;
+}
+
+void cost_keep(struct cost *c)
+{
+    for (uint32_t i = 0; i < BLOCKS; i++) { c->block[i].most = c->block[i].tick; }
 }

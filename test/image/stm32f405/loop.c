@@ -148,8 +148,10 @@ static void on_instant(void *ctx)
     loop.open = 1;
     if (!loop.waits) { return; } /* the tick before goes on */
     loop.waits = 0;
+    cost_begin(&m->cost);
     loop.at_insns = m->insns;
     loop.at_cycles = m->cycles;
+    loop.at_least = m->least;
     loop.at_accesses = m->s.accesses;
 }
 
@@ -263,7 +265,7 @@ void loop_on_back(struct machine *m)
 static void end_tick(struct machine *m)
 {
     struct loop_result *r = &loop.r;
-    const uint64_t cycles = m->cycles - loop.at_cycles;
+    const uint64_t cycles = m->cycles - loop.at_cycles, least = m->least - loop.at_least;
     struct exh_drive_out out;
     int pulls = 0;
     board_get(&loop.board, &m->s, &out);
@@ -283,9 +285,14 @@ static void end_tick(struct machine *m)
     if (r->ticks == 1) { return; } /* set-up ends in it */
     r->insns += m->insns - loop.at_insns;
     r->cycles += cycles;
+    r->least += least;
     r->accesses += m->s.accesses - loop.at_accesses;
-    if (r->ticks - 2 < LOOP_KEEPS) { r->kept[r->ticks - 2] = (uint32_t)cycles; }
+    if (r->ticks - 2 < LOOP_KEEPS) {
+        r->kept[r->ticks - 2] = (uint32_t)cycles;
+        r->fewest[r->ticks - 2] = (uint32_t)least;
+    }
     if (cycles > r->most_cycles) {
+        cost_keep(&m->cost);
         r->dearest = r->ticks - 1;
         r->most_cycles = (uint32_t)cycles;
         r->most_insns = (uint32_t)(m->insns - loop.at_insns);

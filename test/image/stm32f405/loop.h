@@ -11,12 +11,13 @@
 
 #define LOOP_KEEPS 100000u
 struct loop_result {
-    uint32_t kept[LOOP_KEEPS];     /* cycles, by tick */
+    uint32_t kept[LOOP_KEEPS];     /* cycles, by tick: at most, */
+    uint32_t fewest[LOOP_KEEPS];   /* and at least */
     uint64_t ticks, differ, first; /* compared; those that do; the first of them */
     char what[160];
     uint64_t running, pulling, packets, missed, first_missed, dearest;
     uint32_t most_insns, most_cycles, most_accesses; /* of the dearest tick, by cycles */
-    uint64_t insns, cycles, accesses;                /* of all, from the instant to the next wait */
+    uint64_t insns, cycles, least, accesses;         /* of all, from the instant to the next wait */
 };
 
 #define LOOP_PAST 8u
@@ -37,7 +38,7 @@ struct loop {
     struct exh_scene_in seen;       /* as the image read it */
     struct exh_drive_out twin, last;
     uint8_t begun, open, ready, shown, ticking, differs, waits;
-    uint64_t at_insns, at_cycles, at_accesses, at_slept;
+    uint64_t at_insns, at_cycles, at_least, at_accesses;
     uint8_t frame[300];
     unsigned frame_B;
     struct loop_result r;

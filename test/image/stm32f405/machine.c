@@ -10,6 +10,7 @@
 #define WFI        0xBF30
 #define XPSR_T     0x01000000u
 #define STKERR     0x1000u
+#define XPSR_IT    0x0600FC00u
 #define RETURN     0xFFFFFFF0u /* and above: no address, but the way back from a handler */
 #define ENTRY_TIME 12u         /* cycles, into a handler; 12 back */
 #define STILL      1000u       /* passes of machine_run() in which nothing happens */
@@ -62,6 +63,25 @@ void machine_broke(struct machine *m, const char *format, ...)
     uc_emu_stop(m->uc);
 }
 
+static void spend(struct machine *m, struct spent t)
+{
+    if (m->runs) {
+        if (m->runs->tick == 0) { m->cost.run[m->cost.runs++] = m->runs; }
+        m->runs->spent += t.most;
+        m->runs->tick += t.most;
+    }
+    m->cycles += t.most;
+    m->least += t.least;
+    m->part += t.most;
+    m->s.now += (uint64_t)(m->part / m->speed) * m->s.clk.cycle;
+    m->part %= m->speed;
+}
+
+static void spend_both(struct machine *m, uint32_t cycles)
+{
+    spend(m, (struct spent){cycles, cycles});
+}
+
 /* --- exceptions --- */
 
 /* 0: the stack is no memory. Its pointer moves all the same. */
@@ -99,8 +119,7 @@ static void enter(struct machine *m, unsigned e)
     m->s.core.pending[e] = 0;
     m->s.core.active[e] = 1;
     m->s.core.event = 1;
-    m->s.now += (uint64_t)ENTRY_TIME * m->s.clk.cycle;
-    m->cycles += ENTRY_TIME;
+    spend_both(m, ENTRY_TIME);
     m->entered++;
     m->s.wake = 0;
     machine_set_reg(m, UC_ARM_REG_PC, vector);
@@ -125,8 +144,7 @@ static void leave(struct machine *m)
     memcpy(frame, from, sizeof frame);
     m->s.core.active[e] = 0;
     m->s.core.event = 1;
-    m->s.now += (uint64_t)ENTRY_TIME * m->s.clk.cycle;
-    m->cycles += ENTRY_TIME;
+    spend_both(m, ENTRY_TIME);
     m->s.wake = 0;
     for (unsigned i = 0; i < 6; i++) { machine_set_reg(m, reg[i], frame[i]); }
     machine_set_reg(m, UC_ARM_REG_SP, sp + 32 + 4 * (frame[7] >> 9 & 1));
@@ -186,9 +204,7 @@ static uint64_t on_read(uc_engine *uc, uint64_t off, unsigned size, void *user)
     (void)uc;
     finish_store(m);
     const uint32_t a = base + (uint32_t)off;
-    const unsigned waits = stm_wait_cycles(&m->s, a);
-    m->s.now += (uint64_t)waits * m->s.clk.cycle;
-    m->cycles += waits;
+    spend_both(m, stm_wait_cycles(&m->s, a));
     if (m->s.now >= m->s.wake) { stm_go_on(&m->s); }
     return stm_read(&m->s, a, size);
 }
@@ -200,9 +216,7 @@ static void on_write(uc_engine *uc, uint64_t off, unsigned size, uint64_t v, voi
     (void)uc;
     finish_store(m);
     const uint32_t a = base + (uint32_t)off;
-    const unsigned waits = stm_wait_cycles(&m->s, a) / 2; /* a buffer takes it */
-    m->s.now += (uint64_t)waits * m->s.clk.cycle;
-    m->cycles += waits;
+    spend_both(m, stm_wait_cycles(&m->s, a) / 2); /* a buffer takes it */
     if (m->s.now >= m->s.wake) { stm_go_on(&m->s); }
     stm_write(&m->s, a, size, (uint32_t)v);
     m->s.wake = 0;
@@ -250,12 +264,29 @@ static unsigned count(struct machine *m, uint32_t at)
     return tb.icount;
 }
 
+/* Constants and what code keeps beside itself. This hook makes Unicorn set the bits of an IT block
+ * from which a load comes, and nothing would clear them behind it. */
+static void on_constant(
+    uc_engine *uc, uc_mem_type type, uint64_t a, int size, int64_t value, void *user)
+{
+    struct machine *m = user;
+    const uint32_t psr = machine_reg(m, UC_ARM_REG_XPSR);
+    struct spent t = {0, 0};
+    (void)uc;
+    (void)type;
+    (void)size;
+    (void)value;
+    if (psr & XPSR_IT) { machine_set_reg(m, UC_ARM_REG_XPSR, psr & ~XPSR_IT); }
+    if (m->aside || !m->runs) { return; }
+    t.most = cost_of_data(&m->cost, (uint32_t)a - STM_FLASH, m->s.flash.acr & 7);
+    spend(m, t);
+}
+
 static void on_block(uc_engine *uc, uint64_t address, uint32_t size, void *user)
 {
     struct machine *m = user;
     const uint32_t at = (uint32_t)address & ~1u, off = at - STM_FLASH;
     unsigned insns;
-    uint32_t cycles;
     if (m->aside) {
         if (at == m->aside) { uc_emu_stop(uc); }
         return;
@@ -276,11 +307,9 @@ static void on_block(uc_engine *uc, uint64_t address, uint32_t size, void *user)
     }
     insns = m->cost.block[off / 2].insns;
     if (insns == 0) { insns = count(m, at); }
-    cycles = cost_of(&m->cost, m->flash, off, size, insns, m->s.flash.acr & 7);
     m->insns += insns;
-    m->cycles += cycles;
-    m->cost.block[off / 2].spent += cycles;
-    m->s.now += (uint64_t)cycles * m->s.clk.cycle;
+    m->runs = &m->cost.block[off / 2];
+    spend(m, cost_of(&m->cost, m->flash, off, size, insns, m->s.flash.acr & 7));
 }
 
 static void on_interrupt(uc_engine *uc, uint32_t n, void *user)
@@ -499,6 +528,10 @@ static int open_processor(struct machine *m)
     if (err == UC_ERR_OK) {
         err = uc_hook_add(m->uc, &hook, UC_HOOK_MEM_WRITE_PROT, HOOK(on_flash_store), m, 1, 0);
     }
+    if (err == UC_ERR_OK) {
+        err = uc_hook_add(m->uc, &hook, UC_HOOK_MEM_READ, HOOK(on_constant), m, STM_FLASH,
+            STM_FLASH + STM_FLASH_B - 1);
+    }
     if (err == UC_ERR_OK && m->guarded) {
         err =
             uc_hook_add(m->uc, &hook, UC_HOOK_MEM_WRITE, HOOK(on_guard), m, STM_RAM, STM_RAM + 255);
@@ -522,6 +555,7 @@ int machine_open(struct machine *m, const char *image)
     m->ccm = ccm;
     m->cost.block = calloc(BLOCKS, sizeof *m->cost.block);
     cost_open(&m->cost);
+    if (m->speed == 0) { m->speed = 1; }
     memset(m->flash, 0xFF, STM_FLASH_B);
     memset(m->ram, 0xA5, STM_RAM_B); /* nobody clears memory for an image */
     memset(m->ccm, 0xA5, STM_CCM_B);

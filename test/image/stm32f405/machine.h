@@ -11,23 +11,42 @@
 #include <unicorn/unicorn.h>
 
 /* Cycles by the Cortex-M4's manual and the flash's buffers (cost.c). */
-#define LINES  64u /* of 16 bytes: the flash's instruction cache */
-#define BLOCKS (STM_FLASH_B / 2)
-struct cost {
-    struct block {
-        uint16_t insns, cycles;
-        uint8_t lines;
-        uint64_t spent; /* cycles, in all */
-    } * block;          /* by half-word of flash; insns 0: not seen */
+#define LINES      64u /* of 16 bytes: the flash's instruction cache */
+#define DATA_LINES 8u
+#define BLOCKS     (STM_FLASH_B / 2)
+struct lines {
+    unsigned n;
     uint32_t line[LINES];
     uint64_t used[LINES], turn;
     int16_t place[STM_FLASH_B / 16]; /* where a line is, or -1 */
-    uint64_t misses, stalls;
+};
+struct cost {
+    struct block {
+        uint16_t insns, cycles, least;
+        uint8_t lines, conditional; /* its last branch takes longer if it is taken */
+        uint32_t tick, most;        /* cycles in this tick and in the dearest */
+        uint64_t spent;             /* in all */
+    } * block;                      /* by half-word of flash; insns 0: not seen */
+    struct lines code, data;
+    uint32_t at, since; /* line that runs, and for how many cycles */
+    uint32_t end;       /* of the block before this */
+    uint8_t conditional;
+    uint64_t stalls, data_stalls;
+    struct block *run[BLOCKS]; /* of this tick */
+    uint32_t runs;
+};
+/* Cycles, with waits for the flash, and the fewest that the manuals allow. */
+struct spent {
+    uint32_t most, least;
 };
 void cost_open(struct cost *c);
-/* Cycles of the block at this address, with waits for the flash. */
-uint32_t cost_of(struct cost *c, const uint8_t *flash, uint32_t off, uint32_t size, unsigned insns,
-    unsigned wait_states);
+/* Of the block at this address; of a word read from flash. */
+struct spent cost_of(struct cost *c, const uint8_t *flash, uint32_t off, uint32_t size,
+    unsigned insns, unsigned wait_states);
+uint32_t cost_of_data(struct cost *c, uint32_t off, unsigned wait_states);
+/* A tick begins; the tick that ends is the dearest so far. */
+void cost_begin(struct cost *c);
+void cost_keep(struct cost *c);
 
 enum machine_end { M_RUNS, M_HALTED, M_RESET, M_HUNG, M_BROKEN, M_DONE };
 
@@ -40,7 +59,10 @@ struct machine {
     struct stm s;
     uint8_t *flash, *ram, *ccm;
     struct cost cost;
-    uint64_t insns, cycles, slept; /* units of time asleep */
+    struct block *runs;
+    uint64_t insns, cycles, least; /* as the processor's clock counts, at most and at least */
+    uint64_t slept;                /* units of time asleep */
+    uint32_t speed, part;          /* the processor is so many times as fast; cycles left over */
     uint64_t entered;              /* exceptions */
     enum machine_end end;
     char why[160];

@@ -21,39 +21,41 @@ static int by_value(const void *a, const void *b)
 }
 
 /* Of 100 ticks 99 take no more. */
-static uint32_t most_of_99(struct loop_result *r)
+static uint32_t most_of_99(const struct loop_result *r, uint32_t *kept)
 {
     const uint64_t all = r->ticks > 1 ? r->ticks - 1 : 0;
     const size_t n = all < LOOP_KEEPS ? all : LOOP_KEEPS;
-    qsort(r->kept, n, sizeof r->kept[0], by_value);
-    return n ? r->kept[(n - 1) * 99 / 100] : 0;
+    qsort(kept, n, sizeof kept[0], by_value);
+    return n ? kept[(n - 1) * 99 / 100] : 0;
 }
 
 static double highest_Hz(uint32_t cycles) { return cycles ? CORE_HZ / cycles : 0; }
 
-static void row(int bad, uint32_t most)
+static void row(int bad, uint32_t most, uint32_t least)
 {
     const struct loop_result *r = &loop.r;
     const double n = r->ticks > 1 ? (double)(r->ticks - 1) : 1;
-    printf("%-9s %5.0f Hz %6lu ticks %6lu pull %5lu packets | insns %6.0f %6u | cycles %6.0f %6u "
-           "%6u | accesses %4.0f %4u | highest Hz %6.0f %6.0f | missed %lu | %s\n",
+    printf(
+        "%-9s %5.0f Hz %6lu ticks %6lu pull %5lu packets | insns %6.0f %6u | cycles %6.0f %6u "
+        "%6u, at least %6.0f %6u | accesses %4.0f %4u | highest Hz %6.0f .. %6.0f, dearest %6.0f "
+        "| missed %lu | %s\n",
         loop.cfg.scene->name, (double)loop.T.den / (double)loop.T.num, (unsigned long)r->ticks,
         (unsigned long)r->pulling, (unsigned long)r->packets, (double)r->insns / n, r->most_insns,
-        (double)r->cycles / n, most, r->most_cycles, (double)r->accesses / n, r->most_accesses,
-        highest_Hz(most), highest_Hz(r->most_cycles), (unsigned long)r->missed,
-        bad ? "NOT WELL" : "same bits");
+        (double)r->cycles / n, most, r->most_cycles, (double)r->least / n, least,
+        (double)r->accesses / n, r->most_accesses, highest_Hz(most), highest_Hz(least),
+        highest_Hz(r->most_cycles), (unsigned long)r->missed, bad ? "NOT WELL" : "same bits");
 }
 
 static int verdict(int show)
 {
     struct loop_result *r = &loop.r;
-    const uint32_t most = most_of_99(r);
+    const uint32_t most = most_of_99(r, r->kept);
     int bad = machine.end != M_DONE || r->differ || r->ticks < loop.ticks_wanted;
     bad |= machine.s.unclocked || machine.s.unknown || machine.s.flash.latency_Hz;
     if (show) {
         show_run(bad, most);
     } else {
-        row(bad, most);
+        row(bad, most, most_of_99(r, r->fewest));
     }
     if (r->differ) {
         printf("  %lu ticks differ, the first is %lu: %s\n", (unsigned long)r->differ,
@@ -74,9 +76,24 @@ static const struct {
     const char *name;
     int takes; /* a number */
 } option[] = {{"--rate", 1}, {"--ticks", 1}, {"--seed", 1}, {"--spoil", 1}, {"--faults", 1},
-    {"--cuts", 1}, {"--say", 0}, {"--where", 0}, {"--jumps", 0}, {"--welded", 0}, {"--show", 0},
-    {"--help", 0}};
-enum { RATE, TICKS, SEED, SPOIL, FAULTS, CUTS, SAY, WHERE, JUMPS, WELDED, SHOW, HELP, OPTIONS };
+    {"--cuts", 1}, {"--speed", 1}, {"--say", 0}, {"--where", 0}, {"--jumps", 0}, {"--welded", 0},
+    {"--show", 0}, {"--help", 0}};
+enum {
+    RATE,
+    TICKS,
+    SEED,
+    SPOIL,
+    FAULTS,
+    CUTS,
+    SPEED,
+    SAY,
+    WHERE,
+    JUMPS,
+    WELDED,
+    SHOW,
+    HELP,
+    OPTIONS
+};
 
 static const char help[] =
     "usage: emulator [OPTION...] IMAGE\n"
@@ -88,7 +105,8 @@ static const char help[] =
     "  --seed N       of hand and device (1)\n"
     "  --show         for a person: what the image says, and how it did\n"
     "  --say          the newest that came over its text line, records of the log too\n"
-    "  --where        cycles by block of code\n"
+    "  --where        cycles by block of code, of all ticks and of the dearest\n"
+    "  --speed N      the processor is N times as fast, all else as it is (1)\n"
     "  --spoil TICK   a count more is read in that tick: it must be found\n"
     "Instead of a run:\n"
     "  --faults N     N faults, each from a random time; a table\n"
@@ -124,6 +142,7 @@ int main(int argc, char **argv)
     loop.ticks_wanted = (uint32_t)value[TICKS];
     loop.spoil = value[SPOIL];
     machine.guarded = value[FAULTS] != 0;
+    machine.speed = value[SPEED] > 0 ? (uint32_t)value[SPEED] : 1;
     if (loop_open(&machine, argv[i], (uint64_t)value[SEED]) < 0) { return 2; }
     loop.board.welded = value[WELDED] != 0;
     if (value[FAULTS] || value[CUTS]) {
@@ -137,7 +156,9 @@ int main(int argc, char **argv)
     if (value[SAY]) { printf("%s", loop.text); }
     for (uint32_t at = 0; value[WHERE] && at < BLOCKS; at++) {
         const struct block *k = &machine.cost.block[at];
-        if (k->spent) { printf("where 0x%x %lu\n", STM_FLASH + 2 * at, (unsigned long)k->spent); }
+        if (k->spent) {
+            printf("where 0x%x %lu %u\n", STM_FLASH + 2 * at, (unsigned long)k->spent, k->most);
+        }
     }
     bad = verdict(value[SHOW] != 0);
     machine_close(&machine);
