@@ -55,6 +55,7 @@ static uint32_t place(void) /* of the next sample */
 static int16_t sum16(const volatile uint16_t *at)
 {
     int32_t sum = -32768;
+#pragma GCC unroll 16
     for (unsigned i = 0; i < 16; i++) { sum += at[i * CHANNELS] & 0xFFF; }
     return (int16_t)sum;
 }
@@ -94,21 +95,19 @@ int stm_adc_late(void)
     return failed || (REG(BASE_ADC1, ADC_SR) & ADC_SR_OVR) || stm_now() - heard > LATE;
 }
 
-static int16_t newest_of(uint32_t round, unsigned channel)
-{
-    int32_t sum = 0;
-    for (unsigned i = 1; i <= MONITOR; i++) {
-        const uint32_t r = (round + 2 * ROUNDS - i) % (2 * ROUNDS);
-        sum += circle[r * CHANNELS + channel] & 0xFFF;
-    }
-    return (int16_t)(sum * (16 / (int)MONITOR) - 32768);
-}
-
+/* The sums of the newest rounds; the round that is under way comes behind them. */
 void stm_adc_read(struct exh_drive_in *in)
 {
-    const uint32_t round = place() / CHANNELS;
-    for (unsigned i = 0; i < EXH_FINGERS; i++) { in->mon_raw[i] = newest_of(round, i); }
-    in->supply_raw = newest_of(round, SUPPLY);
+    const volatile uint16_t *row = &circle[place() / CHANNELS * CHANNELS];
+    int32_t sum[SUPPLY + 1] = {0};
+    for (unsigned k = 0; k < MONITOR; k++) {
+        row = (row == circle ? circle + CIRCLE : row) - CHANNELS;
+        for (unsigned i = 0; i <= SUPPLY; i++) { sum[i] += row[i] & 0xFFF; }
+    }
+    for (unsigned i = 0; i < EXH_FINGERS; i++) {
+        in->mon_raw[i] = (int16_t)(sum[i] * (16 / (int)MONITOR) - 32768);
+    }
+    in->supply_raw = (int16_t)(sum[SUPPLY] * (16 / (int)MONITOR) - 32768);
 }
 
 int stm_adc_glove(struct exh_glove_in *in, uint32_t tick)

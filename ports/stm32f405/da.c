@@ -9,9 +9,10 @@
 
 #include "exhand/error.h"
 
-#define POLLS      100u /* ten times what a byte takes: 21 of them are not to cost a watchdog */
+#define POLLS      100u /* ten times what a byte takes: 27 waits are not to cost a watchdog */
 #define CHANNELS   8u
-#define QUARTER    1u /* 42 MHz / 4 */
+#define QUARTER    1u /* 42 MHz / 4: 10.5 MHz where an answer comes back */
+#define HALF       0u /* 21 MHz of the 50 that its data sheet allows to write */
 #define RESET_CODE 0xAu
 #define SILENT_MAX 3u
 
@@ -20,6 +21,35 @@ static uint8_t asked;                 /* 1 + the channel that the next frame bri
 static uint8_t turn, wrong;
 static volatile uint8_t cleared; /* CLR is low */
 
+static void set_clock(uint32_t fraction)
+{
+    REG(BASE_SPI2, SPI_CR1) = SPI_CR1_CPHA | SPI_CR1_MSTR | PUT(SPI_CR1_BR, fraction) |
+                              SPI_CR1_SSI | SPI_CR1_SSM | SPI_CR1_SPE;
+}
+
+/* Until SPI says this of itself: 0 or -EXH_E_IO. */
+static int comes(uint32_t mask, uint32_t want)
+{
+    uint32_t n = 0;
+    while (n < POLLS && (REG(BASE_SPI2, SPI_SR) & mask) != want) { n++; }
+    return n == POLLS ? -EXH_E_IO : 0;
+}
+
+/* Out only, a byte behind the other. What comes in meanwhile nobody reads: an interrupt may come
+ * between the bytes. */
+static int write(uint32_t out)
+{
+    int err = 0;
+    PIN_LOW(DA_SYNC);
+    for (int shift = 16; shift >= 0; shift -= 8) {
+        *(volatile uint8_t *)((uintptr_t)BASE_SPI2 + SPI_DR) = (uint8_t)(out >> shift);
+        err |= comes(SPI_SR_TXE, SPI_SR_TXE);
+    }
+    err |= comes(SPI_SR_BSY, 0);
+    PIN_HIGH(DA_SYNC);
+    return err;
+}
+
 /* Both ways; *back is what came. 0 or -EXH_E_IO. */
 static int frame(uint32_t out, uint32_t *back)
 {
@@ -27,10 +57,8 @@ static int frame(uint32_t out, uint32_t *back)
     int err = 0;
     PIN_LOW(DA_SYNC);
     for (int shift = 16; shift >= 0; shift -= 8) {
-        uint32_t n = 0;
         *(volatile uint8_t *)((uintptr_t)BASE_SPI2 + SPI_DR) = (uint8_t)(out >> shift);
-        while (n < POLLS && !(REG(BASE_SPI2, SPI_SR) & SPI_SR_RXNE)) { n++; }
-        if (n == POLLS) { err = -EXH_E_IO; }
+        err |= comes(SPI_SR_RXNE, SPI_SR_RXNE);
         in = in << 8 | (REG(BASE_SPI2, SPI_DR) & 0xFFu);
     }
     PIN_HIGH(DA_SYNC);
@@ -51,9 +79,7 @@ static void open_spi(void)
     REG(BASE_RCC, RCC_APB1ENR) |= RCC_APB1ENR_SPI2EN;
     (void)REG(BASE_RCC, RCC_APB1ENR);
     REG(BASE_SPI2, SPI_CR1) = 0;
-    REG(BASE_SPI2, SPI_CR1) =
-        SPI_CR1_CPHA | SPI_CR1_MSTR | PUT(SPI_CR1_BR, QUARTER) | SPI_CR1_SSI | SPI_CR1_SSM;
-    REG(BASE_SPI2, SPI_CR1) |= SPI_CR1_SPE;
+    set_clock(QUARTER);
     (void)REG(BASE_SPI2, SPI_DR); /* nothing of before is taken for an answer */
 }
 
@@ -116,13 +142,21 @@ int stm_da_write(const uint16_t raw[EXH_FINGERS])
     }
     for (unsigned i = 0; i < EXH_FINGERS; i++) {
         const uint16_t code = stm_da_code(raw[i]);
+        const uint32_t out = DA_DAC(i) << 16 | code;
         uint32_t back;
-        err |= frame(DA_DAC(i) << 16 | code, &back);
-        if (i == 0) { compare(back); }
+        if (i == 0) {
+            err |= frame(out, &back);
+            compare(back);
+            set_clock(HALF);
+        } else {
+            err |= write(out);
+        }
         written[i] = code;
     }
-    err |= put(DA_TRIGGER, DA_LDAC);
-    err |= frame(DA_READ | DA_DAC(turn) << 16, NULL);
+    err |= write(DA_TRIGGER << 16 | DA_LDAC);
+    err |= write(DA_READ | DA_DAC(turn) << 16);
+    (void)REG(BASE_SPI2, SPI_DR); /* what nobody has read */
+    set_clock(QUARTER);
     asked = (uint8_t)(turn + 1u);
     turn = (uint8_t)(turn + 1u == EXH_FINGERS ? 0 : turn + 1u);
     return err ? -EXH_E_IO : 0;

@@ -7,6 +7,8 @@
 
 #include "exhand/board.h"
 
+#include <string.h>
+
 #define FRAME_B (EXH_SCENE_PACKET_B + EXH_SCENE_PACKET_B / 254u + 2u)
 #define OUT_B   4096u
 #define RUN_MAX 255u
@@ -73,20 +75,34 @@ static uint32_t packet(void)
     return n;
 }
 
+static uint32_t until_0(const uint8_t *from, uint32_t n)
+{
+    uint32_t i = 0;
+    while (i < n && from[i]) { i++; }
+    return i;
+}
+
+/* Of a frame too long for a packet the length alone says so. */
+static void keep(const uint8_t *from, uint32_t n)
+{
+    const uint32_t at = frame_B < FRAME_B ? frame_B : FRAME_B, room = FRAME_B - at;
+    if (n == 0) { return; }
+    memcpy(frame + at, from, n < room ? n : room);
+    frame_B = n > room ? FRAME_B + 1 : at + n;
+}
+
 int exh_board_link_recv(void *buf, size_t cap_B)
 {
-    uint8_t byte;
-    while (stm_uart_take(STM_LINK, &byte)) {
-        if (byte) {
-            if (frame_B < FRAME_B) { frame[frame_B] = byte; }
-            frame_B += frame_B <= FRAME_B;
-        } else {
-            const uint32_t n = packet();
-            if (n > 0 && n <= cap_B) {
-                for (uint32_t i = 0; i < n; i++) { ((uint8_t *)buf)[i] = frame[i]; }
-                counts.in++;
-                return (int)n;
-            }
+    const uint8_t *from;
+    uint32_t n;
+    while ((n = stm_uart_look(STM_LINK, &from)) > 0) {
+        const uint32_t before = until_0(from, n);
+        keep(from, before);
+        stm_uart_skip(STM_LINK, before + (before < n));
+        if (before < n && (n = packet()) > 0 && n <= cap_B) {
+            memcpy(buf, frame, n);
+            counts.in++;
+            return (int)n;
         }
     }
     return 0;

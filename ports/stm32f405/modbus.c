@@ -104,12 +104,13 @@ static void carry_out(void)
 
 static uint32_t hear(void)
 {
-    uint8_t byte;
-    uint32_t n = 0;
+    const uint8_t *from;
+    uint32_t n;
     if (stm_uart_damaged(STM_MODBUS)) { exh_modbus_rtu_discard(&line); }
-    for (; n < EXH_MODBUS_ADU_B && stm_uart_take(STM_MODBUS, &byte); n++) {
-        exh_modbus_rtu_receive(&line, byte);
-    }
+    n = stm_uart_look(STM_MODBUS, &from);
+    if (n > EXH_MODBUS_ADU_B) { n = EXH_MODBUS_ADU_B; }
+    for (uint32_t i = 0; i < n; i++) { exh_modbus_rtu_receive(&line, from[i]); }
+    stm_uart_skip(STM_MODBUS, n);
     return n;
 }
 

@@ -29,6 +29,8 @@ PORT_LDSCRIPT  := ldscripts/stm32f405.ld
 PORT_FLOAT_LIBS := -lgcc
 PORT_WHOLE     := -O3 -flto -ffat-lto-objects
 PORT_RUN       := B=$(B) test/image/stm32f405/run.sh
+# Each scene with records is optimised as one program, not only the largest.
+SCENE_WHOLE     = $(if $(SCENE_MAIN)$(SCENE_ROM),,yes)
 PORT_SAY       := stm_say
 # TIM5. Where there is no RCC QEMU counts nanoseconds.
 PORT_CYCLES_HZ := $(if $(filter none,$(BOX)),1000000000,84000000)

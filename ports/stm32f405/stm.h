@@ -56,9 +56,11 @@ enum stm_uart { STM_LOG, STM_LINK, STM_MODBUS, STM_UARTS };
 void stm_uart_open(void);
 int stm_uart_send(enum stm_uart u, const uint8_t *byte, uint32_t n); /* 1: started; 0: busy */
 int stm_uart_busy(enum stm_uart u);
-int stm_uart_take(enum stm_uart u, uint8_t *byte); /* 1: one has come */
-int stm_uart_damaged(enum stm_uart u);             /* 1: one came with an error */
-void stm_uart_stop(enum stm_uart u);               /* what is on its way out is cut off */
+/* Bytes that have come, as many as lie in one piece; skip takes n of them. */
+uint32_t stm_uart_look(enum stm_uart u, const uint8_t **from);
+void stm_uart_skip(enum stm_uart u, uint32_t n);
+int stm_uart_damaged(enum stm_uart u); /* 1: one came with an error */
+void stm_uart_stop(enum stm_uart u);   /* what is on its way out is cut off */
 
 /* Bytes that wait for a line; size_B is a power of two. */
 struct stm_fifo {

@@ -80,13 +80,19 @@ int stm_uart_send(enum stm_uart u, const uint8_t *byte, uint32_t n)
     return 1;
 }
 
-int stm_uart_take(enum stm_uart u, uint8_t *byte)
+uint32_t stm_uart_look(enum stm_uart u, const uint8_t **from)
 {
     const uint32_t left = REG(BASE_DMA1 + DMA_STREAM(line[u].in), DMA_SNDTR);
-    if (left == 0 || left > line[u].circle_B || line[u].circle_B - left == taken[u]) { return 0; }
-    *byte = line[u].circle[taken[u]];
-    taken[u] = taken[u] + 1 == line[u].circle_B ? 0 : taken[u] + 1;
-    return 1;
+    const uint32_t end = line[u].circle_B, at = taken[u];
+    const uint32_t put = left == 0 || left > end ? at : end - left;
+    *from = line[u].circle + at;
+    return put < at ? end - at : put - at;
+}
+
+void stm_uart_skip(enum stm_uart u, uint32_t n)
+{
+    taken[u] += n;
+    if (taken[u] == line[u].circle_B) { taken[u] = 0; }
 }
 
 /* Reading state, then data, clears it; the byte is damaged anyway. */

@@ -6,6 +6,8 @@
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
+#include "word.h"
+
 #define IMAGE_MAGIC  0x50485845u /* "EXHP" */
 #define IMAGE_HEAD_B 12u
 #define IMAGE_CRC_B  4u
@@ -69,6 +71,7 @@ void exh_params_setup(
     p->active = active;
     p->staged = staged;
     p->count = exh_signal_count(table);
+    p->table_crc = exh_signal_crc(table);
     for (uint32_t i = 0; i < p->count; i++) {
         active[i] = exh_signal_at(table, i, NULL)->dflt;
         staged[i] = active[i];
@@ -244,10 +247,33 @@ static int values_bytes(struct exh_bytes *c, struct exh_params *p, int take)
     return ok;
 }
 
+/* What values_bytes() writes, where there is room for two words of each. A tick waits for it. */
+static uint8_t *write_values(uint8_t *to, const struct exh_params *p)
+{
+    const int32_t *is = p->active, *wanted = p->staged;
+    for (uint16_t n = 0; n < p->table->groups; n++) {
+        const struct exh_signal_group *g = &p->table->group[n];
+        for (uint16_t k = 0; k < g->instances; k++) {
+            for (uint16_t r = 0; r < g->rows; r++, is++, wanted++, to += 4) {
+                put_word(to, (uint32_t)*is);
+                if (!exh_signal_is_slewed(&g->row[r])) { continue; }
+                to += 4;
+                put_word(to, (uint32_t)*wanted);
+            }
+        }
+    }
+    return to;
+}
+
 void exh_params_serialize(struct exh_bytes *c, struct exh_params *p)
 {
     struct exh_bytes ahead = *c;
-    const int ok = values_bytes(&ahead, p, 0);
+    int ok;
+    if (c->mode == EXH_BYTES_WRITE && c->at <= c->cap && (c->cap - c->at) / 8 >= p->count) {
+        c->at = (uint32_t)(write_values(c->p + c->at, p) - c->p);
+        return;
+    }
+    ok = values_bytes(&ahead, p, 0);
     if (c->mode == EXH_BYTES_READ && (!ok || !exh_bytes_ok(&ahead))) {
         exh_bytes_fail(c);
         return;
@@ -277,16 +303,13 @@ static void head_bytes(struct exh_bytes *c, struct head *h)
 
 int32_t exh_params_save(const struct exh_params *p, void *buf, size_t cap_B)
 {
-    struct head h = {IMAGE_MAGIC, exh_signal_crc(p->table), EXH_PARAMS_VERSION, 0};
+    struct head h = {IMAGE_MAGIC, p->table_crc, EXH_PARAMS_VERSION, 0};
     struct exh_bytes c = exh_bytes_writer(buf, cap_B);
     uint32_t crc;
-    EXH_ASSERT(exh_signal_count(p->table) <= UINT16_MAX);
-    h.count = (uint16_t)exh_signal_count(p->table);
+    EXH_ASSERT(p->count <= UINT16_MAX);
+    h.count = (uint16_t)p->count;
     head_bytes(&c, &h);
-    for (uint32_t i = 0; i < h.count; i++) {
-        int32_t v = p->staged[i];
-        exh_bytes_i32(&c, &v);
-    }
+    exh_bytes_i32s(&c, p->staged, h.count);
     crc = exh_bytes_ok(&c) ? exh_crc32(0, buf, c.at) : 0;
     exh_bytes_u32(&c, &crc);
     return exh_bytes_ok(&c) ? (int32_t)c.at : -EXH_E_SHORT;

@@ -6,6 +6,8 @@
 #include "exhand/error.h"
 #include "exhand/exhand.h"
 
+#include "../num/pack.h"
+
 static const struct exh_scene *scene;
 static uint8_t buf[EXH_LOG_RECORD_B];
 static uint32_t seq;
@@ -104,10 +106,7 @@ void exh_log_header_serialize(struct exh_bytes *c)
         c->at += (uint32_t)n;
     }
     for (unsigned i = 0; scene->calib && i < scene->calib->images; i++) {
-        for (uint32_t k = 0; k < scene->calib->image[i].len_B; k++) {
-            uint8_t byte = scene->calib->image[i].byte[k];
-            exh_bytes_u8(c, &byte);
-        }
+        pack_bytes(c, scene->calib->image[i].byte, scene->calib->image[i].len_B);
     }
 }
 
@@ -150,7 +149,7 @@ static void glove_bytes(struct exh_bytes *c, struct exh_scene_in *in)
 {
     exh_bytes_u8(c, &in->glove_new);
     exh_bytes_u16(c, &in->glove.age_ticks);
-    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { exh_bytes_i16(c, &in->glove.raw[i]); }
+    pack_i16s(c, in->glove.raw, EXH_GLOVE_SENSORS);
 }
 
 void exh_log_frame_serialize(struct exh_bytes *c, const struct exh_scene *sc,
@@ -207,7 +206,7 @@ static void packets(uint32_t tick, struct exh_scene_mail *in)
 {
     for (unsigned i = 0; i < in->packets; i++) {
         struct exh_bytes c = begin(EXH_RECORD_PACKET, tick);
-        for (unsigned k = 0; k < in->len_B[i]; k++) { exh_bytes_u8(&c, &in->byte[i][k]); }
+        pack_bytes(&c, in->byte[i], in->len_B[i]);
         end(&c);
     }
 }

@@ -83,21 +83,22 @@ static struct extra extra32(unsigned a, unsigned b)
     return none;
 }
 
-static void learn(struct block *k, const uint8_t *code, uint32_t off, uint32_t size, unsigned insns)
+/* Instructions are counted here: Unicorn counts those of other blocks. */
+static void learn(struct block *k, const uint8_t *code, uint32_t off, uint32_t size)
 {
-    unsigned most = insns, least = insns;
+    unsigned most = 0, least = 0;
     struct extra before = none, e = none;
     for (uint32_t at = 0; at + 1 < size;) {
         const unsigned a = code[at] | (unsigned)code[at + 1] << 8;
         const int wide = a >> 11 >= 0x1D && at + 3 < size;
         const unsigned b = wide ? code[at + 2] | (unsigned)code[at + 3] << 8 : 0;
         e = wide ? extra32(a, b) : extra16(a);
-        most += e.most;
-        least += e.least - (e.load & before.load);
+        k->insns++;
+        most += 1u + e.most;
+        least += 1u + e.least - (unsigned)(e.load & before.load);
         before = e;
         at += wide ? 4 : 2;
     }
-    k->insns = (uint16_t)insns;
     k->cycles = (uint16_t)most;
     k->least = (uint16_t)least;
     k->conditional = e.cond;
@@ -123,12 +124,12 @@ static int fetch(struct lines *l, uint32_t line)
     return 1;
 }
 
-struct spent cost_of(struct cost *c, const uint8_t *flash, uint32_t off, uint32_t size,
-    unsigned insns, unsigned wait_states)
+struct spent cost_of(
+    struct cost *c, const uint8_t *flash, uint32_t off, uint32_t size, unsigned wait_states)
 {
     struct block *k = &c->block[off / 2];
     struct spent t = {0, 0};
-    if (k->insns == 0) { learn(k, &flash[off], off, size, insns); }
+    if (k->insns == 0) { learn(k, &flash[off], off, size); }
     if (c->conditional && off != c->end) { t = (struct spent){REFILL, 1}; }
     for (unsigned i = 0; i < k->lines; i++) {
         const uint32_t line = off / 16 + i;

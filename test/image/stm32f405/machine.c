@@ -253,17 +253,6 @@ static int go_on(struct machine *m)
     return 0;
 }
 
-static unsigned count(struct machine *m, uint32_t at)
-{
-    uc_tb tb;
-    memset(&tb, 0, sizeof tb);
-    if (uc_ctl_request_cache(m->uc, at | 1, &tb) != UC_ERR_OK || tb.icount == 0) {
-        machine_broke(m, "block at 0x%x: its instructions cannot be counted", (unsigned)at);
-        return 1;
-    }
-    return tb.icount;
-}
-
 /* Constants and what code keeps beside itself. This hook makes Unicorn set the bits of an IT block
  * from which a load comes, and nothing would clear them behind it. */
 static void on_constant(
@@ -286,7 +275,6 @@ static void on_block(uc_engine *uc, uint64_t address, uint32_t size, void *user)
 {
     struct machine *m = user;
     const uint32_t at = (uint32_t)address & ~1u, off = at - STM_FLASH;
-    unsigned insns;
     if (m->aside) {
         if (at == m->aside) { uc_emu_stop(uc); }
         return;
@@ -305,11 +293,9 @@ static void on_block(uc_engine *uc, uint64_t address, uint32_t size, void *user)
         }
         if (m->end != M_RUNS || m->faulted || m->call) { return; }
     }
-    insns = m->cost.block[off / 2].insns;
-    if (insns == 0) { insns = count(m, at); }
-    m->insns += insns;
     m->runs = &m->cost.block[off / 2];
-    spend(m, cost_of(&m->cost, m->flash, off, size, insns, m->s.flash.acr & 7));
+    spend(m, cost_of(&m->cost, m->flash, off, size, m->s.flash.acr & 7));
+    m->insns += m->runs->insns;
 }
 
 static void on_interrupt(uc_engine *uc, uint32_t n, void *user)

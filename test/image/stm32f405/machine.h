@@ -41,8 +41,8 @@ struct spent {
 };
 void cost_open(struct cost *c);
 /* Of the block at this address; of a word read from flash. */
-struct spent cost_of(struct cost *c, const uint8_t *flash, uint32_t off, uint32_t size,
-    unsigned insns, unsigned wait_states);
+struct spent cost_of(
+    struct cost *c, const uint8_t *flash, uint32_t off, uint32_t size, unsigned wait_states);
 uint32_t cost_of_data(struct cost *c, uint32_t off, unsigned wait_states);
 /* A tick begins; the tick that ends is the dearest so far. */
 void cost_begin(struct cost *c);

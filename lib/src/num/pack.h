@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT */
+/* Many fields at once through a cursor. One that writes and has room takes them without a call for
+ * each; any other goes field by field. The bytes are the same. */
+#ifndef NUM_PACK_H
+#define NUM_PACK_H
+
+#include "exhand/bytes.h"
+
+#include "mem.h"
+
+/* The place of n bytes that are written now, or NULL. */
+static inline uint8_t *pack_room(struct exh_bytes *c, uint32_t n)
+{
+    const uint32_t at = c->at;
+    if (c->mode != EXH_BYTES_WRITE || at > c->cap || n > c->cap - at) { return NULL; }
+    c->at = at + n;
+    return c->p + at;
+}
+
+static inline void pack_i16s(struct exh_bytes *c, int16_t *v, uint32_t n)
+{
+    uint8_t *p = pack_room(c, 2 * n);
+    for (; n > 0; n--, v++) {
+        if (p != NULL) {
+            p[0] = (uint8_t)((uint16_t)*v & 0xFF);
+            p[1] = (uint8_t)((uint16_t)*v >> 8);
+            p += 2;
+        } else {
+            exh_bytes_i16(c, v);
+        }
+    }
+}
+
+static inline void pack_bytes(struct exh_bytes *c, const uint8_t *v, uint32_t n)
+{
+    uint8_t *const p = pack_room(c, n);
+    if (p != NULL) { memcpy(p, v, n); }
+    for (; p == NULL && n > 0; n--, v++) {
+        uint8_t byte = *v;
+        exh_bytes_u8(c, &byte);
+    }
+}
+
+#endif
