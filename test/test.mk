@@ -56,7 +56,7 @@ $(eval $(call tests,device/emu,$(in_san),$(san_support) $(emu_src:%.c=$(in_san)/
 
 # Models of an STM32F405's parts, without a processor.
 stm_models := $(addprefix test/image/stm32f405/,bus.c core.c rcc.c flash.c port.c tim.c adc.c \
-              dma.c serial.c iwdg.c da.c)
+              dma.c serial.c iwdg.c crc.c da.c)
 $(eval $(call tests,image/stm32f405,$(in_san),$(san_support) $(stm_models:%.c=$(in_san)/%.o)))
 
 # Drivers of the cards, over a bus that a test scripts.

@@ -47,6 +47,7 @@ static int pll(uint32_t MHz, int crystal)
 
 static void count_freely(void)
 {
+    REG(BASE_RCC, RCC_AHB1ENR) |= RCC_AHB1ENR_CRCEN;
     REG(BASE_RCC, RCC_APB1ENR) |= RCC_APB1ENR_TIM5EN | RCC_APB1ENR_PWREN;
     (void)REG(BASE_RCC, RCC_APB1ENR);
     REG(BASE_TIM5, TIM_PSC) = 0;

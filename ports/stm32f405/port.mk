@@ -10,6 +10,8 @@ PORT_QEMU      := $(if $(stm_emulated),,qemu-system-arm qemu-system-arm)
 BOX            ?= real
 box_real       := box.c da.c adc.c
 box_none       := box_none.c
+crc_real       := ports/stm32f405/crc.c
+crc_none       := lib/src/run/crc_table.c
 $(if $(box_$(BOX)),,$(error BOX=$(BOX): one of real, none))
 PORT_SUFFIX    := $(if $(filter-out real,$(BOX)),-$(BOX))
 # Megahertz of the crystal; RATE: of the loop, 0 the scene's; MODBUS=write: clients may change
@@ -22,7 +24,7 @@ PORT_SRC        = $(addprefix ports/stm32f405/,start.c clock.c pins.c say.c uart
                   log.c link.c mem.c board.c $(box_$(BOX)) \
                   $(if $(SCENE_MAIN),,$(if $(SCENE_ROM),scene_rom.c, \
                   scene_full.c slot.c modbus.c))) \
-                  $(if $(SCENE_MAIN)$(SCENE_ROM),,lib/src/run/log.c lib/src/run/crc_table.c)
+                  $(if $(SCENE_MAIN)$(SCENE_ROM),,lib/src/run/log.c $(crc_$(BOX)))
 PORT_CFLAGS    := -mcpu=cortex-m4 -mthumb -mfloat-abi=soft -ffreestanding
 PORT_LDFLAGS   := -mcpu=cortex-m4 -mthumb -nostdlib -static -Wl,--build-id=none
 PORT_LDSCRIPT  := ldscripts/stm32f405.ld

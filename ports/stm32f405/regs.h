@@ -14,7 +14,9 @@
  *   SysTick          the tick: its interrupt counts
  *   TIM5             free-running, 84 MHz, 32 bits: exh_board_cycles()
  *   TIM1 2 3 4 8     encoders of fingers 0 .. 4, x4; the low 16 bits are read
- *   SPI2             the D/A (DAC81408): mode 1, 10.5 MHz, 24 bits as three bytes, polled
+ *   SPI2             the D/A (DAC81408): mode 1, 21 MHz, 10.5 where an answer comes back,
+ *                    24 bits as three bytes, polled
+ *   CRC              of records and packets, by the loop alone
  *   ADC1, DMA2 S0    runs freely over 8 channels into a circle of 2 x 20 rounds; the interrupt of
  *                    half and whole circle sums the two glove channels and turns the multiplexers
  *   USART2, DMA1 S6  text (polled) and log (DMA)
@@ -53,6 +55,7 @@
 #define BASE_GPIOB      0x40020400u
 #define BASE_GPIOC      0x40020800u
 #define BASE_GPIOD      0x40020C00u
+#define BASE_CRC        0x40023000u
 #define BASE_RCC        0x40023800u
 #define BASE_FLASH      0x40023C00u
 #define BASE_DMA1       0x40026000u
@@ -90,6 +93,7 @@
 #define RCC_AHB1ENR_GPIOBEN  FIELD(1, 1)
 #define RCC_AHB1ENR_GPIOCEN  FIELD(2, 1)
 #define RCC_AHB1ENR_GPIODEN  FIELD(3, 1)
+#define RCC_AHB1ENR_CRCEN    FIELD(12, 1)
 #define RCC_AHB1ENR_DMA1EN   FIELD(21, 1)
 #define RCC_AHB1ENR_DMA2EN   FIELD(22, 1)
 #define RESET_RCC_AHB1ENR    0x00100000u
@@ -274,6 +278,12 @@
 #define DMA_FLAG_HT      0x10u
 #define DMA_FLAG_TC      0x20u
 #define IRQ_DMA2_STREAM0 56u
+
+/* --- CRC: 32 bits at once, first bit first --- */
+#define CRC_DR       0x00u
+#define CRC_CR       0x08u
+#define CRC_CR_RESET FIELD(0, 1)
+#define RESET_CRC_DR 0xFFFFFFFFu
 
 /* --- IWDG --- */
 #define IWDG_KR         0x00u

@@ -8,7 +8,7 @@ struct stm_outside stm_outside;
 
 /* --- the parts: address, the register and bit that give it its clock --- */
 
-enum kind { TIM, SPI, USART, ADC, ADCC, PORT, DMA, RCC, PWR, FLASH, IWDG };
+enum kind { TIM, SPI, USART, ADC, ADCC, PORT, DMA, RCC, PWR, FLASH, IWDG, CRC };
 enum { ALWAYS = 0, AHB1ENR = 12, APB1ENR = 16, APB2ENR = 17 };
 
 static const struct part {
@@ -42,6 +42,7 @@ static const struct part {
     {0x40020400, 0x400, PORT, 1, AHB1ENR, 1},
     {0x40020800, 0x400, PORT, 2, AHB1ENR, 2},
     {0x40020C00, 0x400, PORT, 3, AHB1ENR, 3},
+    {0x40023000, 0x400, CRC, 0, AHB1ENR, 12},
     {0x40023800, 0x400, RCC, 0, ALWAYS, 0},
     {0x40023C00, 0x400, FLASH, 0, ALWAYS, 0},
     {0x40026000, 0x400, DMA, 1, AHB1ENR, 21},
@@ -87,6 +88,7 @@ static uint32_t read_part(struct stm *s, const struct part *p, uint32_t off)
     case PWR: return stm_pwr_read(s, off);
     case FLASH: return stm_flash_read(s, off);
     case IWDG: return stm_iwdg_read(s, off);
+    case CRC: return stm_crc_read(s, off);
     default: return 0;
     }
 }
@@ -105,6 +107,7 @@ static void write_part(struct stm *s, const struct part *p, uint32_t off, unsign
     case PWR: stm_pwr_write(s, off, v); break;
     case FLASH: stm_flash_write(s, off, v); break;
     case IWDG: stm_iwdg_write(s, off, v); break;
+    case CRC: stm_crc_write(s, off, v); break;
     default: break;
     }
 }
@@ -161,11 +164,13 @@ uint64_t stm_next(const struct stm *s)
     return at;
 }
 
-/* A bus's clock is slower than the processor's: an access waits for it twice. */
+/* A bus's clock is slower than the processor's: an access waits for it twice. The CRC unit takes
+ * four clocks a word, and who writes the next has loaded it meanwhile, in two. */
 unsigned stm_wait_cycles(const struct stm *s, uint32_t address)
 {
     const struct stm_clocks *k = &s->clk;
     if (address >= 0xE0000000u) { return 0; }
+    if (address - 0x40023000u < 0x400) { return 4; }
     if (address >= 0x40020000u) { return 1; }
     if (address >= 0x40010000u) { return 2 * (k->hclk_Hz / k->pclk2_Hz); }
     return 2 * (k->hclk_Hz / k->pclk1_Hz);
@@ -182,6 +187,7 @@ void stm_reset(struct stm *s, uint32_t flags)
     s->wrong = wrong;
     s->reset_flags = flags;
     s->iwdg.rlr = 0xFFF;
+    s->crc.data = 0xFFFFFFFFu;
     s->flash.cr = 0x80000000u;
     s->flash.optcr = 0x0FFFAAEDu;
     for (unsigned i = 0; i < STM_PORTS; i++) { s->port[i].in = in[i]; }

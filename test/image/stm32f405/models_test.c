@@ -20,6 +20,7 @@
 #define DMA2   0x40026400u
 #define GPIOB  0x40020400u
 #define IWDG   0x40003000u
+#define CRC    0x40023000u
 #define SYST   0xE000E010u
 #define US     (STM_HZ / 1000000)
 
@@ -416,6 +417,20 @@ TEST(a_byte_that_nobody_takes_is_lost)
     CHECK_EQ_I64(s.usart[3].lost, 1);
 }
 
+TEST(the_crc_unit_takes_words_from_ones)
+{
+    power_on();
+    CHECK_EQ_I64(get(CRC), 0);
+    put(RCC + 0x30, 1u << 12);
+    CHECK_EQ_I64(get(CRC), 0xFFFFFFFF);
+    put(CRC, 0);
+    CHECK_EQ_I64(get(CRC), 0xC704DD7B);
+    put(CRC + 8, 1);
+    put(CRC, 0);
+    put(CRC, 0xC704DD7B); /* what it holds, once more */
+    CHECK_EQ_I64(get(CRC), 0);
+}
+
 TEST(the_watchdog_bites_unless_it_is_fed)
 {
     power_on();
@@ -583,7 +598,8 @@ TEST_MAIN("stm32f405 models", reset_values_are_those_of_the_crate,
     interrupts_go_by_priority, a_scan_goes_round_through_dma, a_scan_that_nobody_takes_overruns,
     dma_does_not_reach_the_coupled_memory, a_word_on_the_spi_takes_its_time,
     a_usart_sends_and_takes_by_dma, a_byte_that_nobody_takes_is_lost,
-    the_watchdog_bites_unless_it_is_fed, flash_is_programmed_from_one_to_zero_alone,
-    a_wrong_key_locks_the_flash_until_a_reset, a_supply_that_fails_while_programming_leaves_a_half,
-    pins_show_what_drives_them, the_da_is_at_ground_until_it_is_set_up_and_acts_together,
-    the_da_answers_in_the_frame_behind, each_code_of_the_library_is_the_nearest_of_the_da);
+    the_crc_unit_takes_words_from_ones, the_watchdog_bites_unless_it_is_fed,
+    flash_is_programmed_from_one_to_zero_alone, a_wrong_key_locks_the_flash_until_a_reset,
+    a_supply_that_fails_while_programming_leaves_a_half, pins_show_what_drives_them,
+    the_da_is_at_ground_until_it_is_set_up_and_acts_together, the_da_answers_in_the_frame_behind,
+    each_code_of_the_library_is_the_nearest_of_the_da);

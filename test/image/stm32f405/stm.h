@@ -120,6 +120,11 @@ struct stm_core {
     uint8_t wants_reset, event;
 };
 
+struct stm_crc {
+    uint32_t data;
+    uint8_t own; /* a byte that it keeps for whoever wants to */
+};
+
 struct stm_iwdg {
     uint32_t pr, rlr;
     uint8_t unlocked, runs;
@@ -142,6 +147,7 @@ struct stm {
     struct stm_usart usart[STM_USARTS + 1];
     struct stm_core core;
     struct stm_iwdg iwdg;
+    struct stm_crc crc;
     uint32_t wrong;                    /* bits: 1 << enum stm_wrong */
     uint64_t accesses;                 /* to peripherals and system registers */
     uint64_t unclocked, unknown;       /* to parts whose clock is off; to none that is modelled */
@@ -238,6 +244,8 @@ void stm_usart_go_on(struct stm *s);
 uint64_t stm_usart_next(const struct stm *s);
 /* The other end sends; bytes taken. */
 unsigned stm_usart_put(struct stm *s, unsigned n, const uint8_t *byte, unsigned count);
+uint32_t stm_crc_read(const struct stm *s, uint32_t off);
+void stm_crc_write(struct stm *s, uint32_t off, uint32_t v);
 uint32_t stm_iwdg_read(struct stm *s, uint32_t off);
 void stm_iwdg_write(struct stm *s, uint32_t off, uint32_t v);
 void stm_iwdg_go_on(struct stm *s);
