@@ -102,7 +102,8 @@ $(B)/test/loop.o: lib/src/run/loop.c $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(base) $(CFLAGS) -Dexh_assert_failed=exh_loop_assert_failed -Wno-missing-prototypes \
 	    -c $< -o $@
-closed_obj := $(filter-out %/main.o %/loop.o,$(cli_obj) $(dev_obj)) $(B)/test/loop.o
+closed_obj := $(filter-out %/main.o %/loop.o,$(cli_obj) $(dev_obj)) $(B)/test/loop.o \
+              $(B)/posix/lib/src/run/log_later.o
 $(if $(filter libmodbus,$(modbus)),$(B)/posix/test/closed/sim/modbus%.o \
     $(B)/posix/test/closed/sim/live_world_test.o: PORT_HOSTFLAGS += -DEXH_MODBUS)
 $(eval $(call tests,closed/sim,$(B)/posix,$(closed_obj) $(gpio_none) $(posix_lib),$(cli_libs)))

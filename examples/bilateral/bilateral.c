@@ -222,17 +222,32 @@ void bilateral_tell(
     tell_box(&sig->box, s);
 }
 
-void bilateral_bytes(struct exh_bytes *c, struct bilateral *s)
+static void rest_bytes(struct exh_bytes *c, struct bilateral *s)
 {
-    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) { bilateral_finger_bytes(c, &s->finger[f]); }
-    exh_safety_serialize(c, &s->safety);
-    exh_glove_serialize(c, &s->glove);
-    bilateral_frame_bytes(c, &s->frame);
-    bilateral_wire_bytes(c, &s->wire);
     exh_bytes_u8(c, &s->worn);
     exh_bytes_u32(c, &s->glove_faults);
     exh_supply_serialize(c, &s->supply);
     exh_bytes_u32(c, &s->unsure_ticks);
+}
+
+/* In parts, of which none is much larger than a finger. */
+static void part_of(struct exh_bytes *c, struct bilateral *s, unsigned part)
+{
+    if (part < BILATERAL_FINGERS) { bilateral_finger_bytes(c, &s->finger[part]); }
+    switch (part) {
+    case BILATERAL_FINGERS: exh_safety_serialize(c, &s->safety); break;
+    case BILATERAL_FINGERS + 1: exh_glove_serialize(c, &s->glove); break;
+    case BILATERAL_FINGERS + 2: bilateral_frame_bytes(c, &s->frame); break;
+    case BILATERAL_FINGERS + 3: bilateral_wire_bytes(c, &s->wire); break;
+    case BILATERAL_FINGERS + 4: rest_bytes(c, s); break;
+    default: break;
+    }
+}
+#define PARTS (BILATERAL_FINGERS + 5)
+
+void bilateral_bytes(struct exh_bytes *c, struct bilateral *s)
+{
+    for (unsigned i = 0; i < PARTS; i++) { part_of(c, s, i); }
 }
 
 /* --- the one instance of this image --- */
@@ -327,12 +342,19 @@ static void show(void)
 
 static void write_mail(void) { bilateral_write(&state, &cfg, &signals, &mail_out); }
 
+/* The polarity is this instance's alone. */
+static void part_bytes(struct exh_bytes *c, void *copy, unsigned part)
+{
+    struct bilateral *const s = copy;
+    part_of(c, s, part);
+    for (unsigned f = 0; part == PARTS && f < BILATERAL_FINGERS; f++) {
+        exh_polarity_serialize(c, &s->polarity[f]);
+    }
+}
+
 static void state_bytes(struct exh_bytes *c)
 {
-    bilateral_bytes(c, &state);
-    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
-        exh_polarity_serialize(c, &state.polarity[f]);
-    }
+    for (unsigned i = 0; i <= PARTS; i++) { part_bytes(c, &state, i); }
 }
 
 struct bilateral *bilateral_memory(struct bilateral_cfg **c)
@@ -365,4 +387,5 @@ const struct exh_scene exh_scene_bilateral = {
     .show = show,
     .state = state_bytes,
     .allowed = allowed,
+    .later = {&state, sizeof state, PARTS + 1, part_bytes},
 };

@@ -165,6 +165,12 @@ static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 
 static void state_bytes(struct exh_bytes *c) { drop_bytes(c, &state); }
 
+static void part_bytes(struct exh_bytes *c, void *copy, unsigned part)
+{
+    (void)part;
+    drop_bytes(c, copy);
+}
+
 struct drop *drop_memory(struct drop_cfg **c)
 {
     *c = &cfg;
@@ -187,4 +193,5 @@ const struct exh_scene exh_scene_drop = {
     .setup = setup,
     .tick = tick,
     .state = state_bytes,
+    .later = {&state, sizeof state, 1, part_bytes},
 };

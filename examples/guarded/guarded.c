@@ -115,6 +115,12 @@ static void tick(const struct exh_scene_in *in, struct exh_drive_out *out)
 
 static void state_bytes(struct exh_bytes *c) { guarded_bytes(c, &state); }
 
+static void part_bytes(struct exh_bytes *c, void *copy, unsigned part)
+{
+    (void)part;
+    guarded_bytes(c, copy);
+}
+
 struct guarded *guarded_memory(struct guarded_cfg **c)
 {
     *c = &cfg;
@@ -135,5 +141,6 @@ const struct exh_scene exh_scene_guarded = {
     .setup = setup,
     .tick = tick,
     .state = state_bytes,
+    .later = {&state, sizeof state, 1, part_bytes},
     .allowed = allowed,
 };

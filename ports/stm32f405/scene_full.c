@@ -4,7 +4,7 @@
 
 #include "stm.h"
 
-#include "exhand/run/log.h"
+#include "exhand/run/log_later.h"
 
 #include "exhand/board.h"
 #include "exhand/exhand.h"
@@ -12,6 +12,10 @@
 static const struct exh_scene *scene;
 static uint32_t last_tick;
 static uint8_t begun;
+
+/* What a keyframe takes: the full box has 3.6 KiB of state and 3.8 of parameters. */
+static uint8_t record[EXH_LOG_RECORD_B], held[8192];
+static uint64_t copy[1024];
 
 static void idle(void)
 {
@@ -32,7 +36,10 @@ void stm_scene_ready(const struct exh_scene *sc)
 void stm_scene_start(const struct exh_scene *sc, struct exh_scene_board board)
 {
     begun = 1;
+    static const struct exh_log_later memory = {
+        record, (uint8_t *)copy, held, sizeof copy, sizeof held};
     stm_modbus_start(board);
+    exh_log_later(&memory);
     exh_log_start(sc, board);
 }
 

@@ -6,7 +6,7 @@
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
-#include "word.h"
+#include "params_write.h"
 
 #define IMAGE_MAGIC  0x50485845u /* "EXHP" */
 #define IMAGE_HEAD_B 12u
@@ -250,18 +250,8 @@ static int values_bytes(struct exh_bytes *c, struct exh_params *p, int take)
 /* What values_bytes() writes, where there is room for two words of each. A tick waits for it. */
 static uint8_t *write_values(uint8_t *to, const struct exh_params *p)
 {
-    const int32_t *is = p->active, *wanted = p->staged;
-    for (uint16_t n = 0; n < p->table->groups; n++) {
-        const struct exh_signal_group *g = &p->table->group[n];
-        for (uint16_t k = 0; k < g->instances; k++) {
-            for (uint16_t r = 0; r < g->rows; r++, is++, wanted++, to += 4) {
-                put_word(to, (uint32_t)*is);
-                if (!exh_signal_is_slewed(&g->row[r])) { continue; }
-                to += 4;
-                put_word(to, (uint32_t)*wanted);
-            }
-        }
-    }
+    struct params_place at = {0, 0, 0};
+    while (at.value < p->count) { to = params_write(to, p, &at); }
     return to;
 }
 

@@ -14,6 +14,7 @@ static uint32_t seq;
 static uint32_t lost;      /* records lost in all */
 static uint32_t lost_here; /* lost since the last written record */
 static const struct exh_log_tap *tap;
+static const struct exh_log_way *way;
 static int silent; /* this record, or all (alone), goes to the tap only */
 static int alone;
 static uint8_t type_now; /* of the record in buf */
@@ -25,7 +26,7 @@ static int put(struct exh_bytes *c)
 {
     const uint32_t len = exh_record_end(c);
     EXH_ASSERT(len > 0);
-    return exh_board_log(buf, len) > 0;
+    return way ? way->put(buf, len) : exh_board_log(buf, len) > 0;
 }
 
 static int put_count(uint8_t type, uint32_t tick, uint32_t count)
@@ -45,9 +46,22 @@ void exh_log_tap(const struct exh_log_tap *who, int is_alone)
     silent = alone = is_alone;
 }
 
+void exh_log_by(const struct exh_log_way *who) { way = who; }
+
+/* 1: the record comes later. */
+static int later(uint8_t type, uint32_t tick)
+{
+    const int is = way && !tap && tick > 0 && way->begin(scene, type, tick, seq);
+    seq += (uint32_t)is;
+    return is;
+}
+
 static struct exh_bytes begin(uint8_t type, uint32_t tick)
 {
+    const uint32_t found_no_room = way ? way->lost() : 0;
     struct exh_bytes c;
+    lost += found_no_room;
+    lost_here += found_no_room;
     type_now = type;
     tick_now = tick;
     if (lost_here > 0 && !silent) { (void)put_count(EXH_RECORD_DROPPED, tick, lost_here); }
@@ -79,7 +93,7 @@ static void event(uint32_t tick, struct exh_event e)
 static void keyframe(uint32_t tick)
 {
     struct exh_bytes c;
-    if (scene->state == NULL) { return; }
+    if (scene->state == NULL || later(EXH_RECORD_KEYFRAME, tick)) { return; }
     c = begin(EXH_RECORD_KEYFRAME, tick);
     exh_log_keyframe_serialize(&c, scene);
     end(&c);
@@ -121,7 +135,9 @@ uint32_t exh_log_images_B(void)
 
 static void put_header(uint32_t tick)
 {
-    struct exh_bytes c = begin(EXH_RECORD_HEADER, tick);
+    struct exh_bytes c;
+    if (later(EXH_RECORD_HEADER, tick)) { return; }
+    c = begin(EXH_RECORD_HEADER, tick);
     exh_log_header_serialize(&c);
     end(&c);
 }
@@ -227,9 +243,14 @@ void exh_log_after(uint32_t tick, const struct exh_scene_in *in, const struct ex
     if (!alone && (tick + 1) % EXH_LOG_HEADER_TICKS == EXH_LOG_KEYFRAME_TICKS / 2) {
         put_header(tick + 1);
     }
+    if (way) { way->step(0); }
 }
 
 uint32_t exh_log_end(uint32_t tick)
 {
+    if (way) {
+        way->step(1);
+        lost += way->lost();
+    }
     return put_count(EXH_RECORD_END, tick, lost) ? lost : lost + 1;
 }

@@ -7,7 +7,7 @@
 #include "posix.h"
 
 #include "drop/drop.h"
-#include "exhand/run/log.h"
+#include "exhand/run/log_later.h"
 
 #include "exhand/bytes.h"
 #include "exhand/record.h"
@@ -103,6 +103,34 @@ TEST(a_whole_log_reads_and_replays)
     CHECK_EQ_I64(replay(path, NULL), 0);
     CHECK_EQ_I64(replay(path, "3000"), 0);
     CHECK_EQ_I64(replay(path, "4000000"), 2); /* it ends before */
+    remove(path);
+}
+
+/* With room for all, with so little for what waits that the rest of a keyframe goes at once, and
+ * with none for the copy. */
+TEST(a_log_that_is_spread_over_ticks_has_the_same_bytes)
+{
+    static uint8_t record[EXH_LOG_RECORD_B], held[8192];
+    static uint64_t copy[1024];
+    static const uint32_t room[][2] = {
+        {sizeof copy, sizeof held}, {sizeof copy, 100}, {0, sizeof held}};
+    const char *path = log_path();
+    struct text once, spread;
+    run_three_falls(path);
+    once = slurp(path);
+    for (unsigned i = 0; i < LEN(room); i++) {
+        const struct exh_log_later memory = {record, (uint8_t *)copy, held, room[i][0], room[i][1]};
+        memset(held, 0, sizeof held);
+        exh_log_later(&memory);
+        run_three_falls(path);
+        exh_log_later(NULL);
+        spread = slurp(path);
+        CHECK(held[0] != 0, "nothing has waited, %u", i);
+        CHECK(spread.len == once.len && memcmp(spread.p, once.p, once.len) == 0, "%u", i);
+        free(spread.p);
+    }
+    CHECK_EQ_I64(replay(path, NULL), 0);
+    free(once.p);
     remove(path);
 }
 
@@ -230,6 +258,7 @@ TEST(a_refused_keyframe_changes_nothing)
     CHECK(!sc->params->pending, "something is staged");
 }
 
-TEST_MAIN("log", a_whole_log_reads_and_replays, a_damaged_record_is_skipped_and_counted,
-    a_cut_log_is_reported, a_keyframe_with_forged_parameters_is_refused,
-    a_keyframe_with_a_forged_state_is_harmless, a_refused_keyframe_changes_nothing);
+TEST_MAIN("log", a_whole_log_reads_and_replays, a_log_that_is_spread_over_ticks_has_the_same_bytes,
+    a_damaged_record_is_skipped_and_counted, a_cut_log_is_reported,
+    a_keyframe_with_forged_parameters_is_refused, a_keyframe_with_a_forged_state_is_harmless,
+    a_refused_keyframe_changes_nothing);

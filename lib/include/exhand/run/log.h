@@ -31,6 +31,17 @@ struct exh_log_tap {
     int (*due)(void); /* 1: requests a keyframe after this tick */
 };
 void exh_log_tap(const struct exh_log_tap *tap, int alone);
+/* Who writes headers and keyframes in the ticks behind theirs, and whatever comes meanwhile in its
+ * turn: exhand/run/log_later.h; NULL: nobody. */
+struct exh_log_way {
+    int (*put)(const void *rec, uint32_t len_B); /* 1: taken */
+    /* 1: it will write this record, with this number. */
+    int (*begin)(const struct exh_scene *sc, uint8_t type, uint32_t tick, uint32_t seq);
+    void (*step)(int all);  /* behind each tick; all: no tick follows */
+    uint32_t (*lost)(void); /* records that found no room since the last call */
+};
+void exh_log_by(const struct exh_log_way *who);
+
 /* The payload of the header with the present parameters. */
 void exh_log_header_serialize(struct exh_bytes *c);
 /* Number of its last bytes that are calibration images. */

@@ -107,6 +107,14 @@ struct exh_scene {
     void (*end)(void);
     /* exh_params_apply with params, else NULL. Only a scene that names it links it. */
     int (*apply)(struct exh_params *params);
+    /* For exhand/run/log_later.h: all that state() reads, and the same bytes in parts, from a copy
+     * of it. Or zeros. */
+    struct {
+        void *memory;
+        uint32_t memory_B;
+        unsigned parts;
+        void (*part)(struct exh_bytes *c, void *copy, unsigned part);
+    } later;
 };
 
 /* The signals of the last tick, valid until the next; NULL: none. Call it in that tick. */
