@@ -84,7 +84,12 @@ int sim_glove_set(
     return sim_rows_set(p, sim_glove_row, sim_glove_rows, name, value, row);
 }
 
-static double limit(double v, double most) { return v > most ? most : v < -most ? -most : v; }
+/* Without branches where the processor can. */
+static inline double limit(double v, double most)
+{
+    const double below = most < v ? most : v;
+    return -most > below ? -most : below;
+}
 
 /* Of a share of the excitation. */
 static double amplified(const struct sim_glove_par *p, double share)
@@ -164,7 +169,7 @@ void sim_glove_start(struct sim_glove *g, const struct sim_glove_par *p, uint64_
             g->seen[sim_glove_sensor[i].bend[k]] |= UINT32_C(1) << i;
         }
     }
-    g->moves = (UINT32_C(1) << SIM_GLOVE_SENSORS) - 1;
+    g->moves = g->reads = (UINT32_C(1) << SIM_GLOVE_SENSORS) - 1;
     g->slot_left = p->settle_s > 0 ? sim_exp_neg(p->interval_s / p->settle_s) : 0;
     g->code_perV = CODES / p->span_V;
     g->noise_V_perLSB = p->noise_V / 6;
@@ -207,28 +212,55 @@ static inline int16_t code_of(double v)
     return (int16_t)(v < 0 ? -32768 : v >= 65536 ? 32767 : (int32_t)v - 32768);
 }
 
-/* Channels first to end - 1, the first held at t_s. The multiplexer goes on as soon as a channel is
- * held: what is left of the one before has the whole slot to decay; left: of that before the first.
- */
+/* Channels first to end - 1 behind the multiplexer, the first held at t_s. It goes on as soon as a
+ * channel is held: what is left of the one before has the whole slot to decay; left: of that before
+ * the first. */
+static void hold(struct sim_glove *g, unsigned first, unsigned end, double t_s, double tick_s,
+    double left, double *held_V)
+{
+    const double slot_left = g->slot_left;
+    double before_V = g->held_V;
+    uint32_t moves = g->moves >> first;
+    for (unsigned i = first; i < end; i++, moves >>= 1) {
+        double v = g->volt_V[i];
+        if (g->fault[i] != SIM_GLOVE_WELL || moves & 1) {
+            v = moved_V(g, i, i > first ? sim_glove_held_s(&g->par, i, tick_s) : t_s);
+        }
+        held_V[i] = before_V = v + (before_V - v) * left;
+        left = slot_left;
+    }
+    g->held_V = before_V;
+    g->held_s = end > first + 1 ? sim_glove_held_s(&g->par, end - 1, tick_s) : t_s;
+}
+
+/* A channel that is not read keeps its code; no other gets its random numbers. */
 static void convert(
     struct sim_glove *g, unsigned first, unsigned end, double t_s, double tick_s, double left)
 {
+    const double code_perV = g->code_perV;
+    const unsigned numbers = g->noise_V_most > 0 ? SIM_RANDOM_NORMAL : 0;
     struct sim_random rng = g->rng;
-    double held_V = g->held_V;
-    for (unsigned i = first; i < end; i++) {
-        const int known = g->fault[i] == SIM_GLOVE_WELL && !(g->moves >> i & 1);
-        double v;
-        if (i > first) { t_s = sim_glove_held_s(&g->par, i, tick_s); }
-        v = known ? g->volt_V[i] : moved_V(g, i, t_s);
-        v += (held_V - v) * left;
-        held_V = v;
-        left = g->slot_left;
-        if (g->noise_V_most > 0) { v += noise_V(g, &rng); }
-        if (g->fault[i] != SIM_GLOVE_STUCK) { g->code[i] = code_of(v * g->code_perV); }
+    uint32_t reads = g->reads >> first;
+    double held_V[SIM_GLOVE_SENSORS];
+    hold(g, first, end, t_s, tick_s, left, held_V);
+    for (unsigned i = first; i < end; i++, reads >>= 1) {
+        double v = held_V[i];
+        if (!(reads & 1)) {
+            sim_random_skip(&rng, numbers);
+            continue;
+        }
+        if (numbers) { v += noise_V(g, &rng); }
+        if (g->fault[i] != SIM_GLOVE_STUCK) { g->code[i] = code_of(v * code_perV); }
     }
     g->rng = rng;
-    g->held_V = held_V;
-    g->held_s = t_s;
+}
+
+void sim_glove_reads(struct sim_glove *g, uint32_t channels)
+{
+    for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
+        if (!(channels >> i & 1)) { g->code[i] = code_of(sim_glove_volt(g, i, 0) * g->code_perV); }
+    }
+    g->reads = channels;
 }
 
 /* Of the channel before, behind a slot of any length. */

@@ -60,6 +60,7 @@ struct sim_glove {
     int16_t code[SIM_GLOVE_SENSORS];        /* the last */
     double held_V, held_s;                  /* on the multiplexer, and since when */
     /* What most channels need not work out again. */
+    uint32_t reads;                          /* channels that are read */
     uint32_t moves, seen[SIM_GLOVE_SENSORS]; /* channels that may change; those that see angle i */
     double volt_V[SIM_GLOVE_SENSORS];        /* of those that do not */
     struct sim_decay low_pass[SIM_GLOVE_SENSORS];
@@ -84,6 +85,10 @@ void sim_glove_line(struct sim_glove *g, unsigned i, const struct sim_line *x, d
 
 /* From now on the joint of sensor i moves by `share` of what that of sensor `of` does. */
 void sim_glove_follow(struct sim_glove *g, unsigned i, unsigned of, double share);
+
+/* At the start: only these channels are read. The others keep their first code; these have the
+ * codes that they would have anyway. */
+void sim_glove_reads(struct sim_glove *g, uint32_t channels);
 
 /* When channel i of the frame of this tick is held. */
 static inline double sim_glove_held_s(const struct sim_glove_par *p, unsigned i, double tick_s)

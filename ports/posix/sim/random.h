@@ -9,13 +9,21 @@ struct sim_random {
     uint64_t state;
 };
 
+#define SIM_RANDOM_STEP UINT64_C(0x9E3779B97F4A7C15)
+
 /* splitmix64 (Steele, Lea, Flood 2014). */
 static inline uint64_t sim_random_u64(struct sim_random *r)
 {
-    uint64_t z = r->state += UINT64_C(0x9E3779B97F4A7C15);
+    uint64_t z = r->state += SIM_RANDOM_STEP;
     z = (z ^ z >> 30) * UINT64_C(0xBF58476D1CE4E5B9);
     z = (z ^ z >> 27) * UINT64_C(0x94D049BB133111EB);
     return z ^ z >> 31;
+}
+
+/* As if it had been asked n times. */
+static inline void sim_random_skip(struct sim_random *r, unsigned n)
+{
+    r->state += SIM_RANDOM_STEP * n;
 }
 
 /* Uniform in 0 <= u < 1, 53 bits. */
@@ -37,7 +45,8 @@ static inline int32_t sim_random_sum(uint64_t fours)
     return (int32_t)((fours >> 32) + (fours & UINT32_MAX));
 }
 
-/* Twelve uniforms: a normal of deviation 1 within +-6. */
+/* Twelve uniforms: a normal of deviation 1 within +-6. It asks for so many numbers. */
+#define SIM_RANDOM_NORMAL 3
 static inline double sim_random_normal(struct sim_random *r)
 {
     const uint64_t a = sim_random_four(r), b = sim_random_four(r), c = sim_random_four(r);

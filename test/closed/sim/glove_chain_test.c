@@ -569,6 +569,34 @@ TEST(what_is_kept_is_what_is_so)
     CHECK(still > 10000, "kept %d times", still);
 }
 
+/* Channels that are read have the codes of a glove of which all are; the others keep one code. */
+TEST(a_channel_that_is_not_read_changes_no_other)
+{
+    const uint32_t reads = 0x4F0;
+    const struct sim_glove_par p = sim_glove_default();
+    struct sim_operator_par par = sim_operator_default();
+    struct sim_operator oa, ob;
+    struct sim_glove a, b;
+    int16_t ra[SENSORS], rb[SENSORS], first[SENSORS];
+    int moved = 0;
+    par.does = SIM_GRASP;
+    sim_operator_start(&oa, &par, &a, &p, 3);
+    sim_operator_start(&ob, &par, &b, &p, 3);
+    sim_glove_reads(&b, reads);
+    memcpy(first, b.code, sizeof first);
+    for (int n = 1; n < 1000; n++) {
+        sim_operator_frame(&oa, &a, n * 1e-3, ra);
+        sim_operator_frame(&ob, &b, n * 1e-3, rb);
+        for (unsigned i = 0; i < SENSORS; i++) {
+            const int is_read = (int)(reads >> i & 1);
+            const int16_t want = is_read ? ra[i] : first[i];
+            CHECK(rb[i] == want, "channel %u, frame %d: %d, not %d", i, n, rb[i], want);
+            moved += !is_read && ra[i] != first[i];
+        }
+    }
+    CHECK(moved > 10000, "%d codes of the others", moved);
+}
+
 TEST_MAIN("glove_chain", sine_and_cosine_are_good_to_their_bound, volt_and_code_of_an_angle,
     end_points_span_what_the_default_calibration_says, codes_round_and_saturate,
     abduction_is_bent_by_its_neighbours, a_step_is_an_exponential, a_sine_comes_smaller_and_later,
@@ -578,4 +606,4 @@ TEST_MAIN("glove_chain", sine_and_cosine_are_good_to_their_bound, volt_and_code_
     parameters_are_refused_by_range, poses_lie_in_range_and_show_both_ends,
     a_movement_is_minimum_jerk, scripts_go_on_by_themselves, advance_does_not_depend_on_its_steps,
     a_recording_is_played_through_its_rows, codes_hang_on_the_seed_alone,
-    what_is_kept_is_what_is_so);
+    what_is_kept_is_what_is_so, a_channel_that_is_not_read_changes_no_other);
