@@ -334,7 +334,7 @@ static double load_A(void)
 {
     double sum_A = 0;
     if (!sim.exo.fingers) { return magnitude(sim.mass.ref_A); }
-    for (unsigned i = 0; i < EXH_FINGERS; i++) {
+    for (unsigned i = 0; i < EXH_FINGERS && sim.exo.fingers >> i; i++) {
         if (sim.exo.fingers >> i & 1) { sum_A += magnitude(sim.exo.finger[i].ref_A); }
     }
     return sum_A;
@@ -348,7 +348,7 @@ static int read_device(struct exh_drive_in *in)
     if (!sim.exo.fingers) {
         sim_mass_read(&sim.mass, jitter_cnt, &in->enc_raw[0], &in->mon_raw[0]);
     }
-    for (unsigned i = 0; i < EXH_FINGERS; i++) {
+    for (unsigned i = 0; i < EXH_FINGERS && sim.exo.fingers >> i; i++) {
         if (sim.exo.fingers >> i & 1) {
             sim_finger_read(&sim.exo.finger[i], jitter_cnt, &in->enc_raw[i], &in->mon_raw[i]);
         }

@@ -38,8 +38,8 @@ static void keep_point(struct sim_exo *e, double t_s)
     p = &e->point[(e->first + e->points) % SIM_EXO_POINTS];
     e->points++;
     p->t_s = t_s;
-    for (unsigned i = 0; i < SIM_FINGERS; i++) {
-        p->x_m[i] = used(e, i) ? e->finger[i].plant.x_m : 0;
+    for (unsigned i = 0; e->fingers >> i; i++) {
+        if (used(e, i)) { p->x_m[i] = e->finger[i].plant.x_m; }
     }
 }
 
@@ -76,7 +76,7 @@ void sim_exo_advance(struct sim_exo *e, double until_s)
     double to_s;
     do {
         to_s = e->gloved && newest_s(e) + POINT_S < until_s ? newest_s(e) + POINT_S : until_s;
-        for (unsigned i = 0; i < SIM_FINGERS; i++) {
+        for (unsigned i = 0; e->fingers >> i; i++) {
             if (used(e, i)) { sim_finger_advance(&e->finger[i], to_s); }
         }
         if (e->gloved && to_s > newest_s(e)) { keep_point(e, to_s); }
@@ -85,7 +85,7 @@ void sim_exo_advance(struct sim_exo *e, double until_s)
 
 int sim_exo_done(const struct sim_exo *e)
 {
-    for (unsigned i = 0; i < SIM_FINGERS; i++) {
+    for (unsigned i = 0; e->fingers >> i; i++) {
         if (used(e, i) && e->finger[i].path.phase != SIM_PATH_DONE) { return 0; }
     }
     return 1;
@@ -93,7 +93,7 @@ int sim_exo_done(const struct sim_exo *e)
 
 void sim_exo_latch(struct sim_exo *e, const double ref_A[SIM_FINGERS])
 {
-    for (unsigned i = 0; i < SIM_FINGERS; i++) {
+    for (unsigned i = 0; e->fingers >> i; i++) {
         if (used(e, i)) { sim_finger_latch(&e->finger[i], ref_A[i]); }
     }
 }
@@ -127,7 +127,7 @@ static void feed(struct sim_exo *e, struct sim_glove *g)
     const struct sim_exo_point *a = &e->point[e->first];
     const struct sim_exo_point *b = &e->point[(e->first + 1) % SIM_EXO_POINTS];
     double from_s = -1, left = 0;
-    for (unsigned i = 0; i < SIM_FINGERS; i++) {
+    for (unsigned i = 0; e->fingers >> i; i++) {
         const double radpm = e->finger[i].bend_radpm[0];
         const unsigned knuckle = (unsigned)bends[i][0];
         struct sim_lag *l = &g->angle_rad[knuckle];

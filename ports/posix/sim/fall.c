@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "fall.h"
 
-#define FAR_S     1e30
 #define LIFT_S    0.5
 #define HOLD_S    0.1
 #define GIVE_UP_S 3.0  /* a mass that has not reached the contact by then */
@@ -36,8 +35,6 @@ void fall_start(struct fall *f, struct plant *p, const struct sim_device *d, str
     hold(f, r, 0);
 }
 
-static int waits(const struct fall *f) { return f->waits && f->phase == FALL_HOLD; }
-
 /* Nothing else ends a fall in which there is no force: it would be metres deep, and the lift out of
  * it faster than an encoder can be. */
 void fall_catch(struct fall *f, double t_s)
@@ -48,13 +45,8 @@ void fall_catch(struct fall *f, double t_s)
 
 void fall_ready(struct fall *f, double t_s)
 {
-    if (waits(f)) { f->until_s += t_s - f->held_s; }
+    if (fall_waits(f)) { f->until_s += t_s - f->held_s; }
     f->waits = 0;
-}
-
-double fall_next_s(const struct fall *f)
-{
-    return f->phase == FALL_DONE || waits(f) ? FAR_S : f->until_s;
 }
 
 static void lift(const struct fall *f, struct plant *p, double t_s)
@@ -97,6 +89,8 @@ int fall_step(
         f->until_s = t_s + d->observe_s + longer(MARGIN_S, 2 * f->T_s);
     }
     if (f->phase == FALL_LIFT) { lift(f, p, t_s); }
-    if (t_s >= f->until_s && !waits(f) && f->phase != FALL_DONE) { end_of_phase(f, p, d, r, t_s); }
+    if (t_s >= f->until_s && !fall_waits(f) && f->phase != FALL_DONE) {
+        end_of_phase(f, p, d, r, t_s);
+    }
     return before == FALL_HOLD && f->phase == FALL_FREE;
 }

@@ -34,8 +34,20 @@ void fall_catch(struct fall *f, double t_s);
 /* The device is in RUN: the holding time starts now. */
 void fall_ready(struct fall *f, double t_s);
 
+static inline int fall_waits(const struct fall *f) { return f->waits && f->phase == FALL_HOLD; }
+
 /* When the phase ends, if known; a time far away otherwise. */
-double fall_next_s(const struct fall *f);
+static inline double fall_next_s(const struct fall *f)
+{
+    return f->phase == FALL_DONE || fall_waits(f) ? 1e30 : f->until_s;
+}
+
+/* fall_step() would change nothing: the hand does not move, and no phase ends. */
+static inline int fall_idle(const struct fall *f, const struct plant *p, double t_s)
+{
+    return t_s < f->until_s && f->phase != FALL_LIFT &&
+           (f->phase != FALL_FREE || f->contact_s >= 0 || p->q_m < 0);
+}
 
 /* Call it when the plant has reached time t: moves the hand, changes the phase when due. Returns 1
  * at the release of the mass. */

@@ -16,7 +16,6 @@ void sim_lanes_set(struct sim_lanes *l, int k, const struct plant *p, const stru
     l->cable_npm[k] = d->cable_npm;
     l->cable_nspm[k] = d->cable_nspm;
     l->mu_motor[k] = d->mu_motor;
-    l->mu_mass[k] = d->mu_mass;
     l->coulomb_n[k] = d->coulomb_n;
     l->viscous_nspm[k] = d->viscous_nspm;
     l->kf_npa[k] = d->kf_npa;
@@ -32,6 +31,10 @@ void sim_lane_pieces_set(struct sim_lane_pieces *s, int k, const struct plant_pi
     s->h_rotor[k] = piece->h_rotor;
     s->damp_mass[k] = piece->damp_mass;
     s->damp_rotor[k] = piece->damp_rotor;
+    s->half_mass[k] = piece->half_mass;
+    s->half_rotor[k] = piece->half_rotor;
+    s->rub_mass[k] = piece->rub_mass;
+    s->rub_half[k] = piece->rub_half;
 }
 
 /* On copies that the compiler keeps in registers, and without a branch: for a loop over lanes it
@@ -49,10 +52,13 @@ __attribute__((always_inline)) static inline void step_lane(
     piece.h_rotor = s->h_rotor[k];
     piece.damp_mass = s->damp_mass[k];
     piece.damp_rotor = s->damp_rotor[k];
+    piece.half_mass = s->half_mass[k];
+    piece.half_rotor = s->half_rotor[k];
+    piece.rub_mass = s->rub_mass[k];
+    piece.rub_half = s->rub_half[k];
     d.cable_npm = l->cable_npm[k];
     d.cable_nspm = l->cable_nspm[k];
     d.mu_motor = l->mu_motor[k];
-    d.mu_mass = l->mu_mass[k];
     d.coulomb_n = l->coulomb_n[k];
     d.viscous_nspm = l->viscous_nspm[k];
     d.kf_npa = l->kf_npa[k];

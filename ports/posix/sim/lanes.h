@@ -13,13 +13,14 @@
 struct sim_lanes {
     double x_m[SIM_LANES], v_mps[SIM_LANES], q_m[SIM_LANES], w_mps[SIM_LANES], cur_A[SIM_LANES];
     double mass_kg[SIM_LANES], cable_npm[SIM_LANES], cable_nspm[SIM_LANES];
-    double mu_motor[SIM_LANES], mu_mass[SIM_LANES];
+    double mu_motor[SIM_LANES];
     double coulomb_n[SIM_LANES], viscous_nspm[SIM_LANES], kf_npa[SIM_LANES];
 };
 struct sim_lane_pieces {
     double n[SIM_LANES]; /* sub-steps, whole; 0: the plant stays */
     double half_s[SIM_LANES], keep_cur[SIM_LANES], mean_cur[SIM_LANES];
     double h_mass[SIM_LANES], h_rotor[SIM_LANES], damp_mass[SIM_LANES], damp_rotor[SIM_LANES];
+    double half_mass[SIM_LANES], half_rotor[SIM_LANES], rub_mass[SIM_LANES], rub_half[SIM_LANES];
 };
 
 void sim_lanes_set(struct sim_lanes *l, int k, const struct plant *p, const struct sim_device *d);

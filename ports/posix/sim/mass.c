@@ -53,31 +53,52 @@ static void advance_plant(struct sim_mass *m, double dt_s)
     }
 }
 
-void sim_mass_advance(struct sim_mass *m, double until_s)
+static inline void sample(struct sim_mass *m)
+{
+    if (m->servo_s > m->now_s) { return; }
+    m->ref_A = m->latched_A;
+    m->servo_s += 1 / m->device.servo_hz;
+}
+
+static void advance_bench(struct sim_mass *m, double until_s)
+{
+    while (m->now_s < until_s) {
+        const double next_s = earlier(until_s, m->servo_s);
+        if (next_s > m->now_s) {
+            bench_advance(&m->bench, &m->plant, next_s - m->now_s, m->ref_A);
+            m->now_s = next_s;
+        }
+        sample(m);
+    }
+}
+
+static void advance_fall(struct sim_mass *m, double until_s)
 {
     const struct sim_device *d = &m->device;
-    double grid_s = sim_grid(m->now_s);
-    while (m->now_s < until_s) {
-        double next_s = earlier(until_s, m->servo_s);
-        if (!m->benched) { next_s = earlier(next_s, fall_next_s(&m->fall)); }
-        if (next_s > m->now_s) {
+    double now_s = m->now_s, grid_s = sim_grid(now_s);
+    while (now_s < until_s) {
+        const double next_s = earlier(earlier(until_s, m->servo_s), fall_next_s(&m->fall));
+        if (next_s > now_s) {
             const double to_s = sim_grid(next_s);
-            if (m->benched) {
-                bench_advance(&m->bench, &m->plant, next_s - m->now_s, m->ref_A);
-            } else {
-                advance_plant(m, to_s - grid_s);
-            }
-            m->now_s = next_s;
+            advance_plant(m, to_s - grid_s);
             grid_s = to_s;
+            m->now_s = now_s = next_s;
         }
-        if (m->servo_s <= m->now_s) {
-            m->ref_A = m->latched_A;
-            m->servo_s += 1 / d->servo_hz;
-        }
-        if (!m->benched && fall_step(&m->fall, &m->plant, d, &m->rng, m->now_s)) {
+        sample(m);
+        if (!fall_idle(&m->fall, &m->plant, now_s) &&
+            fall_step(&m->fall, &m->plant, d, &m->rng, now_s)) {
             /* The servo's clock is not ours: its phase is chance at each fall. */
-            m->servo_s = m->now_s + sim_random_unit(&m->rng) / d->servo_hz;
+            m->servo_s = now_s + sim_random_unit(&m->rng) / d->servo_hz;
         }
+    }
+}
+
+void sim_mass_advance(struct sim_mass *m, double until_s)
+{
+    if (m->benched) {
+        advance_bench(m, until_s);
+    } else {
+        advance_fall(m, until_s);
     }
 }
 

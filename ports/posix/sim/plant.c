@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "plant.h"
 
-#include "grid.h"
 #include "step.h"
 
 #include <stddef.h>
@@ -57,6 +56,10 @@ static struct plant_piece piece_of(const struct sim_device *d, double dt_s, int 
     s.mean_cur = (1 - s.keep_cur) / x;
     s.h_mass = h_s / d->mass_kg;
     s.h_rotor = h_s / d->rotor_kg;
+    s.half_mass = s.h_mass / 2;
+    s.half_rotor = s.h_rotor / 2;
+    s.rub_mass = s.h_mass * d->mu_mass;
+    s.rub_half = s.half_mass * d->mu_mass;
     s.damp_mass = 1 / (1 + s.h_mass / 2 * hand_nspm);
     s.damp_rotor = 1 / (1 + s.h_rotor / 2 * d->viscous_nspm);
     return s;
@@ -67,15 +70,22 @@ struct plant_piece plant_piece_of(const struct sim_device *d, double dt_s)
     return piece_of(d, dt_s, steps_in(d, dt_s), 0);
 }
 
+/* The rare sub-steps beyond the first, apart from it: inline they would take its registers. */
+__attribute__((noinline)) static void more_steps(
+    struct plant *p, const struct sim_device *d, const struct plant_piece *s, double ref_A)
+{
+    for (int i = 1; i < s->n; i++) {
+        step_string(p, d, s, ref_A, NULL, 0);
+        step_current(p, s, ref_A);
+    }
+}
+
 void plant_advance_piece(
     struct plant *p, const struct sim_device *d, const struct plant_piece *s, double ref_A)
 {
     step_string(p, d, s, ref_A, NULL, 0);
     step_current(p, s, ref_A);
-    for (int i = 1; i < s->n; i++) { /* rare case, without prefetching */
-        step_string(p, d, s, ref_A, NULL, 0);
-        step_current(p, s, ref_A);
-    }
+    if (s->n > 1) { more_steps(p, d, s, ref_A); }
 }
 
 void plant_hold_piece(struct plant *p, const struct plant_piece *s, double ref_A)
@@ -83,14 +93,11 @@ void plant_hold_piece(struct plant *p, const struct plant_piece *s, double ref_A
     step_current(p, s, ref_A);
 }
 
-const struct plant_piece *plant_pieces_find(
-    struct plant_pieces *c, const struct sim_device *d, double dt_s, double hand_nspm)
+const struct plant_piece *plant_pieces_put(
+    struct plant_pieces *c, unsigned at, const struct sim_device *d, double dt_s, double hand_nspm)
 {
-    const unsigned at = sim_grid_slot(dt_s, PLANT_PIECES);
-    if (c->dt_s[at] != dt_s) {
-        c->dt_s[at] = dt_s;
-        c->piece[at] = piece_of(d, dt_s, steps_in(d, dt_s), hand_nspm);
-    }
+    c->dt_s[at] = dt_s;
+    c->piece[at] = piece_of(d, dt_s, steps_in(d, dt_s), hand_nspm);
     return &c->piece[at];
 }
 
@@ -158,11 +165,17 @@ static inline void step_finger(struct plant *p, const struct sim_device *d,
     stop(&p->q_m, &p->w_mps, hand->end_m);
 }
 
+__attribute__((noinline)) static void more_hand_steps(struct plant *p, const struct sim_device *d,
+    const struct plant_piece *s, double ref_A, const struct plant_hand *hand)
+{
+    for (int i = 1; i < s->n; i++) { step_finger(p, d, s, ref_A, hand, (i + 0.5) * s->h_s); }
+}
+
 void plant_advance_hand_piece(struct plant *p, const struct sim_device *d,
     const struct plant_piece *s, double ref_A, const struct plant_hand *hand)
 {
     step_finger(p, d, s, ref_A, hand, 0.5 * s->h_s);
-    for (int i = 1; i < s->n; i++) { step_finger(p, d, s, ref_A, hand, (i + 0.5) * s->h_s); }
+    if (s->n > 1) { more_hand_steps(p, d, s, ref_A, hand); }
 }
 
 void plant_advance_hand(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,

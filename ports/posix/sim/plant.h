@@ -15,6 +15,7 @@
 #define SIM_PLANT_H
 
 #include "device.h"
+#include "grid.h"
 
 #define SIM_GRAVITY 9.81
 
@@ -37,6 +38,8 @@ struct plant_piece {
     double h_s, half_s;
     double keep_cur, keep_mon, cur_to_mon, mean_cur; /* shares of what was off the reference */
     double h_mass, h_rotor;                          /* of a force, the change of speed */
+    double half_mass, half_rotor;                    /* the same of half a step */
+    double rub_mass, rub_half;                       /* of a tension, by friction at the mass */
     double damp_mass, damp_rotor; /* what linear friction leaves in half a step, implicit */
 };
 struct plant_piece plant_piece_of(const struct sim_device *d, double dt_s);
@@ -47,14 +50,21 @@ void plant_advance_piece(
 void plant_hold_piece(struct plant *p, const struct plant_piece *s, double ref_A);
 
 /* Those that were last in use; all 0: none yet. Of one device, and one hand (0: none). */
-#define PLANT_PIECES 32
+#define PLANT_PIECES 256
 struct plant_pieces {
     double dt_s[PLANT_PIECES];
     struct plant_piece piece[PLANT_PIECES];
 };
+/* Works out the one at this place. */
+const struct plant_piece *plant_pieces_put(
+    struct plant_pieces *c, unsigned at, const struct sim_device *d, double dt_s, double hand_nspm);
 /* dt_s > 0, of sim_grid_s(). */
-const struct plant_piece *plant_pieces_find(
-    struct plant_pieces *c, const struct sim_device *d, double dt_s, double hand_nspm);
+static inline const struct plant_piece *plant_pieces_find(
+    struct plant_pieces *c, const struct sim_device *d, double dt_s, double hand_nspm)
+{
+    const unsigned at = sim_grid_slot(dt_s, PLANT_PIECES);
+    return c->dt_s[at] == dt_s ? &c->piece[at] : plant_pieces_put(c, at, d, dt_s, hand_nspm);
+}
 
 /* A hand moves the mass, which is then a finger: instead of its weight the force
  *   k (target - x) + b (target' - x').

@@ -28,22 +28,22 @@ static inline double tension(const struct sim_device *d, double stretch_m, doubl
 }
 
 /* hand NULL: no hand, and the mass has its weight; t_s: the middle of the step. */
-static inline void step_string(struct plant *p, const struct sim_device *d,
-    const struct plant_piece *s, double ref_A, const struct plant_hand *hand, double t_s)
+__attribute__((always_inline)) static inline void step_string(struct plant *p,
+    const struct sim_device *d, const struct plant_piece *s, double ref_A,
+    const struct plant_hand *hand, double t_s)
 {
     const double x = p->x_m + s->half_s * p->v_mps, q = p->q_m + s->half_s * p->w_mps;
-    const double half_mass = s->h_mass / 2, half_rotor = s->h_rotor / 2;
     const double pull_N = d->kf_npa * (ref_A + (p->cur_A - ref_A) * s->mean_cur);
     double push_N = d->mass_kg * SIM_GRAVITY, T = tension(d, x - q, p->v_mps - p->w_mps), v, w;
     if (hand) {
         push_N = hand->k_Npm * (hand->x_m + t_s * hand->v_mps - x) + hand->b_Nspm * hand->v_mps;
     }
-    v = shrink((p->v_mps + half_mass * (push_N - T)) * s->damp_mass, half_mass * d->mu_mass * T);
-    w = shrink((p->w_mps + half_rotor * (T - pull_N)) * s->damp_rotor,
-        half_rotor * (d->coulomb_n + d->mu_motor * T));
+    v = shrink((p->v_mps + s->half_mass * (push_N - T)) * s->damp_mass, s->rub_half * T);
+    w = shrink((p->w_mps + s->half_rotor * (T - pull_N)) * s->damp_rotor,
+        s->half_rotor * (d->coulomb_n + d->mu_motor * T));
     T = tension(d, x - q, v - w);
     if (hand) { push_N -= hand->b_Nspm * v; }
-    p->v_mps = shrink(p->v_mps + s->h_mass * (push_N - T), s->h_mass * d->mu_mass * T);
+    p->v_mps = shrink(p->v_mps + s->h_mass * (push_N - T), s->rub_mass * T);
     p->w_mps = shrink(p->w_mps + s->h_rotor * (T - pull_N - d->viscous_nspm * w),
         s->h_rotor * (d->coulomb_n + d->mu_motor * T));
     p->x_m = x + s->half_s * p->v_mps;

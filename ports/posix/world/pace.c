@@ -22,12 +22,12 @@ void pace_pull(struct pace *p, const struct exh_wire_hello *hello)
 
 /* Did a joint of any finger turn by more than TURN_Q32 between the two? One test for all joints,
  * because mostly none did. */
-static int turned(const struct pace_at *a, const struct pace_at *b)
+static int turned(const struct pace *p, const struct pace_at *a, const struct pace_at *b)
 {
-    const int32_t *from = a->joint_turn_q32[0], *to = b->joint_turn_q32[0];
+    const int32_t *was = a->joint_turn_q32[0], *is = b->joint_turn_q32[0];
     int far = 0;
-    for (unsigned i = 0; i < FINGERS * 3; i++) {
-        far |= (uint64_t)((int64_t)to[i] - from[i] + TURN_Q32) > 2 * (uint64_t)TURN_Q32;
+    for (unsigned i = p->from; i < p->to; i++) {
+        far |= (uint64_t)((int64_t)is[i] - was[i] + TURN_Q32) > 2 * (uint64_t)TURN_Q32;
     }
     return far;
 }
@@ -37,7 +37,7 @@ static int all_near(const struct pace *p, const struct pace_at *now)
 {
     const int32_t *at = now->joint_turn_q32[0];
     int far = 0;
-    for (unsigned i = 0; i < FINGERS * 3; i++) {
+    for (unsigned i = p->from; i < p->to; i++) {
         far |= at[i] > p->least_turn_q32[i] + TURN_Q32 || at[i] < p->most_turn_q32[i] - TURN_Q32;
     }
     return !far;
@@ -51,7 +51,7 @@ static void find_ends(struct pace *p)
     }
     for (unsigned back = 0; back < p->n; back++) {
         const int32_t *at = p->at[(p->last + PACE_STATES - back) % PACE_STATES].joint_turn_q32[0];
-        for (unsigned i = 0; i < FINGERS * 3; i++) {
+        for (unsigned i = p->from; i < p->to; i++) {
             if (at[i] < p->least_turn_q32[i]) { p->least_turn_q32[i] = at[i]; }
             if (at[i] > p->most_turn_q32[i]) { p->most_turn_q32[i] = at[i]; }
         }
@@ -65,10 +65,26 @@ static const struct pace_at *before(const struct pace *p, const struct pace_at *
     const int near = all_near(p, now);
     for (unsigned back = 1; back < p->n; back++) {
         const struct pace_at *older = &p->at[(p->last + PACE_STATES - back) % PACE_STATES];
-        if (now->stamp_us - older->stamp_us > WINDOW_US || (!near && turned(now, older))) { break; }
+        if (now->stamp_us - older->stamp_us > WINDOW_US || (!near && turned(p, now, older))) {
+            break;
+        }
         from = older;
     }
     return from;
+}
+
+/* What none of the states told of is 0 in all of them. */
+static void widen(struct pace *p, unsigned fingers)
+{
+    if (p->n > 0 && (p->fingers | fingers) == p->fingers) { return; }
+    p->fingers = p->n > 0 ? p->fingers | fingers : fingers;
+    p->from = p->to = 0;
+    for (unsigned f = FINGERS; f-- > 0;) {
+        if (!(p->fingers >> f & 1)) { continue; }
+        p->from = 3 * f;
+        if (p->to == 0) { p->to = 3 * (f + 1); }
+    }
+    find_ends(p);
 }
 
 void pace_take(struct pace *p, const struct exh_wire_state *state, uint32_t stamp_us)
@@ -77,12 +93,16 @@ void pace_take(struct pace *p, const struct exh_wire_state *state, uint32_t stam
     const uint32_t since_us = p->n ? stamp_us - p->at[p->last].stamp_us : 0;
     if (p->n && since_us == 0) { return; } /* the same again */
     if (since_us > WINDOW_US) { p->n = 0; }
-    memcpy(now.joint_turn_q32, state->joint_turn_q32, sizeof now.joint_turn_q32);
+    widen(p, state->fingers);
+    for (unsigned f = 0; f < FINGERS; f++) {
+        if (!(state->fingers >> f & 1)) { continue; }
+        memcpy(now.joint_turn_q32[f], state->joint_turn_q32[f], sizeof now.joint_turn_q32[f]);
+    }
     memset(p->turn_q32ps, 0, sizeof p->turn_q32ps);
     if (p->n > 0) {
         const struct pace_at *from = before(p, &now);
         const double dt_s = 1e-6 * (stamp_us - from->stamp_us);
-        for (unsigned i = 0; i < FINGERS * 3; i++) {
+        for (unsigned i = p->from; i < p->to; i++) {
             p->turn_q32ps[i / 3][i % 3] =
                 ((double)now.joint_turn_q32[i / 3][i % 3] - from->joint_turn_q32[i / 3][i % 3]) /
                 dt_s;

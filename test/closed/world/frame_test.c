@@ -384,6 +384,7 @@ TEST(joints_turn_as_from_the_oldest_state_that_is_near)
     int n = 0, near = 0, turned = 0;
     memset(&p, 0, sizeof p);
     random_state(&in);
+    in.fingers = (1 << FINGERS) - 1;
     for (int k = 0; k < 4000; k++) {
         int from = -1;
         for (int i = 0; i < FINGERS * 3; i++) {
