@@ -36,14 +36,16 @@ static void row(int bad, uint32_t most, uint32_t least)
     const struct loop_result *r = &loop.r;
     const double n = r->ticks > 1 ? (double)(r->ticks - 1) : 1;
     printf(
-        "%-9s %5.0f Hz %6lu ticks %6lu pull %5lu packets | insns %6.0f %6u | cycles %6.0f %6u "
+        "%-9s %5.0f Hz at %4u MHz %6lu ticks %6lu pull %5lu packets | insns %6.0f %6u | cycles "
+        "%6.0f %6u "
         "%6u, at least %6.0f %6u | accesses %4.0f %4u | highest Hz %6.0f .. %6.0f, dearest %6.0f "
         "| missed %lu | %s\n",
-        loop.cfg.scene->name, (double)loop.T.den / (double)loop.T.num, (unsigned long)r->ticks,
-        (unsigned long)r->pulling, (unsigned long)r->packets, (double)r->insns / n, r->most_insns,
-        (double)r->cycles / n, most, r->most_cycles, (double)r->least / n, least,
-        (double)r->accesses / n, r->most_accesses, highest_Hz(most), highest_Hz(least),
-        highest_Hz(r->most_cycles), (unsigned long)r->missed, bad ? "NOT WELL" : "same bits");
+        loop.cfg.scene->name, (double)loop.T.den / (double)loop.T.num, 168 * machine.speed,
+        (unsigned long)r->ticks, (unsigned long)r->pulling, (unsigned long)r->packets,
+        (double)r->insns / n, r->most_insns, (double)r->cycles / n, most, r->most_cycles,
+        (double)r->least / n, least, (double)r->accesses / n, r->most_accesses, highest_Hz(most),
+        highest_Hz(least), highest_Hz(r->most_cycles), (unsigned long)r->missed,
+        bad ? "NOT WELL" : "same bits");
 }
 
 static int verdict(int show)
