@@ -71,7 +71,6 @@ void exh_params_setup(
     p->active = active;
     p->staged = staged;
     p->count = exh_signal_count(table);
-    p->table_crc = exh_signal_crc(table);
     for (uint32_t i = 0; i < p->count; i++) {
         active[i] = exh_signal_at(table, i, NULL)->dflt;
         staged[i] = active[i];
@@ -296,6 +295,7 @@ int32_t exh_params_save(const struct exh_params *p, void *buf, size_t cap_B)
     struct head h = {IMAGE_MAGIC, p->table_crc, EXH_PARAMS_VERSION, 0};
     struct exh_bytes c = exh_bytes_writer(buf, cap_B);
     uint32_t crc;
+    if (h.table_crc == 0) { h.table_crc = exh_signal_crc(p->table); }
     EXH_ASSERT(p->count <= UINT16_MAX);
     h.count = (uint16_t)p->count;
     head_bytes(&c, &h);

@@ -157,6 +157,7 @@ void exh_log_start(const struct exh_scene *sc, struct exh_scene_board board)
     header.fingers = sc->fingers;
     copy_name(header.scene, sc->name);
     copy_name(header.board, exh_board_info.name);
+    if (sc->params) { sc->params->table_crc = exh_signal_crc(sc->params->table); }
     put_header(0);
     keyframe(0);
 }

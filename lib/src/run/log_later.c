@@ -90,15 +90,24 @@ static int send_held(void)
     return held_at == held_put;
 }
 
+/* 1: this stage is done. */
+static int work(void)
+{
+    switch (stage) {
+    case PARAMS: return make_params();
+    case PARTS: return make_parts();
+    case CRC: return make_crc();
+    case OUT: return send();
+    case HELD: return send_held();
+    case IDLE:
+    default: return 1;
+    }
+}
+
 static void step(int all)
 {
-    static int (*const work[])(void) = {[PARAMS] = make_params,
-        [PARTS] = make_parts,
-        [CRC] = make_crc,
-        [OUT] = send,
-        [HELD] = send_held};
     while (stage != IDLE) {
-        if (work[stage]()) { stage = stage == HELD ? IDLE : (enum stage)(stage + 1); }
+        if (work()) { stage = stage == HELD ? IDLE : (enum stage)(stage + 1); }
         if (!all) { return; }
     }
 }

@@ -8,8 +8,8 @@ function pointers of this project stand in constant tables (struct exh_scene, st
 exh_loop_hooks), so an indirect call is taken to reach any function whose address is in the data
 of any object; but one in the log (exh_log_*, lib/src/run/log.c) only what a scene's own table or a
 tap's (struct exh_log_tap tap) or log_later's (struct exh_log_way here) points to: it calls the
-scene's state() and these, while the loop's hooks call the log; one in log_later.c only what its
-table of work or a scene's points to; likewise one in the black box, which asks the scene to show its signals, and in
+scene's state() and these, while the loop's hooks call the log; one in log_later.c only what a
+scene's own table points to; likewise one in the black box, which asks the scene to show its signals, and in
 pc104's and stm32f405's modbus, which asks the scene what is allowed; one in scene
 custom only what its slot points to; and one in calibrate_tick() only what its own table of
 steps points to. A function whose address is taken only by code is not seen: give it a table.
@@ -33,7 +33,7 @@ LOG = re.compile(r'(^|:)(exh_log_|exh_blackbox_|pc104_modbus_|stm_modbus_)|'
 # Callers that call by some tables only: (caller, the tables' sections). The first that fits is
 # taken.
 ONLY = ((re.compile(r'(^|/)custom\.c:'), re.compile(r'\.slot$')),
-        (re.compile(r'(^|/)log_later\.c:'), re.compile(r'exh_scene_|\.work(\.\d+)?$')),
+        (re.compile(r'(^|/)log_later\.c:'), re.compile(r'exh_scene_')),
         (LOG, re.compile(r'exh_scene_|\.(tap|here)(\.\d+)?$')),
         (re.compile(r'(^|:)calibrate_tick$'), re.compile(r'\.steps$')))
 
