@@ -120,6 +120,11 @@ simulated()
 {
     echo
     "$b/speed"
+    whole=${B:-build}/whole/bench/speed
+    if [ -x "$whole" ]; then
+        echo "The same, compiled whole by -O3:"
+        "$whole"
+    fi
     for e in drop bilateral bilateral5; do
         for fn in exh_loop tick advance_to; do # the scene is reached as a static function, tick
             profile "$fn" "$b/speed" "$e" 4000 >/dev/null
