@@ -122,14 +122,12 @@ static double bent_rad(const struct sim_glove *g, unsigned i, double t_s, struct
 static double shown_V(const struct sim_glove *g, unsigned i, double rad)
 {
     const struct sim_glove_par *p = &g->par;
-    const struct sim_glove_sensor *n = &sim_glove_sensor[i];
-    double share;
     if (g->fault[i] == SIM_GLOVE_RAIL_HIGH) { return p->rail_V; }
     if (g->fault[i] == SIM_GLOVE_RAIL_LOW) { return -p->rail_V; }
     if (g->fault[i] == SIM_GLOVE_OPEN) { return amplified(p, 1); }
     if (g->fault[i] == SIM_GLOVE_SHORT) { return amplified(p, 0); }
-    share = n->lo + (rad - n->lo_deg * DEG) * ((n->hi - n->lo) / ((n->hi_deg - n->lo_deg) * DEG));
-    return amplified(p, p->dead + (1 - 2 * p->dead) * share);
+    return amplified(p,
+        p->dead + g->live * (sim_glove_sensor[i].lo + (rad - g->lo_rad[i]) * g->share_perrad[i]));
 }
 
 double sim_glove_volt(const struct sim_glove *g, unsigned i, double t_s)
@@ -160,7 +158,11 @@ void sim_glove_start(struct sim_glove *g, const struct sim_glove_par *p, uint64_
     memset(g, 0, sizeof *g);
     g->par = *p;
     g->rng.state = seed;
+    g->live = 1 - 2 * p->dead;
     for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
+        const struct sim_glove_sensor *n = &sim_glove_sensor[i];
+        g->lo_rad[i] = n->lo_deg * DEG;
+        g->share_perrad[i] = (n->hi - n->lo) / ((n->hi_deg - n->lo_deg) * DEG);
         sim_lag_start(&g->angle_rad[i], 1 / (TWO_PI * p->cutoff_Hz), angle_rad[i]);
         g->of[i] = (unsigned char)i;
         g->share[i] = 1;

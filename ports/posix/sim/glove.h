@@ -64,6 +64,7 @@ struct sim_glove {
     uint32_t moves, seen[SIM_GLOVE_SENSORS]; /* channels that may change; those that see angle i */
     double volt_V[SIM_GLOVE_SENSORS];        /* of those that do not */
     struct sim_decay low_pass[SIM_GLOVE_SENSORS];
+    double live, lo_rad[SIM_GLOVE_SENSORS], share_perrad[SIM_GLOVE_SENSORS]; /* of the sensors */
     double slot_left, code_perV, noise_V_perLSB, noise_V_most; /* multiplexer, A/D, noise */
     /* An angle that is `share` of another's; an independent one is 1 of its own. */
     unsigned char of[SIM_GLOVE_SENSORS];
