@@ -32,7 +32,13 @@ size:
 	@.ci/deps "sizes on a Cortex-M3" \
 	    "echo '#include <string.h>' | arm-none-eabi-gcc -fsyntax-only -xc -" \
 	    gcc-arm-none-eabi libnewlib-arm-none-eabi || true
+	$(Q)B=$(B) test/figures/size/limiter.sh || [ $$? = 3 ]
 	$(Q)MAKE="$(MAKE)" B=$(B) test/figures/size/size.sh
+
+## Print the limiter's code on a Cortex-M3, linked with a caller, and check that it is at most 3 KiB.
+.PHONY: limiter-size
+limiter-size:
+	$(Q)B=$(B) test/figures/size/limiter.sh
 
 ## Show which modules a scene links and why, and what each feature adds: build/size/costs
 ## (ARGS=--update).

@@ -4,8 +4,6 @@
 
 #include "exhand/fix.h"
 
-#include "../num/mem.h"
-
 #include <stddef.h>
 
 /* Half of what the law's formats hold: positions within it. */
@@ -14,7 +12,7 @@
  * has room; and the way to brake. */
 #define FRAC_MAX 12
 #define VEL_MOST (INT32_C(1) << 29)
-#define WAY_MOST (UINT64_C(1) << 30)
+#define WAY_MOST (UINT32_C(1) << 30)
 /* An effort is squared in so many bits: with 2^24 steps of heat_ms that is below HEAT_MOST. The
  * least difference of squares: a quarter of the budget is then some units of 2^HEAT_SHIFT. */
 #define SQUARE_BITS   11
@@ -30,48 +28,68 @@
 #define WALL_   (1u << EXH_LIMITER_WALL)
 #define FORCE_  (EFFORT_ | WALL_)
 #define ALL_    (FORCE_ | PLACE_)
-#define EITHER  0x80u /* of either sign */
+#define EITHER  0x08u /* of either sign */
+#define USES    4     /* what must be measured if it is not 0, from this bit on */
+#define POS_    ((unsigned)EXH_LIMITER_POS << USES)
+#define VEL_    ((unsigned)EXH_LIMITER_VEL << USES)
+#define MS_     0x40u /* a time in ms: in steps too */
+#define SLEW_   0x80u /* a change a second: a step too */
 
-/* Its largest value, 0xmn for m * 10^n; the kinds for which it must not be 0; and what must be
- * measured if it is not. */
+/* Its largest value, 0xmn for m * 10^n; the kinds for which it must not be 0, and the bits above.
+ */
 static const struct range {
-    uint8_t most, needed, uses;
+    uint8_t most, is;
 } ranges[EXH_LIMITER_FIELDS] = {
-    {0x20, 0, 0}, {0xF0, 0, 0}, {0x27, ALL_, 0},             /* kind uses rate */
-    {0x29, FORCE_, 0}, {0x29, FORCE_, 0}, {0x29, FORCE_, 0}, /* effort */
-    {0x14, ALL_, 0}, {0x13, FORCE_, 0},                      /* ramp release */
-    {0x58, EITHER, 0}, {0x58, EITHER, 0}, {0x58, 0, 0},      /* pos */
-    {0x19, PLACE_, 0}, {0x29, PLACE_, 0},                    /* vel acc */
-    {0x19, 0, 0}, {0x10, 0, 0}, {0x10, 0, 0},                /* first after */
-    {0x17, ALL_, 0}, {0x17, ALL_, 0},                        /* age gap */
-    {0x29, WALL_, EXH_LIMITER_VEL}, {0x13, 0, 0},            /* speed */
-    {0x29, 0, EXH_LIMITER_POS}, {0x19, 0, 0}, {0x64, 0, 0},  /* stall */
-    {0x29, 0, 0}, {0x29, 0, 0}, {0x65, 0, 0},                /* heat */
-    {0x10, 0, 0}, {0x19, 0, 0}, {0x19, 0, 0}, {0x18, 0, 0},  /* wall */
+    {0x20, 0}, {0xF0, 0}, {0x27, ALL_},                             /* kind uses rate */
+    {0x29, FORCE_}, {0x29, FORCE_ | SLEW_}, {0x29, FORCE_ | SLEW_}, /* effort */
+    {0x14, ALL_ | MS_}, {0x13, FORCE_ | MS_},                       /* ramp release */
+    {0x58, EITHER}, {0x58, EITHER}, {0x58, 0},                      /* pos */
+    {0x19, PLACE_}, {0x29, PLACE_},                                 /* vel acc */
+    {0x19, 0}, {0x10, 0}, {0x10, 0},                                /* first after */
+    {0x17, ALL_}, {0x17, ALL_},                                     /* age gap */
+    {0x29, WALL_ | VEL_}, {0x13, MS_},                              /* speed */
+    {0x29, POS_}, {0x19, 0}, {0x64, MS_},                           /* stall */
+    {0x29, 0}, {0x29, 0}, {0x65, MS_},                              /* heat */
+    {0x10, 0}, {0x19, 0}, {0x19, 0}, {0x18, 0},                     /* wall */
 };
 EXH_STATIC_ASSERT(
     fields_are_counted, sizeof(struct exh_limiter_par) == EXH_LIMITER_FIELDS * sizeof(int32_t));
 
-#define FIELD(name) (-(int)(1 + offsetof(struct exh_limiter_par, name) / sizeof(int32_t)))
+#define PLACE_OF(name) (offsetof(struct exh_limiter_par, name) / sizeof(int32_t))
+#define FIELD(name)    (-(int)(1 + PLACE_OF(name)))
 /* The first that does not hold names the field. */
 #define NEED(cond, name) \
     do { \
         if (!(cond)) { return FIELD(name); } \
     } while (0)
 
-/* Copies, too: field by field, so that no memcpy is needed. */
-static int copy_checked(struct exh_limiter_cfg *cfg, const struct exh_limiter_par *par)
+/* floor(v * scale / by), at most 2^31 - 1. `by` is not 0. */
+static int32_t scaled(int32_t v, uint32_t scale, uint32_t by)
 {
-    for (int k = 0; k < EXH_LIMITER_FIELDS; k++) {
-        int32_t hi = ranges[k].most >> 4, v, lo;
+    const uint64_t q = exh_udiv64((uint64_t)(uint32_t)v * scale, by, NULL);
+    return q > INT32_MAX ? INT32_MAX : (int32_t)q;
+}
+
+/* Copies, too: word by word, since a small CPU may have no memcpy. steps[k]: what field k is by
+ * steps, where its range says so; a slew is 1 at least. */
+static int copy_checked(struct exh_limiter_cfg *cfg, const struct exh_limiter_par *par,
+    int32_t steps[EXH_LIMITER_FIELDS])
+{
+    for (size_t k = 0; k < EXH_LIMITER_FIELDS; k++) {
+        const int32_t v = *(const int32_t *)(const void *)((const char *)par + k * sizeof v);
+        const unsigned is = ranges[k].is;
+        const uint32_t rate = (uint32_t)cfg->par.rate_milli;
+        int32_t hi = ranges[k].most >> 4, lo;
         for (int n = ranges[k].most & 15; n > 0; n--) { hi *= 10; }
-        memcpy(&v, (const char *)par + (size_t)k * sizeof v, sizeof v);
-        memcpy((char *)&cfg->par + (size_t)k * sizeof v, &v, sizeof v);
+        *(int32_t *)(void *)((char *)&cfg->par + k * sizeof v) = v;
         /* The kind is right by then; its own needs are none. */
-        lo = ranges[k].needed == EITHER ? -hi : ranges[k].needed >> (cfg->par.kind & 3) & 1;
-        if (!exh_inside(v, lo, hi) || (v != 0 && ranges[k].uses & ~cfg->par.uses)) {
-            return -1 - k;
+        lo = is & EITHER ? -hi : (int32_t)(is >> (cfg->par.kind & 3) & 1);
+        if (!exh_inside(v, lo, hi) || (v != 0 && is >> USES & ~(unsigned)cfg->par.uses & 3u)) {
+            return -1 - (int)k;
         }
+        if (is & MS_) { steps[k] = scaled(v, rate, 1000000); }
+        if (is & SLEW_) { steps[k] = scaled(v, 1000000, rate); }
+        if (is & SLEW_ && steps[k] == 0) { steps[k] = 1; }
     }
     return 0;
 }
@@ -98,18 +116,6 @@ static int check_relations(struct exh_limiter_cfg *cfg)
 
 /* --- what a step needs --- */
 
-/* floor(v * scale / by), at most 2^31 - 1. `by` is not 0. */
-static int32_t scaled(int32_t v, uint32_t scale, uint32_t by)
-{
-    const uint64_t q = exh_udiv64((uint64_t)(uint32_t)v * scale, by, NULL);
-    return q > INT32_MAX ? INT32_MAX : (int32_t)q;
-}
-
-static uint32_t steps_in(int32_t ms, uint32_t rate_milli)
-{
-    return (uint32_t)scaled(ms, rate_milli, 1000000);
-}
-
 /* Velocity and acceleration a step, in the finest scale in which full speed, its square and the way
  * to brake have room. */
 static int setup_place(struct exh_limiter_cfg *cfg)
@@ -119,7 +125,7 @@ static int setup_place(struct exh_limiter_cfg *cfg)
     for (int frac = FRAC_MAX; frac >= 0; frac--) {
         const int32_t vel = scaled(cfg->par.vel_max, UINT32_C(1000) << frac, rate);
         const int32_t acc = scaled(second, UINT32_C(1000) << frac, rate);
-        uint64_t brake;
+        uint32_t brake;
         NEED(vel > 0, vel_max);
         NEED(acc > 0, acc_max_milli);
         if (vel >= VEL_MOST) { continue; }
@@ -128,8 +134,8 @@ static int setup_place(struct exh_limiter_cfg *cfg)
         /* From full speed to full speed the other way: no limit. */
         cfg->acc = acc < vel * 2 ? acc : vel * 2;
         /* fits() asks for v^2/2a + v/2 + a/8, and a <= 2v. */
-        brake = exh_udiv64((uint64_t)(uint32_t)vel * (uint32_t)vel, (uint32_t)cfg->acc * 2u, NULL);
-        brake = ((brake + (uint32_t)vel) >> frac) + 2;
+        brake = (uint32_t)scaled(vel, (uint32_t)vel, (uint32_t)cfg->acc * 2u) + (uint32_t)vel;
+        brake = (brake >> frac) + 2;
         cfg->brake = (int32_t)brake;
         if (brake < WAY_MOST >> frac) { return 0; }
     }
@@ -154,12 +160,12 @@ static int setup_heat(struct exh_limiter_cfg *cfg, uint32_t steps)
     squares = (top >> shift) * (top >> shift) - square;
     NEED(square > 0 && bottom < top && squares >= SQUARES_LEAST, heat_nominal);
     NEED(steps >= HEAT_STEPS, heat_ms);
-    cfg->heat_top = cfg->par.heat_peak;
-    cfg->heat_bottom = cfg->par.heat_nominal;
+    cfg->heat_top = (int32_t)top;
+    cfg->heat_bottom = (int32_t)bottom;
     cfg->heat_shift = shift;
     cfg->heat_square = (int32_t)square;
     cfg->heat_budget = (int64_t)((uint64_t)squares * steps);
-    while (cfg->heat_budget >> HEAT_SHIFT >> 2 >> knee == 0) { knee--; }
+    while ((uint32_t)(cfg->heat_budget >> HEAT_SHIFT) >> 2 >> knee == 0) { knee--; }
     cfg->heat_knee = knee;
     return 0;
 }
@@ -196,31 +202,29 @@ static int setup_wall(struct exh_limiter_cfg *cfg)
 }
 
 /* Times; and what motion.h watches. */
-static int setup_times(struct exh_limiter_cfg *cfg)
+static int setup_times(struct exh_limiter_cfg *cfg, const int32_t steps[EXH_LIMITER_FIELDS])
 {
     const struct exh_limiter_par *par = &cfg->par;
-    const uint32_t rate = (uint32_t)par->rate_milli;
-    const uint32_t release = steps_in(par->release_ms, rate);
+    const uint32_t release = (uint32_t)steps[PLACE_OF(release_ms)];
     cfg->fall_q32 = (uint32_t)scaled(2, UINT32_C(1) << 30, release + (release == 0)) * 2;
-    cfg->ramp_q30 = scaled(1, (UINT32_C(1) << 30) - 1, steps_in(par->ramp_ms, rate) + 1) + 1;
-    cfg->up = scaled(par->effort_up_milli, 1000000, rate);
-    cfg->up += cfg->up == 0;
-    cfg->down = scaled(par->effort_down_milli, 1000000, rate);
-    cfg->down += cfg->down == 0;
-    cfg->speed_steps = steps_in(par->speed_ms, rate) + 1;
-    cfg->stall_steps = par->stall_effort > 0 ? steps_in(par->stall_ms, rate) + 1 : 0;
+    cfg->ramp_q30 = scaled(1, (UINT32_C(1) << 30) - 1, (uint32_t)steps[PLACE_OF(ramp_ms)] + 1) + 1;
+    cfg->up = steps[PLACE_OF(effort_up_milli)];
+    cfg->down = steps[PLACE_OF(effort_down_milli)];
+    cfg->speed_steps = (uint32_t)steps[PLACE_OF(speed_ms)] + 1;
+    cfg->stall_steps = par->stall_effort > 0 ? (uint32_t)steps[PLACE_OF(stall_ms)] + 1 : 0;
     cfg->motion.speed_mps_q27 = par->speed_max > 0 ? par->speed_max : INT32_MAX;
     cfg->motion.stuck_cur_A_q26 = par->stall_effort;
-    cfg->still_steps = (uint32_t)scaled(par->gap_max_us, rate, 1000000000);
+    cfg->still_steps = (uint32_t)scaled(par->gap_max_us, (uint32_t)par->rate_milli, 1000000000);
     NEED(cfg->still_steps >= 2, gap_max_us);
-    return setup_heat(cfg, steps_in(par->heat_ms, rate));
+    return setup_heat(cfg, (uint32_t)steps[PLACE_OF(heat_ms)]);
 }
 
 int exh_limiter_setup(struct exh_limiter_cfg *cfg, const struct exh_limiter_par *par)
 {
-    int err = copy_checked(cfg, par);
+    int32_t steps[EXH_LIMITER_FIELDS];
+    int err = copy_checked(cfg, par, steps);
     if (err == 0) { err = check_relations(cfg); }
-    if (err == 0) { err = setup_times(cfg); }
+    if (err == 0) { err = setup_times(cfg, steps); }
     if (err == 0 && cfg->par.kind == EXH_LIMITER_POSITION) { err = setup_place(cfg); }
     if (err == 0 && cfg->par.kind == EXH_LIMITER_WALL) { err = setup_wall(cfg); }
     return err;

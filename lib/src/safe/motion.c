@@ -55,13 +55,15 @@ uint32_t exh_motion_step(
     struct exh_motion *s, const struct exh_motion_cfg *cfg, int32_t *vel_mps_q27, uint32_t *limits)
 {
     const int32_t most = cfg->par->speed_mps_q27;
-    const int32_t held = exh_clamp(*vel_mps_q27, -most, most);
+    const int32_t held = exh_clamp32(*vel_mps_q27, -most, most);
     const int fast = held != *vel_mps_q27;
-    s->fast_ticks = run_of(s->fast_ticks, fast, cfg->speed_ticks);
+    uint32_t due = 0;
     *vel_mps_q27 = held;
-    *limits |= fast ? EXH_LIMIT_SPEED : 0u;
-    return (s->fast_ticks >= cfg->speed_ticks ? EXH_FAULT_SPEED : 0u) |
-           (cfg->stuck_ticks && s->stuck_ticks >= cfg->stuck_ticks ? EXH_FAULT_STUCK : 0u);
+    if (fast) { *limits |= EXH_LIMIT_SPEED; }
+    s->fast_ticks = run_of(s->fast_ticks, fast, cfg->speed_ticks);
+    if (s->fast_ticks >= cfg->speed_ticks) { due = EXH_FAULT_SPEED; }
+    if (cfg->stuck_ticks && s->stuck_ticks >= cfg->stuck_ticks) { due |= EXH_FAULT_STUCK; }
+    return due;
 }
 
 void exh_motion_update(

@@ -34,7 +34,8 @@ WP = {
               ["no_force", "release", "exh_drive_force_within", "i2t_limit",
                "whole_codes", "coded", "exh_drive_current_step"]),
     "tracking": ("lib/src/act/tracking.c", ["exh_tracking_step", "exh_tracking_update"]),
-    "limiter": ("lib/src/safe/limiter.c", ["size_of", "is_on", "slewed", "let_go", "effort"]),
+    "limiter": ("lib/src/safe/limiter.c",
+                ["size_of", "exh_limiter_is_on", "slewed", "let_go", "effort"]),
 }
 
 # Contracts of other units that a unit is judged by, beside those of fix.

@@ -8,7 +8,7 @@
  * PLANT: lib/src/safe/safety.c: (int64_t)s->share_q30 + cfg->ramp_q30, 0, FULL_Q30) -> (int64_t)s->share_q30 + cfg->ramp_q30, 0, INT32_MAX)
  * PLANT: lib/src/sense/quad.c: if (jump >= INT64_C(1) << (bits - 2)) { return -EXH_E_RANGE; } -> (void)0;
  * PLANT: lib/src/law/passivity.c: any ? exh_clamp(held, 0, INT32_MAX) : 0; -> any ? exh_clamp(held, INT32_MIN, INT32_MAX) : 0;
- * PLANT: lib/src/safe/motion.c: exh_clamp(*vel_mps_q27, -most, most) -> exh_clamp(*vel_mps_q27, -most, INT32_MAX)
+ * PLANT: lib/src/safe/motion.c: exh_clamp32(*vel_mps_q27, -most, most) -> exh_clamp32(*vel_mps_q27, -most, INT32_MAX)
  * PLANT: lib/src/act/drive.c: s->fall_N_q20 = (int32_t)exh_gain_floor(permit->fall, s->force_N_q20) + 1; -> s->fall_N_q20 = s->force_N_q20 + 2;
  * PLANT: lib/include/exhand/contact.h: exh_contact_pullback(s, par, in.pos_m_q30); -> 2 * exh_contact_pullback(s, par, in.pos_m_q30);
  * PLANT: lib/src/law/contact.c: EXH_WHEN_SLEWED, 0, EXH_Q(20, 1, EXH_Q_FORCE) -> EXH_WHEN_SLEWED, 0, EXH_Q(40, 1, EXH_Q_FORCE)

@@ -8,11 +8,12 @@
  *
  * EVA: -eva-precision 1
  * PLANT: lib/src/safe/limiter.c: exh_wrap_add64(s->heat, e * e - cfg->heat_square) -> s->heat + e * e
- * PLANT: lib/src/safe/limiter.c: (s->share_q30 & (FULL_Q30 - 1)) + -> s->share_q30 +
- * PLANT: lib/src/safe/limiter.c: v < -INT32_MAX ? INT32_MAX : -v -> -v
+ * PLANT: lib/src/safe/limiter_state.c: (s->share_q30 & (EXH_LIMITER_FULL_Q30 - 1)) + -> s->share_q30 +
+ * PLANT: lib/src/safe/limiter.c: 0u - (uint32_t)v : (uint32_t)v -> (uint32_t)-v : (uint32_t)v
  * PLANT: lib/src/safe/limiter.c: exh_clamp32(s->sent, cfg->near_min, cfg->near_max) -> s->sent
  */
 #include "safe/limiter.c"
+#include "safe/limiter_state.c"
 #include "safe/motion.c"
 #include "safe/safety.c"
 #include "safe/safety_open.c"

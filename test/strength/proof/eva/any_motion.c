@@ -2,7 +2,7 @@
 /* PROVES: speed, standing
  * Speed and standstill of a finger: any state, any constants, any input.
  *
- * PLANT: lib/src/safe/motion.c: exh_clamp(*vel_mps_q27, -most, most) -> *vel_mps_q27
+ * PLANT: lib/src/safe/motion.c: exh_clamp32(*vel_mps_q27, -most, most) -> *vel_mps_q27
  */
 #include "safe/motion.c"
 
