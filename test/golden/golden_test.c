@@ -187,6 +187,7 @@ MODULE(drive);
 MODULE(track);
 MODULE(passivity);
 MODULE(watch);
+MODULE(limiter);
 MODULE(chatter);
 MODULE(guard);
 MODULE(supply);
@@ -215,6 +216,6 @@ MODULE(bilateral);
 
 TEST_MAIN("golden", first_tick_that_differs_is_told, fix, bytes, mac, record, ring, signal, slots,
     quad, quad_ab, velocity_window, velocity_pole, velocity_foaw, velocity_track, contact, table,
-    drive, track, watch, chatter, guard, supply, passivity, safety, calibrate, probe, home, weigh,
-    filter, filter_cheap, quantizer, gains, glove, glove_every, glove_cal, angle, hand, precontact,
-    wire, mirror, modbus, modbus_rtu, drop, guarded, bilateral);
+    drive, track, watch, limiter, chatter, guard, supply, passivity, safety, calibrate, probe, home,
+    weigh, filter, filter_cheap, quantizer, gains, glove, glove_every, glove_cal, angle, hand,
+    precontact, wire, mirror, modbus, modbus_rtu, drop, guarded, bilateral);

@@ -33,6 +33,7 @@ GOLDEN_MODULE(chatter);
 GOLDEN_MODULE(guard);
 GOLDEN_MODULE(supply);
 GOLDEN_MODULE(safety);
+GOLDEN_MODULE(limiter);
 GOLDEN_MODULE(calibrate);
 GOLDEN_MODULE(probe);
 GOLDEN_MODULE(home);

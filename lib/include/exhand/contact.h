@@ -151,7 +151,8 @@ static inline int exh_contact_past(struct exh_contact_in in, uint32_t *past)
     return in.pos_m_q30 >= in.lim_m_q30;
 }
 
-/* Sets spring, damper, pullback, and passivity to 0; drive.h sets the rest. Each term is rounded
+/* The terms of the force, for drive.h. It does not set force_N_q20: exh_contact_force() below gives
+ * the force to command. Sets spring, damper, pullback, and passivity to 0. Each term is rounded
  * once, so their sum is within 1 LSB of exact. Returns 1 in contact. */
 static inline int exh_contact_law(
     const struct exh_contact_par *par, struct exh_contact_in in, struct exh_force_ledger *out)
@@ -168,8 +169,8 @@ static inline int exh_contact_law(
     return c;
 }
 
-/* The force to command by the same law, N, q20, in one call, without a ledger and without drive.h.
- * Limited to 0 .. EXH_FORCE_MAX_N_Q20; within 0.51 LSB of exact. */
+/* The force to command, N, q20, in one call, by the law of exh_contact_law() but without a ledger
+ * and without drive.h. Limited to 0 .. EXH_FORCE_MAX_N_Q20; within 0.51 LSB of exact. */
 static inline int32_t exh_contact_force(const struct exh_contact_par *par, struct exh_contact_in in)
 {
     const unsigned shift = EXH_Q_K + EXH_Q_POS - EXH_Q_FORCE;
