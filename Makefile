@@ -182,7 +182,7 @@ include lib/lib.mk docs/docs.mk
 
 # Of several goals one runs at a time, because two sub-makes would write the same files. Files and
 # these may run together (test/check.mk).
-together := $(B)/% variant-% golden-% undef% $(check_runs) $(check_waits)
+together := $(B)/% images-built variant-% golden-% undef% $(check_runs) $(check_waits)
 ifneq ($(and $(filter-out $(together),$(MAKECMDGOALS)),$(word 2,$(MAKECMDGOALS))),)
 .NOTPARALLEL:
 endif
