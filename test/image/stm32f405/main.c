@@ -162,6 +162,11 @@ int main(int argc, char **argv)
             printf("where 0x%x %lu %u\n", STM_FLASH + 2 * at, (unsigned long)k->spent, k->most);
         }
     }
+    if (value[WHERE]) {
+        const double n = loop.r.ticks ? (double)loop.r.ticks : 1;
+        printf("cycles of waiting for the flash, by tick, with set-up: code %.0f, constants %.0f\n",
+            (double)machine.cost.stalls / n, (double)machine.cost.data_stalls / n);
+    }
     bad = verdict(value[SHOW] != 0);
     machine_close(&machine);
     return bad;
