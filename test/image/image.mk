@@ -154,7 +154,7 @@ STM_TICKS ?= 10000
 STM_TIMES ?= 10010
 
 ## Run the stm32f405 image in closed loop under emulation (STM_TICKS=10000 STM_TIMES=10010
-## ARGS="drop guarded box spoil faults planted cuts jumps show").
+## ARGS="drop guarded box where spoil faults planted cuts jumps show").
 .PHONY: stm32f405 stm32f405-built stm32f405-run
 stm32f405: stm32f405-built
 	@B=$(B) TICKS=$(STM_TICKS) TIMES=$(STM_TIMES) $(stm_dir)/stm32f405.sh $(ARGS)
