@@ -83,7 +83,7 @@ static int after_cut(uint32_t mail, uint32_t k)
 {
     if (put_mail(mail, 1) < 0 || start(STM_SOFT, k) != M_RESET) { return -1; }
     memset(m->ram, 0xA5, STM_RAM_B);
-    return start(STM_POWER_ON, 0) == M_DONE ? found() : -1;
+    return start(STM_POWER_ON, 0) == M_DONE && board_enables(&m->s) == 0 ? found() : -1;
 }
 
 int stm_cuts(struct machine *machine, const char *image, unsigned times)

@@ -138,7 +138,7 @@ static void child(struct seen *s, unsigned chance)
         run_to(s, from + CEASES);
         k->cease();
     }
-    run_to(s, from + (k->ends == ENDS_WORDS ? SAID : WATCHED));
+    run_to(s, from + (k->ends == ENDS_WORDS || k->ends == ENDS_STUCK ? SAID : WATCHED));
     tell(s);
     s->on = now.on;
     s->pulls = now.pulls;
@@ -186,12 +186,14 @@ static int by_time(const void *a, const void *b)
 static int is_wrong(const struct seen *s)
 {
     const struct kind *k = &kinds[s->kind];
-    const int off = !s->on && !s->pulls && s->off_after <= LIMIT && s->zero_after <= LIMIT;
+    const uint64_t limit = LIMIT + (k->ends == ENDS_STUCK ? KIND_STUCK_MS * (uint64_t)MS : 0);
+    const int off = !s->on && !s->pulls && s->off_after <= limit && s->zero_after <= limit;
     const int told = strcmp(s->told, k->told) == 0;
     const int latched = s->state == EXH_STATE_FAULT || strcmp(k->told, "reset") == 0;
     if (!s->done || s->most_A > PEAK) { return 1; }
     switch (k->ends) {
     case ENDS_BOUND: return s->told[0] && s->on;
+    case ENDS_STUCK: return s->told[0] && !(off && told && latched);
     case ENDS_WELL: return !told || (s->ran && !s->on);
     case ENDS_WORDS: return !off || !told;
     case ENDS_OFF:
@@ -219,9 +221,10 @@ static unsigned row(const struct seen *seen, unsigned times, unsigned k)
         told += strcmp(s->told, kinds[k].told) == 0;
         if (s->told[0] && strcmp(s->told, kinds[k].told) != 0) { else_told = s->told; }
     }
-    if (kinds[k].ends == ENDS_OFF || kinds[k].ends == ENDS_WORDS) {
-        printf("| %s | %u | %u | %.2f, %.2f | %.2f | ", kinds[k].name, n, pulled, n ? sum / n : 0,
-            zero, off);
+    if (n == 0) { return 0; }
+    if (kinds[k].ends != ENDS_BOUND && kinds[k].ends != ENDS_WELL) {
+        printf(
+            "| %s | %u | %u | %.2f, %.2f | %.2f | ", kinds[k].name, n, pulled, sum / n, zero, off);
     } else {
         printf("| %s | %u | %u | – | – | ", kinds[k].name, n, pulled);
     }
@@ -235,17 +238,17 @@ static unsigned table(const struct seen *seen, unsigned times)
     unsigned bad = 0, pulled = 0, ran = 0;
     printf("| fault | times | while a current flowed | current zero, mean and most ms | drives "
            "off, most ms | most A | told as | wrong |\n|--|--|--|--|--|--|--|--|\n");
-    for (unsigned k = 0; k < kind_count; k++) { bad += row(seen, times, k); }
+    for (unsigned k = 0; k <= kind_count; k++) { bad += row(seen, times, k); }
     for (unsigned i = 0; i < times; i++) {
         pulled += seen[i].pulled;
         ran += seen[i].ran;
     }
-    printf("\n%u faults of %u kinds, %u with the gate open, %u while a current flowed: %u wrong\n",
-        times, kind_count, ran, pulled, bad);
+    printf("\n%u faults, %u with the gate open, %u while a current flowed: %u wrong\n", times, ran,
+        pulled, bad);
     return bad;
 }
 
-int stm_faults(struct machine *machine, unsigned times, uint64_t seed)
+int stm_faults(struct machine *machine, unsigned times, uint64_t seed, int stuck)
 {
     struct seen *seen = calloc(times, sizeof *seen);
     uint64_t *at = calloc(times, sizeof *at), base;
@@ -268,7 +271,7 @@ int stm_faults(struct machine *machine, unsigned times, uint64_t seed)
             fprintf(stderr, "stm32f405: the run ended by itself: %s\n", m->why);
             return 1;
         }
-        seen[i].kind = (uint8_t)(i % kind_count);
+        seen[i].kind = (uint8_t)(stuck ? kind_count : i % kind_count);
         in_child(&seen[i], (unsigned)draw(&seed));
     }
     bad = table(seen, times);

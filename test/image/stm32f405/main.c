@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* One run of an image, or what is asked for instead: see help[]. */
 #include "faults.h"
+#include "kinds.h"
 #include "show.h"
 
 #include <stdlib.h>
@@ -79,7 +80,7 @@ static const struct {
     int takes; /* a number */
 } option[] = {{"--rate", 1}, {"--ticks", 1}, {"--seed", 1}, {"--spoil", 1}, {"--faults", 1},
     {"--cuts", 1}, {"--speed", 1}, {"--say", 0}, {"--where", 0}, {"--jumps", 0}, {"--welded", 0},
-    {"--show", 0}, {"--help", 0}};
+    {"--show", 0}, {"--help", 0}, {"--stuck", 0}};
 enum {
     RATE,
     TICKS,
@@ -94,6 +95,7 @@ enum {
     WELDED,
     SHOW,
     HELP,
+    STUCK,
     OPTIONS
 };
 
@@ -113,6 +115,7 @@ static const char help[] =
     "Instead of a run:\n"
     "  --faults N     N faults, each from a random time; a table\n"
     "    --welded     and drive 0 stays enabled: it must be found\n"
+    "    --stuck      encoders stuck alone, with a stuck_time of 100 ms\n"
     "  --cuts N       the supply fails in N operations of a save into flash\n"
     "  --jumps        a program leaves memory; no IMAGE\n"
     "Exit status: 0 all well, 1 not, 2 bad usage. Nothing here was ever run on hardware.\n";
@@ -147,9 +150,13 @@ int main(int argc, char **argv)
     machine.speed = value[SPEED] > 0 ? (uint32_t)value[SPEED] : 1;
     if (loop_open(&machine, argv[i], (uint64_t)value[SEED]) < 0) { return 2; }
     loop.board.welded = value[WELDED] != 0;
+    if (value[STUCK]) {
+        loop.cfg.setting[loop.cfg.settings++] = (struct ref_setting){"stuck_time", KIND_STUCK_MS};
+    }
     if (value[FAULTS] || value[CUTS]) {
         bad = value[CUTS] ? stm_cuts(&machine, argv[i], (unsigned)value[CUTS])
-                          : stm_faults(&machine, (unsigned)value[FAULTS], (uint64_t)value[SEED]);
+                          : stm_faults(&machine, (unsigned)value[FAULTS], (uint64_t)value[SEED],
+                                value[STUCK] != 0);
         machine_close(&machine);
         return bad;
     }
