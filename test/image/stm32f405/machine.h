@@ -94,7 +94,8 @@ void machine_set_reg(struct machine *m, int id, uint32_t v);
 uint32_t machine_word(const struct machine *m, uint32_t address);
 /* n bytes of the image's memory, or NULL. */
 uint8_t *machine_at(struct machine *m, uint32_t address, uint32_t n);
-void machine_broke(struct machine *m, const char *format, ...);
+void machine_broke(struct machine *m, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 void machine_stop(struct machine *m, enum machine_end end);
 
 #endif
