@@ -35,6 +35,7 @@ struct output {
 static struct {
     struct posix_config cfg;
     struct exh_period T;
+    double T_s;
     struct sim_mass mass;
     struct sim_exo exo; /* if it has fingers, instead of the mass */
     unsigned drives;    /* there are, and ready: one bit each */
@@ -110,8 +111,7 @@ static void start_mass(void)
     if (c->bench) {
         sim_mass_bench(&sim.mass, &c->device, c->seed, c->wrong);
     } else {
-        sim_mass_fall(
-            &sim.mass, &c->device, c->seed, c->falls, (double)sim.T.num / (double)sim.T.den);
+        sim_mass_fall(&sim.mass, &c->device, c->seed, c->falls, sim.T_s);
     }
     sim.mass.fall.waits = c->wait;
     if (c->from_here) { sim_mass_put(&sim.mass, c->from_x_m, c->from_q_m); }
@@ -160,6 +160,7 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
         sim.T.den > (uint64_t)exh_board_info.rate_max_Hz * sim.T.num) {
         return -EXH_E_RATE;
     }
+    sim.T_s = (double)sim.T.num / (double)sim.T.den;
     sim.tick = 0;
     sim.now_s = 0;
     sim.head = sim.queued = 0;
@@ -206,14 +207,14 @@ static int plain(void)
 static double due_s(double now_s)
 {
     const struct sim_device *d = &sim.cfg.device;
-    return now_s + d->delay_tick * ((double)sim.T.num / (double)sim.T.den) + d->delay_s;
+    return now_s + d->delay_tick * sim.T_s + d->delay_s;
 }
 
 /* Of the plant, between any two of tick, output and servo sample. */
 static double longest_step_s(void)
 {
     const struct sim_device *d = &sim.cfg.device;
-    const double T_s = (double)sim.T.num / (double)sim.T.den;
+    const double T_s = sim.T_s;
     const double behind_s = due_s(0) - (double)sim_floor(due_s(0) / T_s) * T_s;
     double most_s = behind_s > T_s - behind_s ? behind_s : T_s - behind_s;
     if (most_s > 1 / d->servo_hz) { most_s = 1 / d->servo_hz; }

@@ -42,11 +42,10 @@ static inline double fall_next_s(const struct fall *f)
     return f->phase == FALL_DONE || fall_waits(f) ? 1e30 : f->until_s;
 }
 
-/* fall_step() would change nothing: the hand does not move, and no phase ends. */
-static inline int fall_idle(const struct fall *f, const struct plant *p, double t_s)
+/* fall_step() has something to do before the phase ends: to lift, or to look for the contact. */
+static inline int fall_busy(const struct fall *f)
 {
-    return t_s < f->until_s && f->phase != FALL_LIFT &&
-           (f->phase != FALL_FREE || f->contact_s >= 0 || p->q_m < 0);
+    return f->phase == FALL_LIFT || (f->phase == FALL_FREE && f->contact_s < 0);
 }
 
 /* Call it when the plant has reached time t: moves the hand, changes the phase when due. Returns 1

@@ -75,9 +75,10 @@ static void advance_bench(struct sim_mass *m, double until_s)
 static void advance_fall(struct sim_mass *m, double until_s)
 {
     const struct sim_device *d = &m->device;
-    double now_s = m->now_s, grid_s = sim_grid(now_s);
+    double now_s = m->now_s, grid_s = sim_grid(now_s), phase_s = fall_next_s(&m->fall);
+    int busy = fall_busy(&m->fall);
     while (now_s < until_s) {
-        const double next_s = earlier(earlier(until_s, m->servo_s), fall_next_s(&m->fall));
+        const double next_s = earlier(earlier(until_s, m->servo_s), phase_s);
         if (next_s > now_s) {
             const double to_s = sim_grid(next_s);
             advance_plant(m, to_s - grid_s);
@@ -85,11 +86,13 @@ static void advance_fall(struct sim_mass *m, double until_s)
             m->now_s = now_s = next_s;
         }
         sample(m);
-        if (!fall_idle(&m->fall, &m->plant, now_s) &&
-            fall_step(&m->fall, &m->plant, d, &m->rng, now_s)) {
+        if (!busy && now_s < phase_s) { continue; }
+        if (fall_step(&m->fall, &m->plant, d, &m->rng, now_s)) {
             /* The servo's clock is not ours: its phase is chance at each fall. */
             m->servo_s = now_s + sim_random_unit(&m->rng) / d->servo_hz;
         }
+        phase_s = fall_next_s(&m->fall);
+        busy = fall_busy(&m->fall);
     }
 }
 
