@@ -36,6 +36,8 @@ static struct {
     struct posix_config cfg;
     struct exh_period T;
     double T_s;
+    double load_A; /* what supply_raw is of; < 0: nothing yet */
+    int16_t supply_raw;
     struct sim_mass mass;
     struct sim_exo exo; /* if it has fingers, instead of the mass */
     unsigned drives;    /* there are, and ready: one bit each */
@@ -161,6 +163,7 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved)
         return -EXH_E_RATE;
     }
     sim.T_s = (double)sim.T.num / (double)sim.T.den;
+    sim.load_A = -1;
     sim.tick = 0;
     sim.now_s = 0;
     sim.head = sim.queued = 0;
@@ -341,6 +344,17 @@ static double load_A(void)
     return sum_A;
 }
 
+/* Worked out where the load has changed. */
+static int16_t supply_raw(void)
+{
+    const double now_A = load_A();
+    if (now_A != sim.load_A) {
+        sim.load_A = now_A;
+        sim.supply_raw = sim_supply_raw(&sim.cfg.device, now_A);
+    }
+    return sim.supply_raw;
+}
+
 /* What the simulated device, or its cards, show. */
 static int read_device(struct exh_drive_in *in)
 {
@@ -356,7 +370,7 @@ static int read_device(struct exh_drive_in *in)
     }
     in->din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS |
               EXH_DIN_DRIVE0 * sim.drives;
-    in->supply_raw = sim_supply_raw(&sim.cfg.device, load_A());
+    in->supply_raw = supply_raw();
     if (sim.cfg.let_go_s > 0 && sim.now_s >= sim.cfg.let_go_s) {
         in->din &= ~(uint32_t)EXH_DIN_DEADMAN;
     }
@@ -373,16 +387,19 @@ int exh_board_read_drive(struct exh_drive_in *in)
 }
 
 /* The device gets these codes, when its delay is over. */
-static int put_out(const struct exh_drive_out *from)
+static int put_out(const struct exh_drive_out *out)
 {
-    struct exh_drive_out wired = *from;
-    const struct exh_drive_out *out = &wired;
+    struct exh_drive_out wired;
     const struct sim_device *d = &sim.cfg.device;
     const unsigned axes = sim.exo.fingers ? sim.exo.fingers : 1;
     struct output *o = &sim.queue[(sim.head + sim.queued) % OUTPUTS_MAX];
 
     if (sim.queued == OUTPUTS_MAX) { return -EXH_E_IO; }
-    if (sim.cfg.wires_out) { sim.cfg.wires_out(&wired); }
+    if (sim.cfg.wires_out) {
+        wired = *out;
+        sim.cfg.wires_out(&wired);
+        out = &wired;
+    }
     o->at_s = due_s(sim.now_s);
     for (unsigned i = 0; i < EXH_FINGERS && axes >> i; i++) {
         o->ref_A[i] = sim_drive_A(d, out->dac_raw[i], out->enable >> i & 1);
