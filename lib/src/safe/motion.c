@@ -58,8 +58,10 @@ uint32_t exh_motion_step(
     const int32_t held = exh_clamp32(*vel_mps_q27, -most, most);
     const int fast = held != *vel_mps_q27;
     uint32_t due = 0;
-    *vel_mps_q27 = held;
-    if (fast) { *limits |= EXH_LIMIT_SPEED; }
+    if (fast) {
+        *vel_mps_q27 = held;
+        *limits |= EXH_LIMIT_SPEED;
+    }
     s->fast_ticks = run_of(s->fast_ticks, fast, cfg->speed_ticks);
     if (s->fast_ticks >= cfg->speed_ticks) { due = EXH_FAULT_SPEED; }
     if (cfg->stuck_ticks && s->stuck_ticks >= cfg->stuck_ticks) { due |= EXH_FAULT_STUCK; }
