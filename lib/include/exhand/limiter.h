@@ -26,9 +26,9 @@
  *
  * Rates hold by step: with steps late by a factor, efforts and positions change slower by it.
  *
- * Passivity (passivity.h) is left to the caller: it counts energy in counts of an encoder and in the
- * force that a drive's code holds, and a limiter knows neither. The wall is then outside, and its
- * force is a command of kind effort (examples/limiter/README.md has the order of the calls).
+ * Passivity (passivity.h) is left to the caller: it counts energy in counts of an encoder and in
+ * the force that a drive's code holds, and a limiter knows neither. The wall is then outside, and
+ * its force is a command of kind effort (examples/limiter/README.md has the order of the calls).
  *
  * This is software. It is no safety function, and it does not replace an emergency stop.
  */
