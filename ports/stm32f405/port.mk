@@ -2,7 +2,7 @@
 PORT_DESC      := bare-metal Cortex-M4 (STM32F405), no vendor library; BOX=real, or none for a \
                   loop-back that QEMU runs
 CROSS          ?= arm-none-eabi-
-PORT_PKGS      := gcc-arm-none-eabi
+PORT_PKGS      := gcc-arm-none-eabi libnewlib-arm-none-eabi
 # In closed loop with a simulated hand, on an emulated chip; other images run under QEMU.
 stm_emulated   := $(if $(filter real,$(or $(BOX),real)),$(filter drop guarded bilateral,$(SCENE)))
 PORT_QEMU      := $(if $(stm_emulated),,qemu-system-arm qemu-system-arm)
