@@ -50,7 +50,7 @@ check:
 	@$(timed) planted
 	@$(timed) mcdc
 	@$(timed) proof-ci
-	@$(timed) fuzz FUZZ_SECONDS=12 FUZZ_SEED=$(commits)
+	@$(timed) fuzz FUZZ_SECONDS=12 FUZZ_SEED=$(commits)000000000
 	@$(timed) options sanitized
 	@$(timed) demo > $(B)/demo.txt && tail -n 40 $(B)/demo.txt
 	@$(timed) images-built $(tried:%=variant-%) $(B)/posix/exhand-linux
