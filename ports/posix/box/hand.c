@@ -41,36 +41,10 @@ static struct {
 
 /* --- hooks --- */
 
-/* Sensors of the fingers in use, and those that their angles have a share of. */
-static uint32_t sensors_in_use(const struct bilateral_cfg *c)
-{
-    uint32_t mask = 0, before;
-    for (unsigned k = 0; k < c->n; k++) { mask |= c->finger[c->at[k]].sensors; }
-    do {
-        before = mask;
-        for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
-            for (unsigned k = 0; k < 2 && mask >> i & 1; k++) {
-                const uint8_t of = c->cal.sensor[i].of[k];
-                if (of < EXH_GLOVE_SENSORS) { mask |= UINT32_C(1) << of; }
-            }
-        }
-    } while (mask != before);
-    return mask;
-}
-
-/* Nobody looks at the other sensors, unless codes are recorded. */
-static void leave_out_sensors(const struct bilateral_run_cfg *c)
-{
-    struct bilateral_cfg *scene;
-    if (run.logged || c->board.log_put || c->blackbox || c->more) { return; }
-    (void)bilateral_memory(&scene);
-    sim_glove_reads(posix_glove(), sensors_in_use(scene));
-}
-
 static void start(const struct exh_scene *sc, struct exh_scene_board board)
 {
     run.r->T = board.T;
-    leave_out_sensors(run.cfg);
+    bilateral_leave_out(run.cfg);
     dumpfile_start(sc, board);
     if (run.cfg->more) { run.cfg->more->start(sc, board); }
 }

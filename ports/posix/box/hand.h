@@ -85,6 +85,9 @@ struct bilateral_run {
     int params, acked, refused; /* over the link */
 };
 
+/* Set up: sensors of no finger in use are not simulated, unless codes are recorded. */
+void bilateral_leave_out(const struct bilateral_run_cfg *c);
+
 /* The scene's parameters as a run has them from its start. 0 or -EXH_E… after a line on stderr. */
 int bilateral_stage(const struct bilateral_run_cfg *c);
 
