@@ -35,7 +35,7 @@ size:
 	$(Q)B=$(B) test/figures/size/limiter.sh || [ $$? = 3 ]
 	$(Q)MAKE="$(MAKE)" B=$(B) test/figures/size/size.sh
 
-## Print the limiter's code on a Cortex-M3, linked with a caller, and check that it is at most 3 KiB.
+## Print the limiter's code on a Cortex-M3, linked with a caller; it may be 3 KiB at most.
 .PHONY: limiter-size
 limiter-size:
 	$(Q)B=$(B) test/figures/size/limiter.sh

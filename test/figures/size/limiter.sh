@@ -26,7 +26,8 @@ mkdir -p "$b"
 lib/amalgamate.py "$b/exhand_limiter" limiter.h >"$b/said.txt"
 "${cross}gcc" -std=c99 -Os -mcpu=cortex-m3 -mthumb -ffreestanding -ffunction-sections \
     -fdata-sections -fmacro-prefix-map="$b/=" -I"$b" -nostdlib -static -Wl,--gc-sections \
-    -Wl,--build-id=none -Wl,-e,main -o "$b/limiter.elf" "$here/limiter.c" "$b/exhand_limiter.c" -lgcc
+    -Wl,--build-id=none -Wl,-e,main -o "$b/limiter.elf" "$here/limiter.c" \
+    "$b/exhand_limiter.c" -lgcc
 "${cross}nm" --size-sort -t d "$b/limiter.elf" | awk '$2 ~ /[rRtT]/ { print $1 + 0, $3 }'
 bytes=$("${cross}size" "$b/limiter.elf" | awk 'NR == 2 { print $1 + $2 }')
 echo "$bytes of $most: the limiter on a Cortex-M3, with all that it needs and its caller"
