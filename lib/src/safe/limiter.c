@@ -20,7 +20,7 @@ struct step {
 };
 
 /* |v|. */
-static uint32_t size_of(int32_t v) { return v < 0 ? (uint32_t)-(v + 1) + 1u : (uint32_t)v; }
+static uint32_t size_of(int32_t v) { return v < 0 ? (uint32_t)(-(v + 1)) + 1u : (uint32_t)v; }
 
 static int32_t least(int32_t a, int32_t b) { return a < b ? a : b; }
 

@@ -9,7 +9,7 @@
  * EVA: -eva-precision 1
  * PLANT: lib/src/safe/limiter.c: exh_wrap_add64(s->heat, e * e - cfg->heat_square) -> s->heat + e * e
  * PLANT: lib/src/safe/limiter_state.c: (s->share_q30 & (EXH_LIMITER_FULL_Q30 - 1)) + -> s->share_q30 +
- * PLANT: lib/src/safe/limiter.c: (uint32_t)-(v + 1) + 1u -> (uint32_t)-v
+ * PLANT: lib/src/safe/limiter.c: (uint32_t)(-(v + 1)) + 1u -> (uint32_t)(-v)
  * PLANT: lib/src/safe/limiter.c: exh_clamp32(s->sent, cfg->near_min, cfg->near_max) -> s->sent
  */
 #include "safe/limiter.c"
