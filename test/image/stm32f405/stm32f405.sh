@@ -127,7 +127,8 @@ for what in ${*:-drop guarded box spoil faults planted cuts jumps show}; do
     drop | guarded | box) rates "$what" ;;
     where | spoil | faults | planted | cuts | jumps | show) "$what" ;;
     *)
-        echo "usage: stm32f405.sh [drop|guarded|box|where|spoil|faults|planted|cuts|jumps|show]..." >&2
+        echo "usage: stm32f405.sh [drop|guarded|box|where|spoil|faults|planted|cuts|jumps|" \
+            "show]..." >&2
         exit 2 ;;
     esac
 done
