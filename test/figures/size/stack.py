@@ -9,8 +9,8 @@ exh_loop_hooks), so an indirect call is taken to reach any function whose addres
 of any object; but one in the log (exh_log_*, lib/src/run/log.c) only what a scene's own table or a
 tap's (struct exh_log_tap tap) or log_later's (struct exh_log_way here) points to: it calls the
 scene's state() and these, while the loop's hooks call the log; one in log_later.c only what a
-scene's own table points to; likewise one in the black box, which asks the scene to show its signals, and in
-pc104's and stm32f405's modbus, which asks the scene what is allowed; one in scene
+scene's own table points to; likewise one in the black box, which asks the scene to show its
+signals, and in pc104's and stm32f405's modbus, which asks the scene what is allowed; one in scene
 custom only what its slot points to; and one in calibrate_tick() only what its own table of
 steps points to. A function whose address is taken only by code is not seen: give it a table.
 Functions without a graph (assembler, the C library) count as nothing and are named.

@@ -3,7 +3,8 @@
 # The stm32f405 image under emulation, in closed loop: stm32f405.sh [WHAT...], of these (all):
 #   drop guarded box   that scene at 1, 2, 5 and 10 kHz, drop at 20, box at 3, too: the same bits as
 #                      on this host, tick by tick; what the mean, the 99th of 100 and the dearest
-#                      tick take. Where ticks are missed, once more with a processor four times as fast
+#                      tick take. Where ticks are missed, once more with a processor four times as
+#                      fast
 #   where              cycles by function: of the mean tick, and of the dearest
 #   spoil              a count more in one tick is found in that tick
 #   faults             faults from random times: drives off in time, each told by its name; all
