@@ -24,7 +24,8 @@ PORT_SRC        = $(addprefix ports/stm32f405/,start.c clock.c pins.c say.c uart
                   log.c link.c mem.c board.c $(box_$(BOX)) \
                   $(if $(SCENE_MAIN),,$(if $(SCENE_ROM),scene_rom.c, \
                   scene_full.c slot.c modbus.c))) \
-                  $(if $(SCENE_MAIN)$(SCENE_ROM),,$(addprefix lib/src/run/,log.c log_later.c) $(crc_$(BOX)))
+                  $(if $(SCENE_MAIN)$(SCENE_ROM),,$(addprefix lib/src/run/,log.c log_later.c) \
+                  $(crc_$(BOX)))
 PORT_CFLAGS    := -mcpu=cortex-m4 -mthumb -mfloat-abi=soft -ffreestanding
 PORT_LDFLAGS   := -mcpu=cortex-m4 -mthumb -nostdlib -static -Wl,--build-id=none
 PORT_LDSCRIPT  := ldscripts/stm32f405.ld
