@@ -16,9 +16,8 @@
 #define RESET_CODE 0xAu
 #define SILENT_MAX 3u
 
-static uint16_t written[EXH_FINGERS]; /* codes of ours in the D/A */
-static uint8_t asked;                 /* 1 + the channel that the next frame brings back */
-static uint8_t turn, wrong;
+static uint8_t asked; /* the next frame brings SPICONFIG back */
+static uint8_t wrong;
 static volatile uint8_t cleared; /* CLR is low */
 
 static void set_clock(uint32_t fraction)
@@ -83,12 +82,13 @@ static void open_spi(void)
     (void)REG(BASE_SPI2, SPI_DR); /* nothing of before is taken for an answer */
 }
 
-/* Zero is in every channel before one is on, and is read back. CLR goes up for that, while all
- * channels are off: it may keep codes out. Its edge makes them zero once more. */
+/* Zero is in every channel before one is on. CLR goes up for that, while all channels are off: it
+ * may keep codes out. Its edge makes them zero once more. Codes cannot be read: a sibling of this
+ * part reads them as 0 (TI, E2E thread 1235803). Configurations can (TI SLASER3A, "SPICONFIG"). */
 static int set_up(void)
 {
-    uint32_t zero = 0;
-    int bad = 0;
+    uint32_t gen = 0;
+    int bad;
     (void)put(DA_GENCONFIG, DA_GEN_REF);
     (void)put(DA_SYNCCONFIG, DA_SYNC_ALL);
     (void)put(DA_DACRANGE0, DA_RANGE_10V);
@@ -97,10 +97,7 @@ static int set_up(void)
     for (unsigned i = 0; i < CHANNELS; i++) { (void)put(DA_DAC(i), DA_ZERO); }
     (void)put(DA_TRIGGER, DA_LDAC);
     PIN_LOW(DA_CLR);
-    for (unsigned i = 0; i < EXH_FINGERS; i++) {
-        written[i] = DA_ZERO;
-        bad |= get(DA_DAC(i), &zero) < 0 || (zero & 0xFFFFu) != DA_ZERO;
-    }
+    bad = get(DA_GENCONFIG, &gen) < 0 || (gen & 0xFFFFu) != DA_GEN_REF;
     if (!bad) { (void)put(DA_DACPWDWN, DA_ON_0_TO_4); }
     return bad ? -EXH_E_ABSENT : 0;
 }
@@ -111,7 +108,7 @@ int stm_da_open(void)
     PIN_LOW(DA_CLR);
     PIN_HIGH(DA_SYNC);
     cleared = 1;
-    asked = wrong = turn = 0;
+    asked = wrong = 0;
     open_spi();
     (void)put(DA_TRIGGER, RESET_CODE);
     stm_delay_us(5000);
@@ -120,13 +117,12 @@ int stm_da_open(void)
     return set_up();
 }
 
-/* What the frame before the first of this tick had asked for comes back with it. */
+/* What the last frame of the tick before asked for. A D/A that is gone, or was reset, has another
+ * SPICONFIG. */
 static void compare(uint32_t back)
 {
-    if (asked == 0) { return; }
-    wrong = (uint8_t)((back & 0xFFFFu) == written[asked - 1] ? 0
-                      : wrong < SILENT_MAX                   ? wrong + 1
-                                                             : wrong);
+    if (!asked) { return; }
+    wrong = (uint8_t)((back & 0xFFFFu) == DA_SPI_RUN ? 0 : wrong < SILENT_MAX ? wrong + 1 : wrong);
 }
 
 int stm_da_silent(void) { return wrong == SILENT_MAX; }
@@ -141,8 +137,7 @@ int stm_da_write(const uint16_t raw[EXH_FINGERS])
         PIN_HIGH(DA_CLR);
     }
     for (unsigned i = 0; i < EXH_FINGERS; i++) {
-        const uint16_t code = stm_da_code(raw[i]);
-        const uint32_t out = DA_DAC(i) << 16 | code;
+        const uint32_t out = DA_DAC(i) << 16 | stm_da_code(raw[i]);
         uint32_t back;
         if (i == 0) {
             err |= frame(out, &back);
@@ -151,14 +146,12 @@ int stm_da_write(const uint16_t raw[EXH_FINGERS])
         } else {
             err |= write(out);
         }
-        written[i] = code;
     }
     err |= write(DA_TRIGGER << 16 | DA_LDAC);
-    err |= write(DA_READ | DA_DAC(turn) << 16);
+    err |= write(DA_READ | DA_SPICONFIG << 16);
     (void)REG(BASE_SPI2, SPI_DR); /* what nobody has read */
     set_clock(QUARTER);
-    asked = (uint8_t)(turn + 1u);
-    turn = (uint8_t)(turn + 1u == EXH_FINGERS ? 0 : turn + 1u);
+    asked = 1;
     return err ? -EXH_E_IO : 0;
 }
 

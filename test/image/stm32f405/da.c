@@ -61,6 +61,12 @@ static void write_reg(struct da *d, unsigned at, uint16_t v)
     }
 }
 
+/* Ranges, trigger and codes are for writing only, as TI says of a sibling (E2E thread 1235803). */
+static uint16_t read_reg(const struct da *d, unsigned at)
+{
+    return at <= DACPWDWN ? d->reg[at] : 0;
+}
+
 void da_sync(struct da *d, int level)
 {
     if (!level) {
@@ -79,7 +85,7 @@ void da_sync(struct da *d, int level)
     }
     d->frames++;
     if (d->frame & READ) {
-        d->next = (d->frame & 0xFF0000u) | d->reg[d->frame >> 16 & 31];
+        d->next = (d->frame & 0xFF0000u) | read_reg(d, d->frame >> 16 & 31);
     } else {
         write_reg(d, d->frame >> 16 & 31, (uint16_t)d->frame);
     }

@@ -555,18 +555,28 @@ TEST(the_da_is_at_ground_until_it_is_set_up_and_acts_together)
     CHECK_EQ_I64(da_uV(&da, 0), 0);
 }
 
-TEST(the_da_answers_in_the_frame_behind)
+static uint32_t answer(void)
 {
     uint32_t v = 0;
-    da_power_on(&da);
-    frame(0x810000u);
     da_sync(&da, 0);
     for (unsigned i = 0; i < 3; i++) {
         v = v << 8 | da_answer(&da);
         da_byte(&da, 0);
     }
     da_sync(&da, 1);
-    CHECK_EQ_I64(v, 0x810000u | 0x298u << 2);
+    return v;
+}
+
+TEST(the_da_answers_in_the_frame_behind)
+{
+    da_power_on(&da);
+    frame(0x810000u);
+    CHECK_EQ_I64(answer(), 0x810000u | 0x298u << 2);
+    frame(0x830000u);
+    CHECK_EQ_I64(answer(), 0x830AA4u);
+    frame(0x14FFFFu);
+    frame(0x940000u);
+    CHECK_EQ_I64(answer(), 0x940000u); /* codes cannot be read */
     da_sync(&da, 0);
     da_byte(&da, 1);
     da_sync(&da, 1);
