@@ -2,66 +2,15 @@
 /* The limiter: one step of each kind with everything watched, and what it sends where nothing
  * limits. */
 #include "bench.h"
+#include "limiter_ops.h"
 
-#include "exhand/error.h"
-#include "exhand/limiter.h"
-
-#define UNIT  1000000
 #define CASES 20000
-
-static struct exh_limiter_cfg cfg;
-static struct exh_limiter state;
-static struct exh_limiter_in in;
-static struct exh_limiter_out out;
-
-static void step(int32_t command, int32_t pos, int32_t vel)
-{
-    in.now_us += 1000;
-    in.command = command;
-    in.pos = pos;
-    in.vel = vel;
-    exh_limiter_step(&state, &cfg, &in, &out);
-    bench_sink = out.send;
-}
-
-/* Set up at 1 kHz, and armed. */
-static void start(int32_t kind)
-{
-    const struct exh_limiter_par par = {kind, EXH_LIMITER_USE_ALL, UNIT, 5 * UNIT, 100000, 100000,
-        50, 15, -UNIT, UNIT, UNIT / 10, UNIT, 10000, UNIT / 10, EXH_LIMITER_APPROACH,
-        EXH_LIMITER_LIMP, 50000, 20000, 20 * UNIT, 10, 4 * UNIT, 1000, 500, 2 * UNIT, 5 * UNIT,
-        3000, 0, 1234567, 123456, UNIT / 10};
-    static const struct exh_limiter none;
-    static const struct exh_limiter_in rest;
-    bench_seed();
-    state = none;
-    in = rest;
-    EXH_ASSERT(exh_limiter_setup(&cfg, &par) == 0);
-    step(0, 0, 0);
-    in.run = in.deadman = 1;
-    for (int32_t i = 0; i < 100; i++) { step(0, -i * 100, 0); }
-    EXH_ASSERT(out.state == EXH_STATE_RUN);
-}
-
-static void start_effort(void) { start(EXH_LIMITER_EFFORT); }
-static void start_position(void) { start(EXH_LIMITER_POSITION); }
-static void start_wall(void) { start(EXH_LIMITER_WALL); }
-
-/* Up and down by more than the slew; to and fro; in and out. */
-static void op_effort(uint32_t i)
-{
-    step((int32_t)(i & 255) * 12000 - 3 * UNIT / 2, (int32_t)(i & 63) * 100, (int32_t)i);
-}
-static void op_position(uint32_t i)
-{
-    step(i & 256 ? UNIT / 2 : -UNIT / 3, (int32_t)(i & 63) * 100, (int32_t)i);
-}
-static void op_wall(uint32_t i) { step(0, (int32_t)(i & 511) * 4000 - UNIT, (int32_t)i); }
 
 /* An effort that nothing limits is sent as it is asked for. */
 static void error_effort(struct error *e)
 {
     int32_t last = 0;
+    bench_seed();
     start_effort();
     for (int32_t i = 0; i < CASES; i++) {
         const int32_t next = exh_clamp32(last + bench_in(-100000, 100000), -UNIT, UNIT);
@@ -75,6 +24,7 @@ static void error_effort(struct error *e)
 /* A position is reached. */
 static void error_position(struct error *e)
 {
+    bench_seed();
     start_position();
     for (int32_t i = 0; i < CASES / 500; i++) {
         const int32_t want = bench_in(-UNIT / 4, UNIT / 4);
@@ -86,6 +36,7 @@ static void error_position(struct error *e)
 /* F = b v + k x + F0, where neither size nor slew limits it. */
 static void error_wall(struct error *e)
 {
+    bench_seed();
     start_wall();
     for (int32_t i = 0; i < CASES; i++) {
         const int32_t x = bench_in(0, 70000), v = bench_in(-70000, 70000);

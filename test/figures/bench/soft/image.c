@@ -384,6 +384,7 @@ int main(void)
     inputs();
     none = counted(empty);
     for (unsigned k = 0; k < sizeof ours / sizeof ours[0]; k++) { count(&ours[k], none); }
+    for (unsigned k = 0; k < 3; k++) { count(&soft_limiter[k], none); }
     count(&soft_twins, none);
     count(&soft_bare, none);
 #ifdef PEERS_CMSIS

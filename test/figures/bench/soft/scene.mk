@@ -2,8 +2,8 @@
 # An image that counts what kernels cost on a small CPU: ours, others' integer code, and the same in
 # double and float. CMSIS: CMSIS-DSP's sources, if there are any.
 SCENE_DESC := kernels counted on a small CPU
-SCENE_MAIN := $(addprefix test/figures/bench/,soft/image.c soft/others.c idsp_twin.c plain.c \
-              law.c tick.c) $(if $(CMSIS),test/figures/bench/soft/cmsis.c)
+SCENE_MAIN := $(addprefix test/figures/bench/,soft/image.c soft/others.c soft/limiter.c \
+              idsp_twin.c plain.c law.c tick.c) $(if $(CMSIS),test/figures/bench/soft/cmsis.c)
 SCENE_SRC  :=
 SCENE_ROM  := yes
 SCENE_CFLAGS = -Itest -Itest/figures/bench $(if $(CMSIS),-DPEERS_CMSIS -isystem $(CMSIS)/Include \

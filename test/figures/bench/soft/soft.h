@@ -22,6 +22,6 @@ struct soft_group {
     unsigned n;
     void (*start)(void);
 };
-extern const struct soft_group soft_twins, soft_bare, soft_cmsis;
+extern const struct soft_group soft_twins, soft_bare, soft_cmsis, soft_limiter[3];
 
 #endif
