@@ -99,6 +99,8 @@ void check_note(const char *fmt, ...) CHECK_PRINTF(1, 2);
  * cases / slower. Each case has its own generator state, so that one case can be
  * run again alone. 0 ends the loop and makes the next one start afresh. */
 int check_case(uint32_t slower);
+/* Whether this process has all cases. A part of them need not come to each state. */
+int check_has_all(void);
 
 /* The generator, splitmix64, of the case that runs. */
 uint64_t check_u64(void);

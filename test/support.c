@@ -358,6 +358,8 @@ static uint64_t next_case(void)
     return run.next == 0 ? run.part : run.next - 1 + run.parts;
 }
 
+int check_has_all(void) { return run.parts == 1; }
+
 int check_case(uint32_t slower)
 {
     const uint64_t share = run.cases / slower, n = share > 0 ? share : 1;
