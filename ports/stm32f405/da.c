@@ -9,7 +9,7 @@
 
 #include "exhand/error.h"
 
-#define POLLS      100u /* ten times what a byte takes: 27 waits are not to cost a watchdog */
+#define POLLS      100u /* ten times what a byte takes: 28 waits are not to cost a watchdog */
 #define CHANNELS   8u
 #define QUARTER    1u /* 42 MHz / 4: 10.5 MHz where an answer comes back */
 #define HALF       0u /* 21 MHz of the 50 that its data sheet allows to write */
@@ -60,6 +60,7 @@ static int frame(uint32_t out, uint32_t *back)
         err |= comes(SPI_SR_RXNE, SPI_SR_RXNE);
         in = in << 8 | (REG(BASE_SPI2, SPI_DR) & 0xFFu);
     }
+    err |= comes(SPI_SR_BSY, 0);
     PIN_HIGH(DA_SYNC);
     if (back) { *back = in; }
     return err;
@@ -149,7 +150,8 @@ int stm_da_write(const uint16_t raw[EXH_FINGERS])
     }
     err |= write(DA_TRIGGER << 16 | DA_LDAC);
     err |= write(DA_READ | DA_SPICONFIG << 16);
-    (void)REG(BASE_SPI2, SPI_DR); /* what nobody has read */
+    (void)REG(BASE_SPI2, SPI_DR); /* what nobody has read; */
+    (void)REG(BASE_SPI2, SPI_SR); /* behind it, this ends the overrun, or the next byte is lost */
     set_clock(QUARTER);
     asked = 1;
     return err ? -EXH_E_IO : 0;

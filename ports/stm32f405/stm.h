@@ -94,7 +94,7 @@ int stm_da_open(void); /* outputs zero, cleared by the pin: 0, -EXH_E_ABSENT */
 /* Offset binary of the library (3249/V), all at once. 0, -EXH_E_IO: SPI stands still. */
 int stm_da_write(const uint16_t raw[EXH_FINGERS]);
 void stm_da_clear(void); /* outputs zero by the pin: any context */
-int stm_da_silent(void); /* 1: what is read back is not what was written, three times on end */
+int stm_da_silent(void); /* 1: three wrong answers in a row */
 
 /* --- adc.c: monitors, supply, glove --- */
 int stm_adc_open(void);  /* 0, -EXH_E_ABSENT: it does not convert, -EXH_E_IO: its DMA failed */

@@ -61,8 +61,8 @@ attacks-image: all
 	@$(attacks_image) $(ARGS)
 attacks_image = $(call attacks_run,--only image$(comma)image-key$(comma)image-com2)
 attacks-image-short:
-	@$(attacks_image) > $(B)/attacks.txt || { cat $(B)/attacks.txt; exit 1; }
-	@tail -n 1 $(B)/attacks.txt
+	@$(attacks_image) > $(B)/attacks-image.txt || { cat $(B)/attacks-image.txt; exit 1; }
+	@tail -n 1 $(B)/attacks-image.txt
 
 # The host program for an emulated Linux, with either libgpiod in it.
 gpio_src := $(sort $(filter-out $(by_modbus),$(cli_src)) ports/posix/slave/none.c \

@@ -37,7 +37,6 @@ struct exh_params {
     uint16_t led[2];          /* ids of slewed rows that gains.h moves while locked; 0: none */
     uint32_t count;           /* exh_signal_count() */
     uint32_t sum, passed, at; /* of exh_params_verify(): sum of all, sum so far, next index */
-    uint32_t table_crc;       /* exh_signal_crc() by who saves in a tick; 0: a save computes it */
 };
 
 #define EXH_PARAMS_VERSION 1 /* version of the image */

@@ -91,8 +91,9 @@ int32_t exh_velocity_pole_step(
 void exh_velocity_pole_serialize(struct exh_bytes *c, struct exh_velocity_pole *s);
 
 /* --- foaw: least-squares fit over the longest window in which all samples stay within tol counts
- * of the fitted slope through the newest sample; at least n = 1. The test is exact in integers. It
- * always tries all windows, so the cost does not depend on the signal. --- */
+ * of the fitted slope through the newest sample; at least n = 1. The test is exact in integers.
+ * The first window that does not fit ends the search. So the cost depends on the signal, and is
+ * highest where all windows fit. --- */
 /* Set-up of FOAW, shared as the window's. */
 struct exh_velocity_foaw_cfg {
     struct exh_gain gain[EXH_VELOCITY_N]; /* [n-1]: m/s q27 per unit of n*S0-2*S1 */

@@ -290,12 +290,11 @@ static void head_bytes(struct exh_bytes *c, struct head *h)
     exh_bytes_u32(c, &h->table_crc);
 }
 
-int32_t exh_params_save(const struct exh_params *p, void *buf, size_t cap_B)
+int32_t exh_params_save_by(const struct exh_params *p, uint32_t table_crc, void *buf, size_t cap_B)
 {
-    struct head h = {IMAGE_MAGIC, p->table_crc, EXH_PARAMS_VERSION, 0};
+    struct head h = {IMAGE_MAGIC, table_crc, EXH_PARAMS_VERSION, 0};
     struct exh_bytes c = exh_bytes_writer(buf, cap_B);
     uint32_t crc;
-    if (h.table_crc == 0) { h.table_crc = exh_signal_crc(p->table); }
     EXH_ASSERT(p->count <= UINT16_MAX);
     h.count = (uint16_t)p->count;
     head_bytes(&c, &h);
@@ -303,6 +302,11 @@ int32_t exh_params_save(const struct exh_params *p, void *buf, size_t cap_B)
     crc = exh_bytes_ok(&c) ? exh_crc32(0, buf, c.at) : 0;
     exh_bytes_u32(&c, &crc);
     return exh_bytes_ok(&c) ? (int32_t)c.at : -EXH_E_SHORT;
+}
+
+int32_t exh_params_save(const struct exh_params *p, void *buf, size_t cap_B)
+{
+    return exh_params_save_by(p, exh_signal_crc(p->table), buf, cap_B);
 }
 
 /* Checks head, length and CRC: 0, or the error. */

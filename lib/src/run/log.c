@@ -7,6 +7,7 @@
 #include "exhand/exhand.h"
 
 #include "../num/pack.h"
+#include "../num/params_write.h"
 
 static const struct exh_scene *scene;
 static uint8_t buf[EXH_LOG_RECORD_B];
@@ -20,6 +21,7 @@ static int alone;
 static uint8_t type_now; /* of the record in buf */
 static uint32_t tick_now;
 static struct exh_record_header header;
+static uint32_t table_crc; /* of the parameters; a header has no time for it */
 
 /* Outputs one record, whole or not at all. Counts lost records. */
 static int put(struct exh_bytes *c)
@@ -64,7 +66,9 @@ static struct exh_bytes begin(uint8_t type, uint32_t tick)
     lost_here += found_no_room;
     type_now = type;
     tick_now = tick;
-    if (lost_here > 0 && !silent) { (void)put_count(EXH_RECORD_DROPPED, tick, lost_here); }
+    if (lost_here > 0 && !silent && !(way && way->waits())) {
+        (void)put_count(EXH_RECORD_DROPPED, tick, lost_here);
+    }
     c = exh_bytes_writer(buf, sizeof buf);
     exh_record_begin(&c, type, seq, tick);
     return c;
@@ -115,7 +119,7 @@ void exh_log_header_serialize(struct exh_bytes *c)
     exh_record_header_serialize(c, &h);
     if (scene->params) {
         const uint32_t room = c->at < c->cap ? c->cap - c->at : 0;
-        const int32_t n = exh_params_save(scene->params, c->p + c->at, room);
+        const int32_t n = exh_params_save_by(scene->params, table_crc, c->p + c->at, room);
         EXH_ASSERT(n > 0);
         c->at += (uint32_t)n;
     }
@@ -146,6 +150,10 @@ void exh_log_start(const struct exh_scene *sc, struct exh_scene_board board)
 {
     static const struct exh_record_header none;
 
+    if (way) { /* what a log before this one has left */
+        way->step(1);
+        (void)way->lost();
+    }
     scene = sc;
     seq = lost = lost_here = 0;
     header = none;
@@ -157,7 +165,7 @@ void exh_log_start(const struct exh_scene *sc, struct exh_scene_board board)
     header.fingers = sc->fingers;
     copy_name(header.scene, sc->name);
     copy_name(header.board, exh_board_info.name);
-    if (sc->params) { sc->params->table_crc = exh_signal_crc(sc->params->table); }
+    table_crc = sc->params ? exh_signal_crc(sc->params->table) : 0;
     put_header(0);
     keyframe(0);
 }

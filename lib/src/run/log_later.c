@@ -168,9 +168,11 @@ static uint32_t lost(void)
     return n;
 }
 
+static int waits(void) { return stage != IDLE; }
+
 void exh_log_later(const struct exh_log_later *memory)
 {
-    static const struct exh_log_way here = {put, begin, step, lost};
+    static const struct exh_log_way here = {put, begin, step, lost, waits};
     mem = memory;
     stage = IDLE;
     no_room = 0;

@@ -68,8 +68,8 @@ static void spill(const char *path, const struct text *t, size_t len)
     CHECK_EQ_I64(fclose(f), 0);
 }
 
-/* Three falls as the host program runs them. */
-static void run_three_falls(const char *path)
+/* Three falls as the host program runs them; put NULL: into a file. */
+static void run_three_falls_by(const char *path, int (*put)(const void *rec, size_t len_B))
 {
     struct run_cfg c;
     struct run r;
@@ -80,12 +80,15 @@ static void run_three_falls(const char *path)
     c.board = posix_config_default();
     c.board.falls = 3;
     c.board.log = fopen(path, "wb");
+    c.board.log_put = put;
     CHECK(c.board.log != NULL, "%s", path);
     CHECK_EQ_I64(run_drop(&c, &r), 0);
     CHECK_EQ_I64(fclose(c.board.log), 0);
     CHECK(r.log.falls == 3, "%zu falls", r.log.falls);
     run_free(&r);
 }
+
+static void run_three_falls(const char *path) { run_three_falls_by(path, NULL); }
 
 TEST(a_whole_log_reads_and_replays)
 {
@@ -131,6 +134,55 @@ TEST(a_log_that_is_spread_over_ticks_has_the_same_bytes)
     }
     CHECK_EQ_I64(replay(path, NULL), 0);
     free(once.p);
+    remove(path);
+}
+
+/* A board that refuses `refuse` records from the first keyframe in the run on. */
+static struct {
+    uint32_t refuse, left, next, gaps, reported, ended;
+} full;
+
+static int full_put(const void *rec, size_t len_B)
+{
+    struct exh_record r;
+    struct exh_bytes c;
+    uint32_t n = 0;
+    CHECK(exh_record_decode(rec, (uint32_t)len_B, &r) > 0, "no record");
+    if (r.type == EXH_RECORD_KEYFRAME && r.tick > 0 && full.refuse > 0) {
+        full.left = full.refuse;
+        full.refuse = 0;
+    }
+    if (full.left > 0) {
+        full.left--;
+        return 0;
+    }
+    full.gaps += r.seq - full.next;
+    full.next = r.seq + 1;
+    c = exh_bytes_reader(r.payload, r.len_B);
+    if (r.type == EXH_RECORD_DROPPED || r.type == EXH_RECORD_END) { exh_bytes_u32(&c, &n); }
+    full.reported += r.type == EXH_RECORD_DROPPED ? n : 0;
+    full.ended += r.type == EXH_RECORD_END ? n : 0;
+    return 1;
+}
+
+TEST(each_record_that_a_full_board_refuses_is_reported)
+{
+    static uint8_t record[EXH_LOG_RECORD_B], held[8192];
+    static uint64_t copy[1024];
+    const struct exh_log_later memory = {record, (uint8_t *)copy, held, sizeof copy, sizeof held};
+    const char *path = log_path();
+    for (uint32_t n = 1; n < 30; n += 4) {
+        for (unsigned spread = 0; spread < 2; spread++) {
+            memset(&full, 0, sizeof full);
+            full.refuse = n;
+            exh_log_later(spread ? &memory : NULL);
+            run_three_falls_by(path, full_put);
+            exh_log_later(NULL);
+            CHECK(full.gaps > 0 && full.reported == full.gaps && full.ended == full.gaps,
+                "%" PRIu32 " refused, spread %u: %" PRIu32 " gaps, %" PRIu32 " reported", n, spread,
+                full.gaps, full.reported);
+        }
+    }
     remove(path);
 }
 
@@ -259,6 +311,6 @@ TEST(a_refused_keyframe_changes_nothing)
 }
 
 TEST_MAIN("log", a_whole_log_reads_and_replays, a_log_that_is_spread_over_ticks_has_the_same_bytes,
-    a_damaged_record_is_skipped_and_counted, a_cut_log_is_reported,
-    a_keyframe_with_forged_parameters_is_refused, a_keyframe_with_a_forged_state_is_harmless,
-    a_refused_keyframe_changes_nothing);
+    each_record_that_a_full_board_refuses_is_reported, a_damaged_record_is_skipped_and_counted,
+    a_cut_log_is_reported, a_keyframe_with_forged_parameters_is_refused,
+    a_keyframe_with_a_forged_state_is_harmless, a_refused_keyframe_changes_nothing);

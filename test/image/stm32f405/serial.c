@@ -38,9 +38,12 @@ static void spi_done(struct stm *s, unsigned n)
     if (stm_outside.spi) {
         stm_outside.spi(stm_outside.ctx, n, p->shift, p->r[CR1] & DFF ? 16 : 8);
     }
-    if (p->r[SPI_SR] & RXNE) { p->r[SPI_SR] |= OVR; }
-    p->r[SPI_SR] |= RXNE;
-    p->r[SPI_DR] = p->back;
+    if (p->r[SPI_SR] & (RXNE | OVR)) { /* it is lost, and so is what follows */
+        p->r[SPI_SR] |= OVR;
+    } else {
+        p->r[SPI_SR] |= RXNE;
+        p->r[SPI_DR] = p->back;
+    }
     if (p->r[CR2] & 1) { (void)stm_dma_request(s, STM_REQ_SPI_RX + n); }
     if (p->waits) {
         p->waits = 0;
@@ -65,13 +68,25 @@ uint64_t stm_spi_next(const struct stm *s)
     return next;
 }
 
+/* An overrun ends by a reading of DR and one of SR behind it (RM0402, "Overrun flag"). */
+static uint32_t spi_status(struct stm_spi *p)
+{
+    const uint32_t is =
+        (p->r[SPI_SR] & (RXNE | OVR)) | (p->waits ? 0 : TXE) | (p->shifts ? BSY : 0);
+    if (p->taken) { p->r[SPI_SR] &= ~OVR; }
+    p->taken = 0;
+    return is;
+}
+
 uint32_t stm_spi_read(struct stm *s, unsigned n, uint32_t off)
 {
     struct stm_spi *p = &s->spi[n];
     switch (off >> 2) {
-    case SPI_SR:
-        return (p->r[SPI_SR] & (RXNE | OVR)) | (p->waits ? 0 : TXE) | (p->shifts ? BSY : 0);
-    case SPI_DR: p->r[SPI_SR] &= ~RXNE; return p->r[SPI_DR];
+    case SPI_SR: return spi_status(p);
+    case SPI_DR:
+        p->r[SPI_SR] &= ~RXNE;
+        p->taken = 1;
+        return p->r[SPI_DR];
     case 4: return 7; /* CRC polynomial, as a reset leaves it */
     default: return off < 36 ? p->r[off >> 2] : 0;
     }

@@ -94,8 +94,8 @@ struct stm_dma {
 struct stm_spi {
     uint32_t r[9];
     uint64_t done_at;
-    uint16_t shift, next, back; /* on the line, behind it, what comes back */
-    uint8_t shifts, waits;
+    uint16_t shift, next, back;   /* on the line, behind it, what comes back */
+    uint8_t shifts, waits, taken; /* taken: DR was read, SR not yet behind it */
     uint64_t words;
 };
 

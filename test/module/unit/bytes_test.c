@@ -7,6 +7,7 @@
 /* The one that images link which have 4 KiB to spare. */
 #define exh_crc32 crc32_by_table
 uint32_t crc32_by_table(uint32_t crc, const void *buf, size_t len_B);
+#include "../../../lib/src/num/pack.h"
 #include "../../../lib/src/run/crc_table.c"
 #undef exh_crc32
 
@@ -212,6 +213,38 @@ TEST(many_at_once_are_as_many_calls)
     }
 }
 
+/* Three fields from place `at`, packed or one by one. */
+static struct exh_bytes packed(struct exh_bytes c, unsigned how, uint8_t bytes[3], int16_t words[3])
+{
+    for (unsigned i = 0; how == 0 && i < 3; i++) { exh_bytes_i16(&c, &words[i]); }
+    for (unsigned i = 0; how == 1 && i < 3; i++) {
+        uint8_t byte = bytes[i];
+        exh_bytes_u8(&c, &byte);
+    }
+    if (how == 2) { pack_i16s(&c, words, 3); }
+    if (how == 3) { pack_bytes(&c, bytes, 3); }
+    return c;
+}
+
+TEST(packed_fields_are_as_many_calls)
+{
+    static const enum exh_bytes_mode mode[] = {EXH_BYTES_WRITE, EXH_BYTES_READ, EXH_BYTES_MEASURE};
+    for (unsigned i = 0; i < 3 * 10 * 12 * 2; i++) {
+        const uint32_t at = i / 60 == 11 ? UINT32_MAX - 2 : i / 60, cap_B = i / 6 % 10;
+        uint8_t buf[2][10], bytes[3] = {1, 0xFE, 3};
+        int16_t words[2][3] = {{-2, 0x1234, INT16_MIN}, {-2, 0x1234, INT16_MIN}};
+        struct exh_bytes c[2];
+        memset(buf, 0x5A, sizeof buf);
+        for (unsigned k = 0; k < 2; k++) {
+            const struct exh_bytes from = {buf[k], cap_B, at, (uint8_t)mode[i / 2 % 3]};
+            c[k] = packed(from, 2 * k + i % 2, bytes, words[k]);
+        }
+        CHECK(c[0].at == c[1].at && memcmp(buf[0], buf[1], sizeof buf[0]) == 0 &&
+                  memcmp(words[0], words[1], sizeof words[0]) == 0,
+            "case %u", i);
+    }
+}
+
 /* The polynomial's definition, bit by bit. */
 static uint32_t crc_bitwise(const uint8_t *p, size_t n)
 {
@@ -255,7 +288,8 @@ TEST(the_largest_buffer)
     CHECK_EQ_I64(c.cap, UINT32_MAX - 2);
 }
 
-TEST_MAIN("unit/bytes", layout_is_little_endian, round_trip_of_extremes_and_random,
-    measuring_needs_no_buffer, measuring_leaves_a_buffer, short_buffers_at_every_length,
-    short_reads_are_zeros, a_failed_cursor_stays_failed, many_at_once_are_as_many_calls,
-    crc_check_value_and_definition, counting_does_not_wrap, the_largest_buffer);
+TEST_MAIN("unit/bytes", packed_fields_are_as_many_calls, layout_is_little_endian,
+    round_trip_of_extremes_and_random, measuring_needs_no_buffer, measuring_leaves_a_buffer,
+    short_buffers_at_every_length, short_reads_are_zeros, a_failed_cursor_stays_failed,
+    many_at_once_are_as_many_calls, crc_check_value_and_definition, counting_does_not_wrap,
+    the_largest_buffer);

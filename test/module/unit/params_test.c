@@ -210,6 +210,30 @@ TEST(keyframe_in_mid_way)
     }
 }
 
+/* The same bytes with room to spare, with just enough, and counted; with less it fails. */
+TEST(keyframe_wherever_it_fits)
+{
+    const uint32_t len_B = 4 * (VALUES + 3);
+    uint8_t whole[8 * VALUES], b[8 * VALUES];
+    struct exh_bytes c = exh_bytes_writer(whole, sizeof whole);
+    start(2);
+    exh_params_serialize(&c, &p);
+    for (uint32_t cap_B = 0; cap_B <= sizeof b; cap_B++) {
+        memset(b, 0xAA, sizeof b);
+        c = exh_bytes_writer(b, cap_B);
+        exh_params_serialize(&c, &p);
+        CHECK(exh_bytes_ok(&c) == (cap_B >= len_B), "%u bytes", (unsigned)cap_B);
+        CHECK(cap_B < len_B || (c.at == len_B && memcmp(b, whole, len_B) == 0), "%u bytes",
+            (unsigned)cap_B);
+        for (uint32_t i = cap_B; i < sizeof b; i++) { CHECK(b[i] == 0xAA, "%u", (unsigned)i); }
+        exh_params_serialize(&c, &p);
+        CHECK(cap_B >= len_B || !exh_bytes_ok(&c), "%u bytes", (unsigned)cap_B);
+    }
+    c = exh_bytes_measure();
+    exh_params_serialize(&c, &p);
+    CHECK_EQ_I64(c.at, len_B);
+}
+
 /* All or nothing: shorter, or with one value that its row forbids. */
 TEST(bad_keyframes)
 {
@@ -394,6 +418,6 @@ TEST(the_sum_is_of_both_arrays)
 
 TEST_MAIN("unit/params", steps_worked_out, slewed_and_not, damaged_while_another_moves,
     before_the_loop_at_once, shift_of_a_time, image_in_mid_way, a_persons_values,
-    keyframe_in_mid_way, bad_keyframes, guard_in_mid_way, taken_back, keyframe_at_rest,
-    images_of_a_head, a_table_of_none, a_limit_falls_at_once, what_may_be_staged,
+    keyframe_in_mid_way, keyframe_wherever_it_fits, bad_keyframes, guard_in_mid_way, taken_back,
+    keyframe_at_rest, images_of_a_head, a_table_of_none, a_limit_falls_at_once, what_may_be_staged,
     the_sum_is_of_both_arrays);

@@ -39,6 +39,7 @@ struct exh_log_way {
     int (*begin)(const struct exh_scene *sc, uint8_t type, uint32_t tick, uint32_t seq);
     void (*step)(int all);  /* behind each tick; all: no tick follows */
     uint32_t (*lost)(void); /* records that found no room since the last call */
+    int (*waits)(void);     /* 1: a record put now waits for others, and may find no room then */
 };
 void exh_log_by(const struct exh_log_way *who);
 
