@@ -8,19 +8,20 @@
 
 uint64_t exh_udiv64(uint64_t num, uint64_t den, uint64_t *rem)
 {
+    uint64_t quot = 0;
     uint64_t r = 0;
     EXH_ASSERT(den != 0);
-    /* The quotient comes in on the right as the number goes out on the left. */
     for (int i = 0; i < 64; i++) {
         r = r << 1 | num >> 63; /* at most as much of num as went out */
         num <<= 1;
+        quot <<= 1;
         if (r >= den) {
             r -= den;
-            num |= 1;
+            quot |= 1;
         }
     }
     if (rem != NULL) { *rem = r; }
-    return num;
+    return quot;
 }
 
 int exh_period_ok(struct exh_period T)
