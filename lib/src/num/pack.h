@@ -31,14 +31,4 @@ static inline void pack_i16s(struct exh_bytes *c, int16_t *v, uint32_t n)
     }
 }
 
-static inline void pack_bytes(struct exh_bytes *c, const uint8_t *v, uint32_t n)
-{
-    uint8_t *const p = pack_room(c, n);
-    if (p != NULL) { memcpy(p, v, n); }
-    for (; p == NULL && n > 0; n--, v++) {
-        uint8_t byte = *v;
-        exh_bytes_u8(c, &byte);
-    }
-}
-
 #endif

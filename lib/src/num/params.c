@@ -6,7 +6,7 @@
 #include "exhand/error.h"
 #include "exhand/fix.h"
 
-#include "params_write.h"
+#include "params_save.h"
 
 #define IMAGE_MAGIC  0x50485845u /* "EXHP" */
 #define IMAGE_HEAD_B 12u
@@ -246,23 +246,10 @@ static int values_bytes(struct exh_bytes *c, struct exh_params *p, int take)
     return ok;
 }
 
-/* What values_bytes() writes, where there is room for two words of each. A tick waits for it. */
-static uint8_t *write_values(uint8_t *to, const struct exh_params *p)
-{
-    struct params_place at = {0, 0, 0};
-    while (at.value < p->count) { to = params_write(to, p, &at); }
-    return to;
-}
-
 void exh_params_serialize(struct exh_bytes *c, struct exh_params *p)
 {
     struct exh_bytes ahead = *c;
-    int ok;
-    if (c->mode == EXH_BYTES_WRITE && c->at <= c->cap && (c->cap - c->at) / 8 >= p->count) {
-        c->at = (uint32_t)(write_values(c->p + c->at, p) - c->p);
-        return;
-    }
-    ok = values_bytes(&ahead, p, 0);
+    const int ok = values_bytes(&ahead, p, 0);
     if (c->mode == EXH_BYTES_READ && (!ok || !exh_bytes_ok(&ahead))) {
         exh_bytes_fail(c);
         return;

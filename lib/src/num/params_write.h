@@ -8,9 +8,6 @@
 
 #include "word.h"
 
-/* As exh_params_save(), with the table's CRC by a caller that has no time for it in a tick. */
-int32_t exh_params_save_by(const struct exh_params *p, uint32_t table_crc, void *buf, size_t cap_B);
-
 /* What comes next. Zeros: the first. */
 struct params_place {
     uint16_t group, instance;

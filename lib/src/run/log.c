@@ -7,7 +7,7 @@
 #include "exhand/exhand.h"
 
 #include "../num/pack.h"
-#include "../num/params_write.h"
+#include "../num/params_save.h"
 
 static const struct exh_scene *scene;
 static uint8_t buf[EXH_LOG_RECORD_B];
@@ -22,6 +22,16 @@ static uint8_t type_now; /* of the record in buf */
 static uint32_t tick_now;
 static struct exh_record_header header;
 static uint32_t table_crc; /* of the parameters; a header has no time for it */
+
+static void pack_bytes(struct exh_bytes *c, const uint8_t *v, uint32_t n)
+{
+    uint8_t *const p = pack_room(c, n);
+    if (p != NULL) { memcpy(p, v, n); }
+    for (; p == NULL && n > 0; n--, v++) {
+        uint8_t byte = *v;
+        exh_bytes_u8(c, &byte);
+    }
+}
 
 /* Outputs one record, whole or not at all. Counts lost records. */
 static int put(struct exh_bytes *c)

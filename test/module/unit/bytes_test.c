@@ -213,34 +213,20 @@ TEST(many_at_once_are_as_many_calls)
     }
 }
 
-/* Three fields from place `at`, packed or one by one. */
-static struct exh_bytes packed(struct exh_bytes c, unsigned how, uint8_t bytes[3], int16_t words[3])
-{
-    for (unsigned i = 0; how == 0 && i < 3; i++) { exh_bytes_i16(&c, &words[i]); }
-    for (unsigned i = 0; how == 1 && i < 3; i++) {
-        uint8_t byte = bytes[i];
-        exh_bytes_u8(&c, &byte);
-    }
-    if (how == 2) { pack_i16s(&c, words, 3); }
-    if (how == 3) { pack_bytes(&c, bytes, 3); }
-    return c;
-}
-
 TEST(packed_fields_are_as_many_calls)
 {
     static const enum exh_bytes_mode mode[] = {EXH_BYTES_WRITE, EXH_BYTES_READ, EXH_BYTES_MEASURE};
-    for (unsigned i = 0; i < 3 * 10 * 12 * 2; i++) {
-        const uint32_t at = i / 60 == 11 ? UINT32_MAX - 2 : i / 60, cap_B = i / 6 % 10;
-        uint8_t buf[2][10], bytes[3] = {1, 0xFE, 3};
-        int16_t words[2][3] = {{-2, 0x1234, INT16_MIN}, {-2, 0x1234, INT16_MIN}};
-        struct exh_bytes c[2];
+    for (unsigned i = 0; i < 3 * 10 * 12; i++) {
+        const uint32_t at = i / 30 == 11 ? UINT32_MAX - 2 : i / 30, cap_B = i / 3 % 10;
+        uint8_t buf[2][10];
+        int16_t v[2][3] = {{-2, 0x1234, INT16_MIN}, {-2, 0x1234, INT16_MIN}};
+        struct exh_bytes one = {buf[0], cap_B, at, (uint8_t)mode[i % 3]};
+        struct exh_bytes all = {buf[1], cap_B, at, (uint8_t)mode[i % 3]};
         memset(buf, 0x5A, sizeof buf);
-        for (unsigned k = 0; k < 2; k++) {
-            const struct exh_bytes from = {buf[k], cap_B, at, (uint8_t)mode[i / 2 % 3]};
-            c[k] = packed(from, 2 * k + i % 2, bytes, words[k]);
-        }
-        CHECK(c[0].at == c[1].at && memcmp(buf[0], buf[1], sizeof buf[0]) == 0 &&
-                  memcmp(words[0], words[1], sizeof words[0]) == 0,
+        for (unsigned k = 0; k < 3; k++) { exh_bytes_i16(&one, &v[0][k]); }
+        pack_i16s(&all, v[1], 3);
+        CHECK(one.at == all.at && memcmp(buf[0], buf[1], sizeof buf[0]) == 0 &&
+                  memcmp(v[0], v[1], sizeof v[0]) == 0,
             "case %u", i);
     }
 }
