@@ -14,7 +14,7 @@ static uint32_t last_tick;
 static uint8_t begun;
 
 /* What a keyframe takes: the full box has 3.6 KiB of state and 3.8 of parameters. */
-static uint8_t record[EXH_LOG_RECORD_B], held[16384]; /* 20 ticks of 701 B and packets */
+static uint8_t record[EXH_LOG_RECORD_B], held[16384]; /* frames of the ticks of a keyframe */
 static uint64_t copy[1024];
 
 static void idle(void)

@@ -3,7 +3,7 @@
  * than a tick. The state is copied in its tick, and becomes bytes in this tick and those behind it.
  * Records of these wait. So the log has the same bytes in the same order, only later, if no record
  * is lost. What waits is lost if the program stops by an assert or a fault of the processor: the
- * last ticks before it. In the full box a keyframe takes about 18 ticks, every 1024. */
+ * last ticks before it. */
 #ifndef EXHAND_RUN_LOG_LATER_H
 #define EXHAND_RUN_LOG_LATER_H
 
