@@ -11,14 +11,18 @@ is a paragraph of up to 40 words a sentence.
 
 --stats prints words and sentences of each page, and of the comments of each folder of C sources;
 --update lowers ceilings to today's number and gives new pages a row. --comments FILE... prints the
-faults of sentences and idioms in the comments of these C sources, and passes.
+faults of sentences and idioms in the comments of sources (C, Python, shell, make), and passes.
 Exit status: 0 all pages keep the rules, 1 not. Standard library only.
 """
 
+import ast
 import glob
+import inspect
+import io
 import os
 import re
 import sys
+import tokenize
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import docs  # noqa: E402
@@ -75,17 +79,72 @@ def blocks(text):
         yield "prose", block
 
 
-def comments(text):
-    """The paragraphs of the comments of a C source, as blocks() has those of a page."""
+def of_c(text):
+    """(line number, text) of each comment of a C source. No specification of ACSL."""
     for m in COMMENT.finditer(text):
-        body, n = m[1] or m[2] or "", text.count("\n", 0, m.start()) + 1
+        body = m[1] or m[2] or ""
+        if not body.startswith("@"):
+            yield text.count("\n", 0, m.start()) + 1, re.sub(r"(?m)^\s*\*", "", body)
+
+
+def of_python(text):
+    """(line number, text) of each docstring of a Python source, and of each comment."""
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)):
+            doc = ast.get_docstring(node, clean=False)
+            if doc:
+                yield node.body[0].lineno, inspect.cleandoc(doc)
+    yield from joined((t.start[0], t.start[1], t.line[:t.start[1]].strip() != "", t.string[1:])
+                      for t in tokenize.generate_tokens(io.StringIO(text).readline)
+                      if t.type == tokenize.COMMENT)
+
+
+def of_shell(text):
+    """(line number, text) of each comment of a shell script or makefile."""
+    found = []
+    for n, line in enumerate(text.split("\n"), 1):
+        for m in re.finditer(r"(?:^|\s)#(?=\s|!|$)", line):
+            before = line[:m.start()]
+            if before.count('"') % 2 == before.count("'") % 2 == 0:
+                found.append((n, m.end(), before.strip() != "", line[m.end():]))
+                break
+    yield from joined(found)
+
+
+def joined(lines):
+    """(line number, text) of comments whose lines follow each other in one column.
+    lines: (line number, column, whether code is before it, text)"""
+    start, last, body = 0, (0, 0), []
+    for n, column, code, text in lines:
+        if body and (code or last != (n - 1, column)):
+            yield start, "\n".join(body)
+            body = []
+        start, last = (start if body else n), (n, column)
+        body.append(text)
+    if body:
+        yield start, "\n".join(body)
+
+
+SOURCES = {".c": of_c, ".h": of_c, ".inc": of_c, ".py": of_python, ".sh": of_shell, ".mk": of_shell,
+           "Makefile": of_shell}
+
+
+def language(path):
+    """The function of SOURCES for this path. None: it is a page."""
+    return SOURCES.get(os.path.splitext(path)[1] or os.path.basename(path))
+
+
+def comments(path, text):
+    """The paragraphs of the comments of a source, as blocks() has those of a page. A line for a
+    tool is none: PLANT of a proof, noqa, the licence."""
+    for n, body in language(path)(text):
         block = []
-        for k, line in enumerate([] if re.match(r"@| SPDX", body) else body.split("\n")):
-            line = re.sub(r"^\s*\*?", "", line)
-            if block and re.match(r"\s*$|\s*[*+-]\s|   ", line):
+        for k, line in enumerate(body.split("\n")):
+            tool = re.match(r"!/| ?SPDX| (?:noqa|shellcheck|pylint|fmt|NOLINT)\b| PLANT:", line)
+            if block and (tool or re.match(r"\s*$|\s*[*+-]\s|   ", line)):
                 yield "prose", block
                 block = []
-            if line.strip():
+            if line.strip() and not tool:
                 block.append((n + k, line.strip()))
         if block:
             yield "prose", block
@@ -147,9 +206,8 @@ def names(path, text, program, world):
 class Page:
     def __init__(self, path, text, data):
         self.path, self.text, self.data = path, text, data
-        source = path.endswith((".c", ".h"))
-        self.end = COMMENT_END if source else END
-        self.blocks = list((comments if source else blocks)(text))
+        self.end = COMMENT_END if language(path) else END
+        self.blocks = list(comments(path, text) if language(path) else blocks(text))
         self.lengths = [len(w) for kind, b in self.blocks if kind == "prose"
                         for _, w in sentences(b, self.end)]
         self.words = sum(len(WORD.findall(plain(line))) for _, b in self.blocks for _, line in b)
@@ -190,7 +248,7 @@ def stats(pages):
           ("page", "words", "sentences", "mean", "longest", ">30", "faults"))
     rooms = {}
     for p in pages:
-        if p.path.endswith((".c", ".h")):
+        if language(p.path):
             rooms.setdefault("comments of %s/" % os.path.dirname(p.path), []).append(p)
             rooms.setdefault("comments of all %s/" % p.path.split("/")[0], []).append(p)
         else:

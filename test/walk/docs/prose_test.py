@@ -113,6 +113,34 @@ const char *s = "hangs on /* hangs on"; // hangs on
         self.assertEqual(found.lengths, [1, 18, 31, 5, 2])
         self.assertEqual([n for n, _ in found.style()], [4, 14, 15])
 
+    def test_comments_of_python(self):
+        found = prose.Page("a.py", '#!/usr/bin/env python3\n# SPDX-License-Identifier: MIT\n"""Doc.' +
+                           "\n\nIt hangs on.\n" + LONG + """
+\"\"\"
+import a  # noqa: E402
+s = "# hangs on"  # hangs on a word
+# It hangs
+# on a line. """ + LONG.replace("many ", "many\n# ", 9) + "\n\n# Short.\n", prose.Data(DATA))
+        self.assertEqual(found.lengths, [1, 3, 31, 4, 5, 31, 1])
+        self.assertEqual(sorted(n for n, _ in found.style()), [5, 6, 9, 11])
+
+    def test_comments_of_a_shell_script_and_a_makefile(self):
+        text = """#!/bin/sh
+# SPDX-License-Identifier: MIT
+a=${a#b} # hangs on
+echo "# hangs on" '# hangs on'
+# """ + LONG + """
+#
+# hangs on
+"""
+        for name in "a.sh", "a.mk", "Makefile":
+            found = prose.Page(name, text, prose.Data(DATA))
+            self.assertEqual([n for n, _ in found.style()], [3, 5, 7])
+
+    def test_lines_for_a_tool(self):
+        text = "/* Short.\n *\n * PLANT: a.c: hangs on -> " + LONG + "\n */\n"
+        self.assertEqual(list(prose.Page("a.c", text, prose.Data(DATA)).style()), [])
+
     def test_a_ceiling_only_falls(self):
         rows = "page\ta.md\t9\t5\npage\tb.md\t9\t5\npage\tc.md\t9\t5\n"
         self.assertEqual(prose.update("# x\n" + rows, {"a.md": (1, 3), "b.md": (12, 8)}),
