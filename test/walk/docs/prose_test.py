@@ -114,8 +114,12 @@ const char *s = "hangs on /* hangs on"; // hangs on
         self.assertEqual([n for n, _ in found.style()], [4, 14, 15])
 
     def test_comments_of_python(self):
-        found = prose.Page("a.py", '#!/usr/bin/env python3\n# SPDX-License-Identifier: MIT\n"""Doc.' +
-                           "\n\nIt hangs on.\n" + LONG + """
+        found = prose.Page("a.py", """#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+\"\"\"Doc.
+
+It hangs on.
+""" + LONG + """
 \"\"\"
 import a  # noqa: E402
 s = "# hangs on"  # hangs on a word
