@@ -51,7 +51,7 @@ TEST(advice)
     CHECK_EQ_I64(exh_precontact_advise(&a, &n, (struct exh_period){1, 0}, -MM(5)), -EXH_E_RATE);
 }
 
-/* Up to 2^31 - 1 each figure is given, the others far from it. */
+/* Each figure in turn reaches 2^31 - 1 while the others stay small. */
 TEST(the_greatest_advice)
 {
     struct exh_precontact_need n = {

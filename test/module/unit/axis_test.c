@@ -30,7 +30,7 @@ static const struct exh_velocity_par velocity_par = {2};
 static const struct exh_motion_par watch_par = {
     EXH_Q(1, 10, EXH_Q_VEL), 2, 100, EXH_Q(1, 4, EXH_Q_CUR)};
 static const struct exh_tracking_par track_par = {EXH_Q(1, 4, EXH_Q_CUR), 20};
-/* Told at once: a mJ is given out as the string goes back. */
+/* Reported early: the limit is the 1 mJ that the motor gives as the string retracts. */
 static const struct exh_chatter_par chatter_par = {EXH_Q(1, 100, 20), EXH_Q(1, 1000, 24)};
 static const struct exh_drive_par drive_par = {.f_max_N_q20 = EXH_Q(10, 1, EXH_Q_FORCE),
     .slew_up_Nps = 1000,
@@ -90,8 +90,8 @@ static struct exh_axis axis_of(struct finger *f, unsigned parts)
         .drive_cfg = &f->drive_cfg};
 }
 
-/* What the board reads at tick t: the string comes to speed, goes back, is lost; the monitor
- * follows for a while, then stands. */
+/* What the board reads at tick t: the string speeds up, goes back, and is lost. The monitor follows
+ * for a while, then it is 0. */
 static struct exh_drive_in read_at(uint32_t t, int16_t mon_raw)
 {
     const uint32_t cnt = t < 900 ? t * t / 50 : 16200 - (t - 900) * 14;

@@ -175,7 +175,7 @@ TEST(counting_does_not_wrap)
     CHECK(!exh_bytes_ok(&c), "cap 2^32-1: at %" PRIu32, c.at);
 }
 
-/* Written, read or measured through `one` or all at once, from place `at` of a buffer of cap_B. */
+/* Three values through `one` call each or in one call, from position `at` of a buffer of cap_B. */
 static struct exh_bytes several(
     enum exh_bytes_mode mode, int one, uint32_t at, uint8_t *buf, uint32_t cap_B, int32_t v[3])
 {

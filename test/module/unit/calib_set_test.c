@@ -118,7 +118,7 @@ TEST(without_an_image_nothing_vouches)
     g.par.uncalibrated = 1;
     CHECK_EQ_I64(tables(&t, 1), 0);
     CHECK_EQ_I64(t.vouches, EXH_UNCALIBRATED | EXH_UNPOLARISED);
-    CHECK_EQ_I64(tables(&t, 0), 0); /* whoever has one goes by it */
+    CHECK_EQ_I64(tables(&t, 0), 0); /* the waiver is not for an image */
     CHECK_EQ_I64(t.vouches, EXH_ARM_CALIBRATION | EXH_ARM_POLARITY);
     CHECK_EQ_I64(exh_calib_set_tables(&t, NULL, &g.par, &(struct exh_calib_finger){0, &g.drive, 0}),
         -EXH_E_MONOTONE); /* no kf is no line */

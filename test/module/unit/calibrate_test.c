@@ -294,7 +294,7 @@ TEST(another_device_and_stale_ones_are_refused)
     here.day = 19999;
     CHECK_EQ_I64(exh_calib_check(&f.c, &here, NULL), -EXH_E_STALE);
     here.day = 20000;
-    f.c.points = 0; /* nothing was loaded, and nobody looked */
+    f.c.points = 0; /* no points are loaded, so none is judged */
     bad.what = bad.at = 99;
     CHECK_EQ_I64(exh_calib_check(&f.c, &here, &bad), -EXH_E_RANGE);
     CHECK(bad.what == EXH_CALIB_VALUE && bad.at == 0, "%d of %d", bad.what, bad.at);
@@ -425,8 +425,8 @@ TEST(fit_by_hand)
     CHECK_EQ_I64(exh_calib_fit(&fit, f.point, 1, EXH_CALIB_CURRENT), -EXH_E_RANGE);
 }
 
-/* What goes straight on from the last point must rise, and have room; a monitor's table both ways.
- */
+/* The line that continues the last point must rise and must not overflow. A monitor's table
+ * continues both ways. */
 TEST(tables_that_cannot_go_on_are_refused)
 {
     static const struct {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* chatter.h: fast cycles of current that drive the string are told in time, and nothing else is. */
+/* chatter.h reports fast cycles of current that drive the string in time, and nothing else. */
 #include "exhand/chatter.h"
 
 #include "exhand/error.h"
@@ -50,7 +50,7 @@ static int64_t buzz_us(const struct exh_chatter_par *p, uint32_t rate_Hz, uint32
     return -1;
 }
 
-/* Two-sided: no sooner than energy over what is given out, no later than energy over what goes
+/* Two-sided: no sooner than energy over all that is given out. No later than energy over the part
  * beyond power, and two cycles. */
 TEST(cycles_that_drive_the_string)
 {
@@ -72,7 +72,7 @@ TEST(cycles_that_drive_the_string)
     }
 }
 
-/* What takes in as much, cycles of a hand, small swings, one direction alone, and never. */
+/* No chatter: damped cycles, cycles of a hand, small swings, no swing, and a limit of 0. */
 TEST(what_is_none)
 {
     static const int32_t big[] = {200, 50}, small[] = {220, 196}, still[] = {200, 200};

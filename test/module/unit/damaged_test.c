@@ -126,7 +126,7 @@ static const struct exh_drive_par drive_par = {EXH_Q(40, 1, EXH_Q_FORCE), 200000
     EXH_Q(324900, 176, EXH_Q_DAC), 0, EXH_Q(5164, 10000000, EXH_Q_MON), EXH_Q(40, 1, EXH_Q_FORCE),
     EXH_Q(66, 10, EXH_Q_CUR)};
 
-/* As many as a table's n can say: what stands behind the two that are. */
+/* n of a table can say 256. Knots beyond the two valid ones hold zeros. */
 static struct exh_knot knot[256];
 
 static void make_drive(struct exh_drive_cfg *cfg, uint32_t round)
@@ -174,7 +174,7 @@ TEST(drive)
             limits = exh_drive_force_step(&s, &cfg, &permit, &f);
             limits |= exh_drive_current_step(&s, &cfg, &f, &i);
             exh_gate_step(&box, &cfg, 1, &i, &limits, &out);
-            /* Its own limit, of the parameters, holds all the same. */
+            /* The board's own D/A limit, from its parameters, still holds. */
             CHECK(out.dac_raw[0] >= 32768 - 12184 && out.dac_raw[0] <= 32768 + 12184, "%u",
                 (unsigned)out.dac_raw[0]);
         }

@@ -161,8 +161,8 @@ TEST(force_limit_and_pull_only)
     }
 }
 
-/* Whatever f_max becomes between two ticks, and whatever the table says 1 N is. The lower of the
- * two is told; of two alike it is f_max. */
+/* For any f_max between two ticks, and any value of 1 N in the table. The limit that is reported is
+ * the lower of the two. Of two equal ones it is f_max. */
 TEST(no_force_or_current_beyond_the_persons_ceiling)
 {
     static const struct {
@@ -309,7 +309,7 @@ TEST(release_begins_anew)
     CHECK_EQ_I64(f.force_N_q20, 15 * NEWTON - 1);
 }
 
-/* Half the limit is allowed: told by RAMP, and by FORCE too beyond the whole. */
+/* Half the limit is allowed: RAMP reports it, and so does FORCE beyond the whole limit. */
 TEST(ramp_limits_the_force)
 {
     static const struct {
@@ -329,7 +329,7 @@ TEST(ramp_limits_the_force)
     }
 }
 
-/* At every share the same share of the limit: no jump to the whole on the way, and no stand. */
+/* The force is in proportion to the share: no jump to the whole on the way, and no pause. */
 TEST(ramp_is_a_share_all_the_way)
 {
     struct axis a;
@@ -345,7 +345,7 @@ TEST(ramp_is_a_share_all_the_way)
     }
 }
 
-/* Closed: what is asked for is told where it is not small, and only there. */
+/* With a closed gate, a commanded force is reported if it is not small, and only then. */
 TEST(small_force_is_told)
 {
     static const int32_t off_N_q20[] = {-(1 << 20), -1, 0, 1, 1 << 20};

@@ -371,7 +371,7 @@ TEST(recovers_from_any_state)
     }
 }
 
-/* Where nothing moves: the output's ends, what is told of them, and the last state that stays. */
+/* With a constant state: the output's ends, the saturation reports, and the last valid state. */
 static void limits(const struct exh_filter_cfg *still, int64_t full, int64_t last, uint8_t wide)
 {
     const struct {

@@ -153,7 +153,7 @@ TEST(staging_refuses_what_is_outside)
     CHECK(staged.contact[1].b_Nspm_q20 == B(20) && params.pending, "b went back");
     CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 0, K(10000)), 0);
     CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 0, K(10001)), -EXH_E_GAINS);
-    /* Everything else as ever. */
+    /* All other answers stay the same. */
     CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 0, -1), -EXH_E_RANGE);
     CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0401, 2, K(500)), -EXH_E_UNKNOWN);
     CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0403, 1, B(1)), 0);
@@ -168,7 +168,7 @@ TEST(staging_refuses_what_is_outside)
     CHECK_EQ_I64(exh_gains_stage(&params, &rule, 0x0403, 1, B(2)), 0);
 }
 
-/* A scene with materials has no contact of its own to ask. */
+/* A scene with materials has no separate contact to stage. */
 TEST(materials_are_asked_by_index)
 {
     static const struct exh_signal_group of[] = {{exh_material_rows, EXH_MATERIAL_ROWS, 2}};
@@ -238,8 +238,8 @@ TEST(the_largest_k)
     CHECK_EQ_I64(exh_gains_k_max(&rule, B(20)), K(30000));
 }
 
-/* From (10000, 0) over the valley to the same k at b = 40: k down to the valley's, through, up
- * again; never up and down by turns. What is dropped half way stands inside. */
+/* From (10000, 0) over the valley to the same k at b = 40. k falls to the valley's, passes, and
+ * rises again. It never alternates. A change that is dropped half way ends inside. */
 TEST(through_a_valley)
 {
     static const struct exh_gains_par valley = {
@@ -249,7 +249,7 @@ TEST(through_a_valley)
     start();
     exh_gains_enable(&params, 1);
     CHECK_EQ_I64(exh_params_stage(&params, 0x0401, 0, K(10000)), 0);
-    CHECK_EQ_I64(exh_params_apply(&params), 1); /* not locked: at once */
+    CHECK_EQ_I64(exh_params_apply(&params), 1); /* not locked: immediately */
     CHECK_EQ_I64(now->k_Npm_q10, K(10000));
     params.locked = 1;
     params.shift = 3;
@@ -272,8 +272,8 @@ TEST(through_a_valley)
     CHECK(low < K(2500) && was == K(10000) && now->b_Nspm_q20 == B(40), "low %d", (int)low);
 }
 
-/* A bit of what is staged that turns over by itself: nothing goes there, and the guard's look tells
- * in one round. */
+/* One bit of the staged values flips. No value moves to it, and the guard reports it in one
+ * round. */
 TEST(a_damaged_goal_is_not_gone_to)
 {
     const struct exh_contact_par *now = &active.contact[0];
@@ -333,7 +333,7 @@ TEST(no_wall_is_a_jump_away)
     CHECK_EQ_I64(exh_params_stage(&params, 0x0401, 0, K(8000)), 0);
     CHECK_EQ_I64(exh_params_stage(&params, 0x0402, 0, B(10)), 0);
     CHECK_EQ_I64(exh_params_apply(&params), 1);
-    CHECK_EQ_I64(now->k_Npm_q10, 0); /* stands still in apply */
+    CHECK_EQ_I64(now->k_Npm_q10, 0); /* apply() does not move it */
     exh_gains_step(&params, &rule);
     CHECK(now->k_Npm_q10 == K(500) && now->b_Nspm_q20 == B(10), "k %d", (int)now->k_Npm_q10);
 }
@@ -389,7 +389,7 @@ TEST(without_the_lead_both_go_by_themselves)
     CHECK_EQ_I64(active.contact[0].k_Npm_q10, K(1600));
 }
 
-/* A pair in effect that is outside, though nobody asked for another: no wall. */
+/* A pair in effect is outside, and no other was staged: the wall is removed. */
 TEST(a_damaged_pair_becomes_none)
 {
     start();

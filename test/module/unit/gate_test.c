@@ -84,8 +84,8 @@ TEST(a_shut_gate_makes_a_frame_that_drives_nothing)
     for (unsigned k = 0; k < EXH_FINGERS; k++) { CHECK_EQ_I64(b.out.dac_raw[k], 1234); }
 }
 
-/* A table, a scale, a limit that is damaged while a force is let go: the code stays where it was,
- * and once it was nearer to zero it is no further again. */
+/* A table, a scale or a limit is damaged while a force is released. The code stays where it was.
+ * Once it was nearer to zero, it does not go back. */
 TEST(a_release_never_rises)
 {
     static const int32_t amp[] = {2, 3, -3, 1, 2, -6, 0, 1};

@@ -225,7 +225,7 @@ TEST(an_image_of_nonsense_is_refused)
         exh_glove_error_text(bad.what));
 }
 
-/* --- the glove that the library has by itself --- */
+/* --- the default glove of the library --- */
 
 /* Ends of each channel in thousandths of the converter's -9 .. 9 V of +-10 V, and the joint's
  * angles there. */

@@ -130,8 +130,8 @@ TEST(abductions_lose_what_knuckles_add)
     CHECK_EQ_I64(f.angle[18], -5000 * 65536);
 }
 
-/* A sensor that the glove does not have: no code can make it faulty, and cross terms may
- * make its angle, as of the last joint of a finger from the middle one. */
+/* No code makes a sensor faulty that the glove does not have. Cross terms may compute its angle:
+ * the last joint of a finger from the middle one. */
 TEST(absent_sensors_have_no_faults)
 {
     static const int16_t raw[] = {INT16_MIN, INT16_MAX, 0};
@@ -262,8 +262,8 @@ TEST(faults_are_counted_up_to_65535)
     }
 }
 
-/* In the first frame nothing was ever good: a fault at once, at angle 0's code or the end
- * of the span next to it. */
+/* No frame was good before the first one, so a fault counts immediately. The angle is that of code
+ * 0, or of the end of the span next to it. */
 TEST(a_channel_may_start_faulty)
 {
     struct fixture f;
@@ -356,8 +356,8 @@ TEST(the_first_frame_settles)
     }
 }
 
-/* The same movement with and without a spike of two frames in another code: no bit differs
- * before the spike's first frame or once the hand has stood still while it lasted. */
+/* The same movement with and without a spike of two frames in another code. No bit differs before
+ * the spike. None differs once the hand was at rest for as long. */
 TEST(a_spike_leaves_no_trace)
 {
     struct fixture f, g;
@@ -410,8 +410,8 @@ TEST(after_a_fault_the_angle_glides)
     CHECK(most < 4000 * 65536 / 100 * 105, "overshoot: %" PRId32, most);
 }
 
-/* The paper's noise, 6.1 mV = 20 codes peak to peak, is no more than the default hysteresis:
- * at any level an angle moves at most once, from where it started to where it stays. */
+/* The paper's noise, 6.1 mV = 20 codes peak to peak, is no more than the default hysteresis. So at
+ * any level an angle moves at most once, to its final value. */
 TEST(noise_within_the_hysteresis_moves_no_angle_twice)
 {
     for (int order = 0; order <= 2; order++) {
@@ -634,7 +634,7 @@ TEST(the_first_and_the_last_have_cross_terms)
     CHECK_EQ_I64(f.angle[EXH_GLOVE_SENSORS - 1], -40 * 65536);
 }
 
-/* A cross term in the second place is one too, and who has none is not asked. */
+/* A cross term in the second place counts alone. A sensor without terms is not computed. */
 TEST(a_second_cross_term_alone)
 {
     struct fixture f;
@@ -650,7 +650,7 @@ TEST(a_second_cross_term_alone)
     f.in.raw[2] = 1100;
     (void)frame(&f);
     CHECK(f.angle[5] == 3276800 && f.angle[2] == 6553600, "%" PRId32, f.angle[5]);
-    f.cal.sensor[5].of[0] = 40; /* damaged memory: whose angle that is nobody knows */
+    f.cal.sensor[5].of[0] = 40; /* damaged memory: no sensor has this number */
     f.cal.sensor[5].cross_q30[0] = INT32_C(1) << 29;
     angle[40] = INT32_C(1) << 28;
     (void)exh_glove_step(&f.s, &f.cfg, &f.in, angle);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* guard.h: a change of any one byte or parameter is told in time; the self-test passes. */
+/* guard.h: a change of any byte or parameter is reported in time. The self-test passes. */
 #include "exhand/integrity.h"
 
 #include "check.h"
@@ -41,7 +41,7 @@ TEST(every_bit_of_the_area)
                 CHECK(n < 2 * round, "%u bytes, bit %u: %u ticks", len, bit, n);
                 area[bit / 8] ^= (uint8_t)(1u << bit % 8);
                 for (unsigned k = 0; k < 3 * round; k++) {
-                    CHECK(exh_integrity_step(&g), "forgiven"); /* not by itself */
+                    CHECK(exh_integrity_step(&g), "forgiven"); /* only a seal clears it */
                 }
                 exh_integrity_seal(&g, area, len, NULL);
                 CHECK_EQ_I64(exh_integrity_step(&g), 0);
@@ -50,7 +50,7 @@ TEST(every_bit_of_the_area)
     }
 }
 
-/* What is staged and applied is no change; what changes by itself, in either copy, is. */
+/* Staging and applying is no change. A bit flip in either copy is one. */
 TEST(parameters)
 {
     int32_t active[3], staged[3];

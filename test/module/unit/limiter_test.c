@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* limiter.h: each cause is raised, latched and named; each limit acts and is told; nothing starts
- * but by a hand; what set-up refuses it names. */
+/* limiter.h: each cause is raised, latched and named. Each limit acts and is reported. Only a hand
+ * starts it. Set-up names what it refuses. */
 #define EXH_LIMITER_FLOAT
 #include "exhand/limiter.h"
 
@@ -37,7 +37,7 @@ static const struct exh_limiter_par effort_par = {
     .heat_ms = 1000,
 };
 
-/* A limiter and what goes into it. */
+/* A limiter and its inputs. */
 static struct rig {
     struct exh_limiter_cfg cfg;
     struct exh_limiter s;
@@ -338,7 +338,7 @@ TEST(each_cause_is_raised_latched_and_cleared_by_hand)
         step();
         CHECK_EQ_I64(r.out.state, EXH_STATE_OFF);
         CHECK_EQ_I64(r.out.causes, 0);
-        CHECK_EQ_I64(r.out.first, ways[i].cause); /* told until it arms */
+        CHECK_EQ_I64(r.out.first, ways[i].cause); /* reported until it arms */
         step();
         CHECK_EQ_I64(r.out.state, EXH_STATE_ARM);
         CHECK_EQ_I64(r.out.first, 0);
@@ -366,14 +366,14 @@ TEST(nobody_clears_what_goes_on)
     CHECK_EQ_I64(r.out.state, EXH_STATE_OFF);
 }
 
-/* The first stays the first; all are told. */
+/* The first cause stays the first, and all are reported. */
 TEST(the_first_cause_stays)
 {
     run(effort_par);
     r.in.age_us = 60000;
     r.in.pos = 2 * UNIT;
     step();
-    CHECK_EQ_I64(r.out.first, EXH_LIMITER_STALE); /* of two at once the first in order */
+    CHECK_EQ_I64(r.out.first, EXH_LIMITER_STALE); /* of two in one tick the first in order */
     r.in.deadman = 0;
     r.in.command = EXH_LIMITER_NONE;
     step();

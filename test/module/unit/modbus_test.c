@@ -499,11 +499,11 @@ TEST(what_is_staged_reads_back_and_is_counted)
     untouched(__LINE__);
     ASK(4, 0, 2 * EXH_HEAD_DONE, 0, 4);
     GIVES(4, 8, 0, 0, 0, 1, 0, 0, 0, 0);
-    g.wanted[2] = 5; /* somebody else's: seen where nothing is staged */
+    g.wanted[2] = 5; /* from another source: read while nothing is staged */
     ASK(3, 0x50, 4, 0, 2);
     GIVES(3, 4, 0, 0, 0, 5);
     ASK(16, 0x50, 4, 0, 2, 4, 0, 0, 0x11, 0x22);
-    g.wanted[2] = 0x1122; /* somebody else's, too: nothing staged differs any more */
+    g.wanted[2] = 0x1122; /* another source stages the same value */
     ASK(4, 0, 2 * EXH_HEAD_STAGED, 0, 2);
     GIVES(4, 4, 0, 0, 0, 0);
 }
@@ -661,7 +661,7 @@ TEST(requests_of_nothing)
     ASK(23, 0, 0, 0, 0, 0x50, 0, 0, 2, 4, 0, 0, 0, 1); /* reads none */
     GIVES(0x97, 3);
     CHECK_EQ_I64(exh_regs_read(&g.r, EXH_REGS_INPUT, 0, 0, g.resp), 0);
-    CHECK_EQ_I64(g.resp[0], 0x97); /* stands */
+    CHECK_EQ_I64(g.resp[0], 0x97); /* unchanged */
     CHECK_EQ_I64(exh_regs_validate(&g.r, 0x5000, 0, bytes), 0);
     CHECK_EQ_I64(exh_regs_validate(&g.r, 0x1000, 1, bytes), EXH_MODBUS_ADDRESS);
     CHECK_EQ_I64(exh_regs_write(&g.r, 0x5000, 0, bytes), 0);

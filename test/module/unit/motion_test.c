@@ -37,8 +37,8 @@ TEST(velocity_is_held_within_the_limit)
     }
 }
 
-/* Told after more than speed_time on end at every rate, and not before; one slow tick begins anew.
- */
+/* Reported after more than speed_time without a break at every rate, and not before. One slow tick
+ * resets the time. */
 TEST(too_fast_for_too_long)
 {
     for (uint32_t rate_Hz = 1; rate_Hz <= 2000; rate_Hz++) {
@@ -61,8 +61,7 @@ TEST(standing_while_pulled)
     struct exh_motion s = {0, 0, 0};
     uint32_t limits = 0;
     for (int32_t k = 0; k < 10000; k++) {
-        /* 0: it moves once a second; 1: too little current; 2: pushed, which is no pull; 3: stands
-         */
+        /* 0: it moves once a second. 1: too little current. 2: pushed, not pulled. 3: at rest. */
         const int kind = k / 2500;
         const int32_t cnt = kind == 0 ? k / 1000 : 2;
         const int32_t coded = kind == 1 ? AMPERE / 4 : kind == 2 ? -AMPERE : AMPERE / 4 + 1;
@@ -122,7 +121,7 @@ TEST(state_round_trip)
     CHECK(back.fast_ticks == 1 && back.stuck_ticks == 2 && back.cnt == -3, "state");
 }
 
-/* Counts beyond what a run can be: told, and brought back. */
+/* Counts beyond those of a run: reported, and clamped. */
 TEST(damaged_state)
 {
     const struct exh_motion_cfg cfg = cfg_of(&par, 1000);

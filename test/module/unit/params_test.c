@@ -60,7 +60,7 @@ TEST(steps_worked_out)
     }
 }
 
-/* A force goes on its way, a bit is there at once. */
+/* A force moves at its slew rate. A bit is set immediately. */
 TEST(slewed_and_not)
 {
     start(2);
@@ -81,8 +81,8 @@ TEST(slewed_and_not)
     CHECK_EQ_I64(exh_params_apply(&p), 0);
 }
 
-/* A value that is not staged and differs is a damaged one: while another moves it stays, for the
- * guard to tell. */
+/* A value that differs without being staged is damaged. While another value moves it stays, so that
+ * the guard reports it. */
 TEST(damaged_while_another_moves)
 {
     start(2);
@@ -265,8 +265,8 @@ TEST(bad_keyframes)
     }
 }
 
-/* Every tick anything is staged: the guard says nothing. One bit turned over, in either array, in
- * mid-way, is told within two rounds, though all goes on. */
+/* Values are staged in most ticks, and the guard reports nothing. Then one bit of either array
+ * flips half way. The guard reports it within two rounds, while values still move. */
 TEST(guard_in_mid_way)
 {
     for (unsigned bit = 0; bit < 2 * 32 * VALUES; bit++) {
@@ -295,8 +295,8 @@ TEST(guard_in_mid_way)
     }
 }
 
-/* What a rule refuses is taken back: the value that is on its way goes on, and the guard has
- * nothing to tell. */
+/* A value that a rule refuses is taken back. The one that is moving goes on, and the guard reports
+ * nothing. */
 TEST(taken_back)
 {
     int32_t was[VALUES];
@@ -404,7 +404,7 @@ TEST(what_may_be_staged)
     CHECK_EQ_I64(staged[0], 4);
 }
 
-/* What the guard's sum is of: each value of either array by a factor of its own (NUMERICS.md). */
+/* The guard's sum multiplies each value of either array by a separate factor (NUMERICS.md). */
 TEST(the_sum_is_of_both_arrays)
 {
     uint32_t sum = 0;

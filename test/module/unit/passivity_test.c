@@ -152,7 +152,7 @@ TEST(the_pull_back_is_not_the_contacts)
     CHECK_EQ_I64(rig.s.held_N_q20, 0);
     (void)tick(-10, 1, 0, 4);
     CHECK_EQ_I64(energy(), 80);
-    /* Half a code more than was asked for is still the pull-back's. */
+    /* Half a code above the command still counts as the pull-back's. */
     exh_passivity_update(&rig.s, &rig.cfg, &rig.f, AMPERE);
     CHECK_EQ_I64(rig.s.held_N_q20, 0);
     /* Less than commanded, by any later limit. */
@@ -284,7 +284,7 @@ TEST(bytes_come_back)
         "%" PRId64, t.energy_Ncnt_q20);
 }
 
-/* Any bytes: nothing overflows in what follows (the sanitizers look). */
+/* For any bytes, later steps do not overflow (the sanitizers check). */
 TEST(damaged_bytes_do_no_harm)
 {
     static const uint8_t fill[] = {0x00, 0x7F, 0x80, 0xFF};
@@ -306,7 +306,7 @@ TEST(damaged_bytes_do_no_harm)
     }
 }
 
-/* A table that goes beyond the highest f_max: that one is what has to be able to fall. */
+/* For a table beyond the highest f_max, f_max is the force that must be able to fall. */
 TEST(what_has_to_fall_is_no_more_than_the_highest_limit)
 {
     start(1);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* polarity.h: what a pull tells, tick by tick, and that the ramp of arming waits for it. */
+/* polarity.h: what a pull reports, tick by tick. The ramp of arming waits for it. */
 #include "exhand/polarity.h"
 
 #include "exhand/error.h"
@@ -60,7 +60,7 @@ TEST(set_up)
     CHECK_EQ_I64(cfg.move_cnt, 2);
 }
 
-/* The force rises, is never above what was asked for, and is gone with the verdict. */
+/* The force rises, is never above its limit, and ends with the verdict. */
 TEST(what_moves_is_what_is_told)
 {
     static const struct {
@@ -104,8 +104,8 @@ static uint8_t pulls(struct exh_polarity *s, const struct exh_polarity_cfg *cfg,
     return r;
 }
 
-/* A hundred ticks at rest to the tick, anew behind each movement; then a step of force each, and a
- * movement as far as asked, to the count, from where the rest ended. */
+/* Exactly a hundred ticks at rest, and again after each movement. Then the force rises in steps. A
+ * movement counts from where the rest ended, to the count. */
 TEST(edges_of_rest_and_movement)
 {
     const struct exh_polarity_cfg cfg = config();

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* precontact.h by worked examples: a finger that comes down along -z onto the plane z = 0.1 m,
- * pad 10 mm, so that it touches at z = 0.11; string and finger move alike. */
+/* precontact.h by worked examples. A finger comes down along -z onto the plane z = 0.1 m. Its pad
+ * is 10 mm, so that it touches at z = 0.11. String and finger move alike. */
 #include "exhand/precontact.h"
 
 #include "exhand/contact.h"
@@ -66,7 +66,7 @@ TEST(distance_has_the_sign_of_the_text)
     CHECK_EQ_I64(s.d_m_q30, MM(100) - MM(110) + MM(10));
     at(MM(90));
     CHECK_EQ_I64(s.d_m_q30, MM(100) - MM(90) + MM(10));
-    par.printed_sign = 1; /* of planes told from now on */
+    par.printed_sign = 1; /* of planes sentfrom now on */
     s = (struct exh_precontact){0};
     CHECK_EQ_I64(exh_precontact_setup(&cfg, &par, material, 2, MM(10), TICK), 0);
     tell(floor_plane);
@@ -405,7 +405,7 @@ TEST(late_is_at_the_true_place_and_slow)
     CHECK(bits == (EXH_PRECONTACT_RELEASE | EXH_PRECONTACT_TRACKS), "left");
 }
 
-/* Where a finger was before bytes, nobody knows: what was about to be late is inside. */
+/* Bytes do not hold where a finger was: a plane that was about to be late counts as inside. */
 TEST(from_bytes_nothing_is_late)
 {
     uint8_t buf[512];
@@ -420,7 +420,7 @@ TEST(from_bytes_nothing_is_late)
         tell(floor_plane);
         CHECK(s.phase == EXH_PRECONTACT_IDLE && s.met && s.told == 2, "told %d", s.told);
         if (resumes) {
-            s.told = 3; /* damaged, or somebody's */
+            s.told = 3; /* damaged, or from another program */
             exh_precontact_serialize(&c, &s);
             c = exh_bytes_reader(buf, c.at);
             exh_precontact_serialize(&c, &s);
@@ -766,7 +766,7 @@ TEST(restored_tracking_touches_nothing_at_once)
     CHECK(bits & EXH_PRECONTACT_FREEZE, "frozen");
 }
 
-/* Through the origin all planes have the offset 0: the normal alone tells them apart. */
+/* All planes through the origin have the offset 0: only the normal distinguishes them. */
 TEST(a_plane_that_turned_over_is_another)
 {
     struct exh_plane p = {EXH_PLANE_HIT, 0, 1, {0, 0, ONE}, {0, 0, 0}};

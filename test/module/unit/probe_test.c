@@ -25,9 +25,9 @@ static const struct exh_home_par home_par = {.cur_A_q26 = MA(100),
     .least_m_q30 = MM(20) + 64,
     .most_m_q30 = MM(100)};
 
-/* A string: in above `in`, out below `out` (a weight's; none: INT32_MIN), 2 counts a
- * tick, not beyond its end, stuck at `stuck`. way -1: wired the wrong way. A weight
- * may stand on something at `stand`. */
+/* A string goes in above `in` and, with a weight, out below `out` (none: INT32_MIN). It moves 2
+ * counts a tick, stops at its end, and sticks at `stuck`. way -1: the motor is wired with the wrong
+ * polarity. A weight may rest on a support at `stand`. */
 struct string {
     int32_t cnt, in_A_q26, out_A_q26, end_cnt, stuck_cnt, speed, way, stand_cnt;
 };
@@ -139,7 +139,7 @@ TEST(what_stops_a_probe)
     CHECK(w.cnt >= -502, "%" PRId32, w.cnt);
 
     w = slack(MA(100));
-    w.out_A_q26 = MA(90); /* somebody pulls before there is current */
+    w.out_A_q26 = MA(90); /* pulled out before there is current */
     f = probe(&w, &par, 0);
     CHECK(f.result == EXH_PROBE_WRONG_WAY && f.most_A_q26 == 0, "%s",
         exh_probe_result_text(f.result));
@@ -284,7 +284,7 @@ TEST(homing_takes_no_longer_than_allowed)
         s.result == EXH_PROBE_TIME && n == 99, "%s, %u ticks", exh_probe_result_text(s.result), n);
 }
 
-/* With a least way of 0 an end at once is one; the whole way may be gone, and no more. */
+/* With a least way of 0 an immediate end is valid. The whole way is allowed, and no more. */
 TEST(homing_from_the_end_and_all_the_way)
 {
     struct exh_home_par p = home_par;
@@ -364,7 +364,7 @@ TEST(what_stops_weighing)
     CHECK(f.result == EXH_PROBE_STILL && f.most_A_q26 <= MA(520), "%s",
         exh_probe_result_text(f.result));
     w = (struct string){
-        0, MA(500), MA(499), INT32_MIN, INT32_MIN, 2, 1, INT32_MAX}; /* pulls at once */
+        0, MA(500), MA(499), INT32_MIN, INT32_MIN, 2, 1, INT32_MAX}; /* out from tick 1 */
     f = weigh(&w, &p, 0);
     CHECK(f.result == EXH_PROBE_WRONG_WAY && f.most_A_q26 <= MA(20), "%s",
         exh_probe_result_text(f.result));
@@ -547,8 +547,8 @@ TEST(holding_stays_within_the_way)
     CHECK_EQ_I64(cfg.down.end_A_q26, 0);
 }
 
-/* The current at the end is tried too, from either side; a dwell has a tick; steps of a count may
- * be as fine as they are told. */
+/* The last current is tried too, from either side. A dwell lasts at least a tick. Steps of a count
+ * keep their resolution. */
 TEST(ends_to_the_bit)
 {
     struct exh_probe_par p = par;

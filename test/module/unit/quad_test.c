@@ -18,8 +18,8 @@ static const struct {
     int x;
 } modes[] = {{&exh_quad_x1, 1}, {&exh_quad_x2, 2}, {&exh_quad_x4, 4}};
 
-/* What the header says, from the geometry: a step up or down the sequence counts
- * in x4 always, in x2 when A changes, in x1 when A changes at B = 1. */
+/* Counts by the header's rule. In x4 each step of the sequence counts. In x2 it counts when A
+ * changes, in x1 when A changes at B = 1. */
 static int counts(int x, unsigned from, unsigned to)
 {
     const int moved = (place[to] - place[from] + 4) % 4;
@@ -125,7 +125,7 @@ TEST(a_run_of_nothing_starts_nothing)
     CHECK(s.started && s.ab == 2 && s.edges == 0 && s.illegal == 0, "the first sample counted");
 }
 
-/* Both lines at once in the first sample of a word, against the last of the one before. */
+/* Both lines change in the first sample of a word, against the last sample of the word before. */
 TEST(words_hang_together)
 {
     struct exh_quad_ab s = {0};

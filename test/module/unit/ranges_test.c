@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Set-ups take the ends of their parameters' documented ranges and refuse what is one beyond: each
- * field of the struct by itself, the others as they are usual. */
+/* A set-up takes both ends of each parameter's documented range, and refuses the next value beyond.
+ * Each field is tried alone, and the others have their usual values. */
 #include "exhand/drive.h"
 #include "exhand/error.h"
 #include "exhand/precontact.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* record.h: what goes in comes out; what is damaged is noticed; reading goes on. */
+/* record.h: records come out as they were written. Damage is noticed, and reading goes on. */
 #include "exhand/record.h"
 
 #include "exhand/error.h"
@@ -217,7 +217,7 @@ TEST(every_byte_of_a_name)
     }
 }
 
-/* A cursor that only measures tells the size of a record, too. */
+/* A cursor that only measures has the size of a record, too. */
 TEST(measuring_a_record)
 {
     struct exh_bytes c = exh_bytes_measure();

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* ring.h, and records in pieces (record.h): what is kept, what goes, what cannot be held. */
+/* ring.h, and records in pieces (record.h): what it keeps, drops, and cannot hold. */
 #include "exhand/record.h"
 #include "exhand/ring.h"
 
@@ -129,7 +129,7 @@ TEST(what_is_too_long_is_lost_and_harms_nothing)
     CHECK_EQ_I64(first(buf, sizeof buf).tick, 3);
 }
 
-/* Who puts no keyframe when one is due loses all that stands before it. */
+/* A writer that puts no keyframe when one is due loses all older records. */
 TEST(without_keyframes_there_is_nothing_to_begin_with)
 {
     uint8_t buf[CAP + 18];
@@ -144,7 +144,7 @@ TEST(without_keyframes_there_is_nothing_to_begin_with)
     CHECK_EQ_I64(first(buf, sizeof buf).tick, 34);
 }
 
-/* Byte by byte, in threes, at once: the same bytes as exh_record_end() makes. */
+/* Byte by byte, in threes or in one piece: the same bytes as exh_record_end() makes. */
 TEST(a_record_in_pieces_is_the_record)
 {
     for (uint32_t piece = 1; piece < 60; piece++) {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Every parameter of the library as recorded logs, images in a box's memory and programs on the
- * host know it: number, format, range and default in raw values, name and unit. They stand here a
- * second time, as numbers, for nothing else of the library needs each of them: whoever changes one
- * changes what others read, and says so here. What they mean: docs/NUMERICS.md. */
+/* Every parameter of the library as logs, saved images and host programs know it: number, format,
+ * range and default in raw values, name and unit. They are written here a second time, as numbers,
+ * because no other source needs each of them. A change of one changes what others read, and must be
+ * made here too. Their meaning: docs/NUMERICS.md. */
 #include "exhand/contact.h"
 #include "exhand/drive.h"
 #include "exhand/filter.h"

@@ -196,7 +196,7 @@ TEST(the_first_of_several_steps_is_named)
     CHECK_EQ_I64(s.refused, EXH_ARM_CALIBRATION);
 }
 
-/* Armed in the end: no step is told any more, only how often one was. */
+/* Once it runs, no refused step is reported any more. Only the number of refusals stays. */
 TEST(a_refusal_is_forgotten_once_it_runs)
 {
     const struct exh_safety_cfg cfg = cfg_of(par, 1000);
@@ -589,7 +589,7 @@ TEST(a_buffer_too_short_changes_no_state)
     }
 }
 
-/* A damaged image is a fault of its own, beside those that it tells of. */
+/* A damaged image is a separate fault, beside those that it holds. */
 TEST(damage_forgets_no_fault)
 {
     struct exh_safety was = {.faults = EXH_FAULT_ENCODER, .state = EXH_STATE_FAULT}, now = {0};

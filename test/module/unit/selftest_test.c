@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The known answers of guard.h's self-test: each of them wrong alone is told, by its group. What
- * computes them is spoiled here, by names that lib/src/safe/selftest.c is compiled with once more.
- */
+/* The known answers of guard.h's self-test: each wrong answer alone is reported, by its group.
+ * lib/src/safe/selftest.c is compiled once more with macros that spoil the functions. */
 #include "exhand/angle.h"
 #include "exhand/bytes.h"
 #include "exhand/filter.h"

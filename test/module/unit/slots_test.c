@@ -53,7 +53,7 @@ static void counts(int at, unsigned value, uint32_t sequence)
         "%lu bytes, sequence %lu", (unsigned long)is.len_B, (unsigned long)is.sequence);
 }
 
-/* A slot as a box with this sequence would have written it, by a list of its own. */
+/* A slot as a box with this sequence number writes it. It does not use the library's writer. */
 static void forge(unsigned at, uint32_t sequence, unsigned value)
 {
     struct exh_bytes c = exh_bytes_writer(slot[at], SLOT);
@@ -195,7 +195,7 @@ TEST(each_bit_of_one_slot)
             counts(at == 0, at == 0 ? 2 : 1, at == 0 ? 2 : 1);
             slot[at][bit / 8] ^= (uint8_t)(1u << bit % 8);
         }
-        for (uint32_t i = WHOLE; i < SLOT; i++) { slot[at][i] = 0; } /* behind it: nobody looks */
+        for (uint32_t i = WHOLE; i < SLOT; i++) { slot[at][i] = 0; } /* beyond the image: ignored */
         counts(1, 2, 2);
     }
 }
@@ -278,7 +278,7 @@ TEST(what_does_not_fit_is_refused)
     }
 }
 
-/* As the header's example has it: parameters, and of a finger's calibration likewise. */
+/* As in the header's example: parameters, and a finger's calibration too. */
 static const struct exh_signal row[] = {
     {0x7101, 0, EXH_WHEN_ANY, -1000, 1000, 5, "a", "", "one"},
     {0x7102, 4, EXH_WHEN_ANY, -1000, 1000, 6, "b", "", "another"},

@@ -159,7 +159,8 @@ TEST(its_state_goes_through_a_cursor)
     CHECK_EQ_I64(exh_supply_step(&back, &cfg, code(24000), 0), 0);
 }
 
-/* A refused set-up judges nothing; a count from damaged bytes stays told, and does not wrap. */
+/* After a refused set-up nothing is judged. A damaged count is still reported, and does not
+ * wrap. */
 TEST(what_comes_of_refusals_and_damage)
 {
     const struct exh_supply_par none = {V(20), V(19), QUARTER, 10};

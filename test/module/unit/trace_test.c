@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* trace.h: which ticks a frame is of, what is held, and that nobody misses a frame without seeing
- * it; and its registers. */
+/* trace.h: the ticks of a frame, what is held, and that a reader sees each lost frame. And its
+ * registers. */
 #include "exhand/trace.h"
 
 #include "exhand/error.h"
@@ -140,7 +140,7 @@ TEST(passed_on_whole)
     exh_trace_copy(&t, &shown);
     CHECK_EQ_I64(shown.head, 3);
     for (uint32_t k = 0; k < 3; k++) { holds(&shown, k, 2 * k, 2); }
-    ticks(5, 100); /* nobody could be told for long */
+    ticks(5, 100); /* the reader is late for long */
     exh_trace_copy(&t, &shown);
     CHECK_EQ_I64(shown.head, 53);
     CHECK_EQ_I64(exh_trace_oldest(&shown), 53 - FRAMES);
@@ -290,7 +290,7 @@ TEST(the_least_ring)
     holds(&t, 4, 4, 0);
 }
 
-/* What was passed on is not written again: somebody may read it. */
+/* A frame that was passed on is not written again: a reader may be reading it. */
 TEST(a_frame_is_passed_on_once)
 {
     begin(FRAMES);

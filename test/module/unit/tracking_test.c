@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* tracking.h: ranges, when it is told, when not. */
+/* tracking.h: the ranges, when it reports a fault, and when not. */
 #include "exhand/tracking.h"
 
 #include "exhand/error.h"
@@ -84,7 +84,7 @@ TEST(a_current_that_stands_is_told_in_time)
                 "%" PRIu32 " Hz, tick %" PRIu32, rate[i], n);
         }
         CHECK_EQ_I64(s.off_ticks, cfg.ticks);
-        CHECK_EQ_I64(tick(&s, &cfg, 2 * AMPERE, 0), 0); /* the cause is gone, at once */
+        CHECK_EQ_I64(tick(&s, &cfg, 2 * AMPERE, 0), 0); /* the fault ends with its cause */
         CHECK(s.lo_A_q26 == 0 && s.hi_A_q26 == 0 && s.off_ticks == 0, "the band begins anew");
     }
 }
@@ -123,7 +123,7 @@ TEST(the_tolerance_is_met_to_the_last_bit)
     }
 }
 
-/* Full steps to and fro, seen d ticks late: told just when d is more than the ticks. */
+/* Full steps to and fro, seen d ticks late: reported if d is more than the ticks, and only then. */
 TEST(late_by_so_many_ticks_follows)
 {
     const struct exh_tracking_cfg cfg = config(1000);
@@ -139,7 +139,7 @@ TEST(late_by_so_many_ticks_follows)
     }
 }
 
-/* Who does not tell what is coded has no current that follows. */
+/* Without exh_tracking_update() no measured current follows. */
 TEST(forgetting_the_code_is_a_fault)
 {
     const struct exh_tracking_cfg cfg = config(1000);
@@ -164,7 +164,7 @@ TEST(state_through_bytes)
     CHECK(back.lo_A_q26 == was.lo_A_q26 && back.hi_A_q26 == was.hi_A_q26 &&
               back.off_ticks == was.off_ticks,
         "not the same");
-    back = (struct exh_tracking){AMPERE, -AMPERE, UINT32_MAX}; /* damaged: told, until it is met */
+    back = (struct exh_tracking){AMPERE, -AMPERE, UINT32_MAX}; /* damaged: reported in this tick */
     CHECK_EQ_I64(tick(&back, &cfg, 2 * AMPERE, AMPERE), 1);
     CHECK_EQ_I64(tick(&back, &cfg, AMPERE, AMPERE), 0);
 }

@@ -59,7 +59,7 @@ static int32_t any_step(struct any *e, int32_t cnt)
 static const struct {
     enum kind kind;
     uint32_t arg;
-    int settle; /* ticks after which it stands */
+    int settle; /* ticks after which it is constant */
 } every[] = {
     {WINDOW, 0, 2},
     {WINDOW, 1, 3},

@@ -162,7 +162,7 @@ TEST(values_that_cannot_be)
         {EXH_WIRE_STATE, 18 + 5, 255, -EXH_E_CRC}, {EXH_WIRE_STATE, 18 + 6, 128, -EXH_E_CRC},
         {EXH_WIRE_STATE, 18 + 7, 64, -EXH_E_CRC}, {EXH_WIRE_PLANES, 18 + 8, 35, -EXH_E_CRC},
         {EXH_WIRE_PLANES, 18 + 9, 3, -EXH_E_CRC},          /* kind */
-        {EXH_WIRE_PLANES, 18 + 9 + 2 * 40, 1, -EXH_E_CRC}, /* told of a finger not in the mask */
+        {EXH_WIRE_PLANES, 18 + 9 + 2 * 40, 1, -EXH_E_CRC}, /* for a finger not in the mask */
         {EXH_WIRE_PARAM, 2, 1, -EXH_E_VERSION}, {EXH_WIRE_PARAM, 3, 0, -EXH_E_UNKNOWN},
         {EXH_WIRE_TRACE, 18 + 8, 1, -EXH_E_CRC},    /* no result is positive */
         {EXH_WIRE_TRACE, 18 + 9, 0xFF, -EXH_E_CRC}, /* refused, and frames */
@@ -349,7 +349,7 @@ TEST(silence_is_only_what_is_heard_of_nobody)
     (void)exh_wire_poll(&rx, UINT32_MAX - 1, LIMIT_US);
     (void)exh_wire_poll(&rx, 7, LIMIT_US); /* no wrap */
     CHECK(rx.open && rx.quiet_us == UINT32_MAX && rx.silences == 1, "%" PRIu32, rx.quiet_us);
-    /* What went on meanwhile is next, and taken at once; the newest once more is not. */
+    /* Traffic of the meantime is next, and is taken immediately. The newest one again is not. */
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_PLANES, 9, 9000)), EXH_WIRE_PLANES);
     CHECK_EQ_I64(take(&rx, write_as(EXH_WIRE_HELLO, 9, 9001)), EXH_WIRE_HELLO);
     (void)exh_wire_poll(&rx, LIMIT_US, LIMIT_US);
@@ -380,7 +380,7 @@ TEST(what_differs_is_said_by_name)
     }
 }
 
-/* Of 64 numbers back it is known what came; a step as wide leaves none of them. */
+/* The receiver remembers 64 numbers. A step of 64 leaves none of them. */
 TEST(a_step_over_all_that_is_remembered)
 {
     for (uint32_t step = 63; step <= 65; step++) {
