@@ -47,7 +47,7 @@ int memcmp(const void *a, const void *b, size_t n);
 
 #define TEST(name) static void name(void)
 
-#define CHECK_NAMES(...) #__VA_ARGS__ /* a list that is a macro is told by its names */
+#define CHECK_NAMES(...) #__VA_ARGS__ /* expands a list that is a macro */
 #define TEST_MAIN(group, ...) \
     int main(void) \
     { \

@@ -32,7 +32,7 @@ static const struct load {
 #define LOADS       ((int)(sizeof load / sizeof load[0]))
 #define TIMER_READS 5 /* and one access to the interrupt controller, in every tick */
 
-/* What does not hang on access times. */
+/* Time that does not depend on access times. */
 static double insns_us(const struct load *l, const struct times *t)
 {
     return l->insns * t->cpi / 1600.0 + TIMER_READS * t->timer_us;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand-lab certificate: random devices, each told apart by `exhand identify`, advised by its
- * file, and run inside of the rule. What was done is in a file: it goes on where it was
- * interrupted. */
+/* exhand-lab certificate: random devices. `exhand identify` finds the parameters of each, the
+ * advisor reads its file, and runs inside the rule follow. A file keeps the results, so that an
+ * interrupted run can go on. */
 #include "lab/lab.h"
 
 #include "base/jobs.h"

@@ -52,7 +52,7 @@ static void keep(struct one *r, const struct model *truth, const struct result_f
     r->high[ONE_MU_BOTH] = file->mu_high;
 }
 
-/* 0: it was told apart, and the model fits. */
+/* 0: it was identified, and the model fits. */
 static int tell(struct one *r, const struct one_opt *o, const struct sim_device *d, uint64_t seed,
     struct result_file *file)
 {
@@ -84,9 +84,8 @@ static int tell(struct one *r, const struct one_opt *o, const struct sim_device 
 static int rests(const struct one_opt *o, const struct sim_device *d, uint64_t seed, double k,
     double b, double place)
 {
-    /* The mass falls as far as the advisor was asked for. The bench counts a contact from a place
-     * in front of the wall on, wherever the first fall began: what rested before that place would
-     * never be seen to. */
+    /* The mass falls from the height given to the advisor. The bench counts a contact from a place
+     * in front of the wall on. It would never see a mass that rests before that place. */
     const double step_m = d->step_m / d->decode;
     const double before = (double)sim_floor(2 * d->height_jitter_m / step_m) + 1;
     const struct run_setting wall = {"q_lim", sim_wall_m(d, place)};
@@ -138,9 +137,9 @@ static void inside(struct one *r, const struct one_opt *o, const struct sim_devi
     }
 }
 
-/* The places, a run each, at which every fall rests, up to the first at which one does not: first
- * those of four, then those of eight between them, then all. A pair that chatters at one of eight
- * places is seldom seen to at few. */
+/* The places, a run each, at which every fall rests, up to the first at which one does not. The
+ * order is four places, then the eight with those between, then all. A pair that chatters at one of
+ * eight places is seldom seen at four. */
 static int places(const struct one_opt *o, const struct sim_device *d, struct sim_random *chance,
     double k, double b)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* One device of a certificate: told apart, advised, and held against what it does. */
+/* One device of a certificate: identified, advised, and compared with its behaviour. */
 #ifndef CERTIFICATE_ONE_H
 #define CERTIFICATE_ONE_H
 
@@ -21,7 +21,7 @@ enum { ONE_MU_BOTH = MODEL_PARS, ONE_VALUES };
 
 struct one_opt {
     int64_t seed, rate_Hz, repeats;
-    int told; /* 1: nothing is identified, the advisor is told the device */
+    int told; /* 1: no identification: the advisor gets the device's values */
     int map;  /* 1: what rests and what is allowed, as characters, to stdout */
     int grid; /* nodes along k and along b, over which the stable area is summed; 0: no advice */
 };

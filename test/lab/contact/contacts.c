@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand-lab bilateral --contacts: every shipped scene, every finger, three speeds, links good and
- * bad, several seeds. Nothing may be missed, what is frozen hangs on no link, and where each
- * contact is, beside where the object is, is told as a distribution. */
+/* exhand-lab bilateral --contacts: every shipped scene, every finger, three speeds, good and bad
+ * links, several seeds. No contact may be missed. A frozen contact depends on no link. The distance
+ * from each contact to the object is printed as a distribution. */
 #include "lab/contact/studies.h"
 
 #include "base/option.h"
@@ -113,8 +113,8 @@ static size_t first_freeze(const struct bilateral_track *t)
     return i;
 }
 
-/* Whoever is frozen then goes on with the same bits until it is released, all but d: the glove's
- * sensors are bent a little by the fingers beside, which felt nothing the second time. */
+/* A frozen finger then has the same bits in both runs until its release, all but d. The fingers
+ * beside bend the glove's sensors a little, and they felt nothing in the second run. */
 static int stands_alike(
     const struct bilateral_track *a, const struct bilateral_track *b, size_t from)
 {
@@ -129,8 +129,8 @@ static int stands_alike(
     return 1;
 }
 
-/* The same again for each finger that froze, and the world dies in that tick: what comes over any
- * link after it makes no bit of the contact. */
+/* The same run again for each finger that froze, but the world dies in that tick. No packet after
+ * it changes a bit of the contact. */
 static void beside_dead(
     struct cell *to, const struct bilateral_run_cfg *given, const struct bilateral_run *r)
 {
@@ -166,7 +166,7 @@ static void work(const void *ctx, int i, void *result)
     world_free(c.scene);
 }
 
-/* --- what is told --- */
+/* --- the printed results --- */
 
 static int by_size(const void *a, const void *b)
 {

@@ -66,7 +66,7 @@ static void measure(const struct bilateral_run_cfg *c, struct cell *to)
     bilateral_run_free(&r);
 }
 
-/* At the speed asked for, if it is one. */
+/* At the speed of the options, if there is one. */
 static double speed_of(const struct bilateral_options *o, double otherwise_mps)
 {
     return o->speeds == 1 ? o->speed[0].mps : otherwise_mps;

@@ -141,7 +141,7 @@ static int setup(struct exh_scene_board board)
     return err;
 }
 
-/* What was asked for when it met the wall, for a while. */
+/* The pulse requested at the moment of contact, for a while. */
 static int32_t pulse_N_q20(int touching, int32_t mps_q27)
 {
     if (!touching) {

@@ -21,8 +21,8 @@ static const double loss[LOSSES] = {0, 0.1, 0.3, 0.6};
 
 #define TRIES_MAX 32
 
-/* Each approach is a run of its own, of another seed: a string that hangs slack after a missed
- * contact is nothing of the next one's. */
+/* Each approach is a separate run with another seed. A string that is slack after a missed contact
+ * does not affect the next one. */
 struct cell {
     int tries, done, felt, missed, early, unfrozen;
     float stiffness_Npm[TRIES_MAX];
@@ -96,8 +96,8 @@ static int same(const struct cell *cell, int i)
     return n;
 }
 
-/* The longest delay there and back that the advice for the ray allows: what is known at the latest
- * 1/fps and a state later must be known before the finger is at d_lim. */
+/* The longest round-trip delay that the advice for the ray allows. A plane is sent at the latest
+ * 1/fps and a state later. It must arrive before the finger is at d_lim. */
 static double allowed_s(const struct bilateral_options *o)
 {
     struct bilateral_run_cfg c = bilateral_at_speed(o, o->speed[0].mps);

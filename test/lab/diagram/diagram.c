@@ -69,7 +69,7 @@ static int device(char *to, size_t cap, const char *name)
     return 1;
 }
 
-/* What stands for {kind:name}; crc is of what has been printed. */
+/* The text for {kind:name}. crc is that of all that was printed so far. */
 static int row_of(char *to, size_t cap, char kind, const char *name, uint32_t crc)
 {
     switch (kind) {

@@ -150,7 +150,7 @@ static void work(const void *ctx, int i, void *result)
     memcpy(result, &x, sizeof x);
 }
 
-/* --- what came out --- */
+/* --- results --- */
 
 static int linear(const struct check *x) { return x->rho >= 0 && x->rho < 1; }
 

@@ -88,7 +88,7 @@ static void work(const void *ctx, int i, void *result)
     memcpy(result, &x, sizeof x);
 }
 
-/* --- what came out --- */
+/* --- results --- */
 
 static void print(const struct sweep_opt *o, const struct limit *x, int points)
 {

@@ -28,8 +28,8 @@ struct logistic {
     double at, low, high; /* octaves: half of the falls rest, 95 % interval; open: the last node */
 };
 
-/* What lies below the first node at which half of the falls rest is left out: a wall too weak to
- * stop the mass in time is another matter than one too stiff. */
+/* Nodes below the first one at which half of the falls rest are left out. There the wall is too
+ * weak to stop the mass in time, which is not the border of stability. */
 struct logistic logistic_fit(const struct logistic_node *node, int n);
 
 #endif

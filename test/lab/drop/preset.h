@@ -2,9 +2,8 @@
 /* Original: the system that the paper started from, beside this box: tables of a column each, and
  * their picture.
  *
- * The original, as far as anything is known of it: a loop at 90 Hz, the paper's gains for it, and a
- * glove of 8 bits whose frame is one late.
- */
+ * The original, as far as it is known: a loop at 90 Hz, the paper's gains for it, and an 8-bit
+ * glove whose frame is one late. */
 #ifndef CLI_ORIGINAL_H
 #define CLI_ORIGINAL_H
 

@@ -26,8 +26,8 @@ struct ray_border {
     int nodes, error;       /* error: what ray_at() returned, else 0 */
 };
 
-/* Nodes from the first gain up to where no fall has rested for an octave, or the scene takes no
- * more k or b, or none has rested up to eight times gain 1. */
+/* Nodes from the first gain on. The last one is where no fall has rested for an octave, or where
+ * the scene takes no more k or b. If none has rested, it is eight times gain 1. */
 struct ray_border ray_border(const struct ray *r, ray_at *at, void *ctx);
 
 /* The gain of a node. */

@@ -20,9 +20,9 @@ struct sweep_opt {
 /* "2/3". 0, or 2 after a line on stderr. */
 int sweep_take_shard(const char *text, int *shard, int *shards);
 
-/* base->board.falls falls at one pair of gains, each a run of its own whose chance, the wall's
- * place too, follows from seed, rate, gains and number: how many rest. -1 after a line on stderr,
- * -2 interrupted. */
+/* Runs base->board.falls falls at one pair of gains, each a separate run, and returns how many
+ * rest. Seed, rate, gains and number give the chance of a run, its place of the wall too. -1 after
+ * a line on stderr, -2 interrupted. */
 int study_rest(const struct run_cfg *base, double rate_Hz, double k_Npm, double b_Nspm);
 
 /* The chance of a run that is one of many: the same wherever it is run. */

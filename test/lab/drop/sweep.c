@@ -154,7 +154,7 @@ static int sweep(
     b.fd = fileno(f);
     if (cells->n > 0) { fprintf(stderr, "%s: goes on from %d cells\n", path, cells->n); }
     err = run_rays(&b);
-    outfile_abandon(f); /* it stands at its name as it is */
+    outfile_abandon(f); /* the file stays at its name, unchanged */
     again = cells_load(cells, path);
     if (err == JOBS_INTERRUPTED) {
         cli_complain(

@@ -12,7 +12,7 @@
 
 #define SMALL_A 0.02 /* in the motor: none */
 #define AFTER_S \
-    2e-3 /* and so much after the code, besides two ticks: delay, servo, current loop \
+    2e-3 /* and so much after the code and two ticks: delay, servo, current loop \
           */
 #define BACK_S   0.05
 #define ASTRAY_A 0.26  /* more than tracking tolerates, and its noise */
@@ -60,8 +60,8 @@ static int flows(double more_A)
 
 static int current_flows(void) { return flows(SMALL_A); }
 
-/* A zero of the D/A that is damaged is believed: a drive that codes nothing pulls by it until it is
- * disabled, by the guard. What tracking does not tolerate it must have told before. */
+/* A damaged zero of the D/A is believed: a drive with code 0 pulls by it until the guard disables
+ * it. A current beyond the tolerance of tracking must have been reported before. */
 static double believed_s(double due_s)
 {
     const struct exh_signal *row = faults_source_row();
@@ -93,7 +93,7 @@ static void watch_back(void)
 static void watch_current(void)
 {
     const double T_s = 1.0 / in.base->rate_Hz;
-    /* A D/A that stands is off when the release has ended and the drive with it. */
+    /* A D/A that does not update is off when the release has ended and the drive with it. */
     const int stands = has(FAULTS_DA);
     const double end_s = in.close_s + T_s * faults_zero_ticks(in.base->rate_Hz);
     const double none_s = stands && end_s > in.zero_s ? end_s : in.zero_s;
@@ -128,7 +128,7 @@ static int64_t all_of(const int32_t *v)
 /* A force may rise in it. */
 static int is_open(const struct faults_view *v) { return v->open && v->state != EXH_STATE_RELEASE; }
 
-/* Which causes are told for the first time. */
+/* Causes that are reported for the first time. */
 static void see_causes(const struct faults_view *v)
 {
     for (unsigned k = 0; k < 2; k++) {
@@ -196,8 +196,8 @@ static void check_box(const struct faults_view *v, const struct exh_drive_out *o
     }
 }
 
-/* Zero, span and scale of the D/A are believed until the guard has looked at them; a zero that is
- * none stays the code of drives that are disabled by then. */
+/* Zero, span and scale of the D/A are believed until the guard has checked them. A zero outside its
+ * range stays the code of drives, which are disabled by then. */
 static int believes_codes(const struct faults_view *v, const struct exh_drive_out *out)
 {
     const struct exh_signal *row = faults_source_row();

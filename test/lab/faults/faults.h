@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What goes wrong, where, and how the box ends: one run in closed loop that many others branch
- * from, each with a fault at its true source.
+/* Faults, their place, and how the box ends: one run in closed loop that many others branch from,
+ * each with a fault at its true source.
  *
  * A branch is a copy of the whole process at the end of a tick (fork): scene, loop, board, cards,
  * link, device and hand as they are then. Its scene goes once through its own bytes, so that what a
@@ -17,17 +17,17 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* --- what goes wrong (faults_source.c) --- */
+/* --- faults (source.c) --- */
 
 enum faults_source {
     FAULTS_NOTHING,
     FAULTS_ESTOP,     /* its contact opens */
     FAULTS_DEADMAN,   /* its contact opens */
     FAULTS_DRIVE,     /* a drive's ready contact opens */
-    FAULTS_LATE,      /* one tick is long: many are missed at once */
+    FAULTS_LATE,      /* one tick is long: many are missed after it */
     FAULTS_SLOW,      /* every tick takes one and a half periods */
     FAULTS_JUMP,      /* the encoder jumps */
-    FAULTS_STILL,     /* the encoder stands still */
+    FAULTS_STILL,     /* the encoder does not count */
     FAULTS_MONITOR,   /* the current monitor is off */
     FAULTS_DA,        /* the D/A says that it has updated and has not */
     FAULTS_SPEED,     /* the string runs faster than it may */
@@ -65,7 +65,7 @@ struct faults_what {
     uint8_t place;        /* of the guard, by then: enum faults_place */
 };
 
-/* --- what must follow (faults_spec.c) --- */
+/* --- what must follow (spec.c) --- */
 
 /* columns: the state it is seen in */
 enum faults_in {
@@ -87,7 +87,7 @@ struct faults_spec {
     uint8_t in;         /* bit i: can be seen in enum faults_in i; else there is nothing to see */
     uint32_t ticks, ms; /* seen within */
     uint8_t may;        /* 1: at random times it may be none: what is to be seen is not there */
-    uint32_t also;      /* enum exh_fault that it may raise besides, while it lasts */
+    uint32_t also;      /* enum exh_fault that it may raise too, while it lasts */
 };
 
 /* The faults that cut, in bits. */
@@ -106,7 +106,7 @@ uint32_t faults_zero_ticks(uint32_t rate_Hz); /* at most */
 int faults_next(unsigned source, int state, int open);
 int faults_end(unsigned source, int state, int open);
 
-/* --- the run that is branched from (faults_scene.c) --- */
+/* --- the run that is branched from (scene.c) --- */
 
 enum faults_scene { FAULTS_DROP, FAULTS_BILATERAL, FAULTS_SCENES };
 
@@ -119,7 +119,7 @@ struct faults_base {
     uint32_t stuck_ms;  /* 0: the scene's own */
     uint32_t wait_ms;   /* so much longer before the finger moves */
     uint8_t chatter;    /* 1: a contact that buzzes is a fault, as it is outside experiments */
-    uint8_t not_run;    /* 1: nobody commands RUN */
+    uint8_t not_run;    /* 1: RUN is not commanded */
     uint8_t not_waived; /* 1: nor a calibration, of which there is none */
 };
 
@@ -162,7 +162,7 @@ void faults_lose(uint8_t scene, uint32_t steps);
 /* The scene's state through its own bytes, and back. */
 void faults_through_bytes(uint8_t scene);
 
-/* --- a branch (faults_branch.c) --- */
+/* --- a branch (branch.c) --- */
 
 struct faults_case {
     struct faults_what what[2];
@@ -170,7 +170,7 @@ struct faults_case {
     uint32_t run_tick;     /* RUN is commanded in this one; 0: in none */
     uint8_t whole;         /* 1: its state does not go through bytes */
     uint8_t loses;         /* steps of arming, enum exh_arm, that do not hold any more */
-    uint8_t eager;         /* somebody commands RUN and CLEAR all the time */
+    uint8_t eager;         /* RUN and CLEAR are commanded all the time */
     FILE *trace;           /* force, tick by tick; NULL: none */
 };
 
@@ -180,7 +180,7 @@ enum faults_bad {
     FAULTS_BAD_ZERO = 1 << 2,   /* not zero in time */
     FAULTS_BAD_CUT = 1 << 3,    /* a fault that cuts did not, in the tick that saw it */
     FAULTS_BAD_ENABLE = 1 << 4, /* a drive enabled though the force is zero */
-    FAULTS_BAD_OPEN = 1 << 5,   /* it opened again by itself */
+    FAULTS_BAD_OPEN = 1 << 5,   /* it opened again without a command */
     FAULTS_BAD_CODE = 1 << 6,   /* a code beyond its span */
     FAULTS_BAD_DEVICE = 1 << 7, /* current in the motor after that */
     FAULTS_BAD_LOST = 1 << 8,   /* the branch did not come to its end */
@@ -219,7 +219,7 @@ void faults_ended(void); /* behind the run: does not return in a branch */
 void faults_before(uint32_t tick, struct exh_scene_in *in);
 int faults_after(uint32_t tick, const struct faults_view *v, const struct exh_drive_out *out);
 
-/* What is wrong on the way in and out, and with time (faults_source.c). */
+/* What is wrong on the way in and out, and with time (source.c). */
 void faults_wires_in(struct exh_drive_in *in);
 void faults_wires_out(struct exh_drive_out *out);
 uint32_t faults_late(uint64_t tick);

@@ -36,10 +36,10 @@ struct plan {
     struct faults_base base;
     uint8_t source;
     int pass;
-    uint32_t press_for;          /* ticks on end in the state that the finger presses in */
+    uint32_t press_for;          /* consecutive ticks in the state that the finger presses in */
     int32_t latency[FAULTS_INS]; /* < 0: not known */
     uint32_t small_at, ramp_at;  /* of the pass before; 0: not known */
-    uint32_t press_at[2];        /* likewise: a limit holds, none does */
+    uint32_t press_at[2];        /* of the pass before, too: a limit holds, none does */
     struct row *row;
 };
 
@@ -47,7 +47,7 @@ static unsigned source_of(unsigned row) { return row + 1 < FAULTS_OFF ? row + 1 
 
 /* --- when --- */
 
-/* A tick in OFF, nobody has commanded anything; the link is up. */
+/* A tick in OFF, before any command. The link is up. */
 static uint32_t early(const struct plan *p) { return 2 + p->base.rate_Hz * 3 / 100; }
 
 /* Ticks in the state until then: what is left of the impact. */
@@ -60,7 +60,7 @@ static int state_of(unsigned in)
     return state[in];
 }
 
-/* What the fault itself does, until it is told, may lead from RUN to LIMIT, and back. */
+/* Until it is reported, the fault may lead from RUN to LIMIT, and back. */
 static int is_in(int state, unsigned in, int32_t seen_ticks)
 {
     const int runs = state == EXH_STATE_RUN || state == EXH_STATE_LIMIT;
@@ -113,7 +113,8 @@ static void come_to(const struct plan *p, unsigned in, struct faults_case *c)
 
 static int is_due(struct plan *p, unsigned in, uint32_t tick, struct faults_case *c)
 {
-    /* What takes long to be seen begins so much earlier that it is seen while it presses. */
+    /* A fault with a long latency begins so much earlier that it is seen while the finger
+     * presses. */
     const int early_on = faults_is_memory(p->source) && in != FAULTS_IN_FAULT;
     const int pressed = early_on
                             ? p->pass > 0 && tick == p->press_at[p->base.gentle] - latency(p, in)
@@ -145,7 +146,7 @@ static int is_due(struct plan *p, unsigned in, uint32_t tick, struct faults_case
     }
 }
 
-/* --- what came of it --- */
+/* --- results --- */
 
 static void keep(struct plan *p, unsigned in, const struct faults_seen *s)
 {

@@ -6,8 +6,8 @@
 
 #include <inttypes.h>
 
-/* The force of so many times must have fallen nearly as fast as the law has it: who sees no fall,
- * or a slower one, does not see what he judges. */
+/* In at least so many cases the force must have fallen nearly as fast as the law. If no fall or
+ * only slower ones were seen, the test did not see the release. */
 #define ENOUGH 100
 #define NEAR   0.99
 
@@ -40,7 +40,7 @@ void faults_print_wrong(FILE *f, const struct faults_random *r, int n)
     }
 }
 
-/* Every kind of fault by itself. */
+/* Each kind of fault in a row. */
 static void print_kinds(FILE *f, const struct faults_random *r, int n)
 {
     fprintf(f, "\n| fault that came first | what happens | times | seen | wrong "

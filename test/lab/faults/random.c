@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Any fault at any tick: random times in closed loop, two causes, contacts that close again,
- * somebody who will not stop commanding RUN. */
+/* Any fault at any tick: random times in closed loop, two causes, contacts that close again, RUN
+ * commanded in every tick. */
 #include "lab/faults/part.h"
 
 #include "base/jobs.h"
@@ -18,7 +18,7 @@ static const uint32_t rate_Hz[] = {90, 200, 400, 500, 1000, 2000};
 #define CASES_MAX 400 /* of one run */
 #define CONTROL   32  /* one of so many has no fault */
 #define UNTIL_S   2.2
-#define QUIET_S   0.25 /* nothing may open by itself for so long */
+#define QUIET_S   0.25 /* the gate may not open without a command for so long */
 
 struct one {
     uint32_t tick;
@@ -34,7 +34,7 @@ struct plan {
 };
 
 struct asked {
-    int total, jobs, first; /* times in all, over so many runs; the first of those asked for */
+    int total, jobs, first; /* times in all, number of runs, first run to do */
     uint64_t seed;
 };
 
@@ -105,8 +105,9 @@ static void plan_of(struct plan *p, const struct asked *a, int job)
     qsort(p->at, (size_t)p->n, sizeof p->at[0], by_tick);
 }
 
-/* Whoever commands RUN in OFF may have it, whoever lets go of the dead-man and takes it again may
- * clear; what is gone before it was armed is no cause. */
+/* An eager user may have RUN in OFF, and may clear by letting go of the dead-man and taking it
+ * again. So these cases are not eager. A fault that is gone before arming is no cause, so it
+ * stays. */
 static void fit(struct faults_case *c, const struct faults_view *v)
 {
     for (int k = 0; k < 2; k++) {
@@ -117,7 +118,7 @@ static void fit(struct faults_case *c, const struct faults_view *v)
     if (!v->open) { c->eager = 0; }
 }
 
-/* --- and what came of it --- */
+/* --- results --- */
 
 /* 1 if a cause was to be seen and was not. */
 static int unseen(const struct plan *p, const struct one *o, const struct faults_seen *s, int k)
@@ -129,7 +130,7 @@ static int unseen(const struct plan *p, const struct one *o, const struct faults
         faults_seen_beside(p->base.scene, w->source, other->source, p->base.rate_Hz);
     const int gone = w->for_ticks && w->for_ticks <= within; /* before it had to be seen */
     if (w->source == FAULTS_NOTHING || spec->bits == 0 || spec->may) { return 0; }
-    /* What is told from when the second begins on may be the second's. */
+    /* A report after the second fault has begun may be the second's. */
     if (k == 0 && gone && (beside->bits | beside->also) & spec->bits &&
         s->seen_ticks[0] >= (int32_t)other->after_ticks) {
         return 0;
@@ -262,7 +263,7 @@ static void add(struct faults_random *to, const struct faults_random *from)
     }
 }
 
-/* Every run by itself is as it is among all: --times says how many times each has. */
+/* A single run is the same as among all: --times gives how many cases each has. */
 int faults_random(FILE *f, int total, uint64_t seed, int run, int parallel)
 {
     const int groups = (int)RATES * FAULTS_SCENES;

@@ -15,14 +15,14 @@
 #define GIVE_UP_S 4u /* it never comes to that */
 
 enum when {
-    ASKED,  /* in OFF, before RUN is asked for */
-    INSIDE, /* in OFF, RUN asked for while a finger is inside a wall */
+    ASKED,  /* in OFF, before RUN is commanded */
+    INSIDE, /* in OFF, RUN commanded while a finger is inside a wall */
     RISING  /* while the force limit rises */
 };
 
 static const struct row {
     uint8_t step, loses; /* enum exh_arm: which is named; which does not hold in memory */
-    uint8_t source;      /* or what goes wrong */
+    uint8_t source;      /* or the fault, enum faults_source */
     uint8_t when;
     const char *what;
 } step[] = {
@@ -40,7 +40,7 @@ static const struct row {
 struct refused {
     int32_t err;
     uint8_t tried, right;
-    uint8_t end, named, opened, released; /* what came of it */
+    uint8_t end, named, opened, released; /* results */
     uint32_t bad, faults;
     int32_t zero_ticks;
 };

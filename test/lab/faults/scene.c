@@ -15,7 +15,7 @@
 
 #include <string.h>
 
-#define RUN_AT_S 0.05 /* until then nobody commands anything */
+#define RUN_AT_S 0.05 /* until then nothing is commanded */
 
 static struct {
     const struct faults_base *base;
@@ -96,7 +96,7 @@ struct faults_memory faults_memory(uint8_t scene)
     return m;
 }
 
-/* The guard is told anew, or it were its fault before anybody arms. */
+/* The guard is sealed again, or it would report a fault before arming. */
 void faults_lose(uint8_t scene, uint32_t steps)
 {
     const struct faults_memory m = faults_memory(scene);

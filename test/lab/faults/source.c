@@ -18,8 +18,8 @@ struct on {
     struct faults_what what;
     uint32_t from_tick, to_tick; /* first tick that can see it, first that can't */
     int64_t moved_cnt;           /* what is added to the encoder */
-    uint32_t enc_raw;            /* where it stands */
-    struct exh_drive_out out;    /* what the D/A stands at */
+    uint32_t enc_raw;            /* its count */
+    struct exh_drive_out out;    /* what the D/A holds */
     int begun;
 };
 
@@ -168,8 +168,8 @@ uint32_t faults_late(uint64_t tick)
     return missed;
 }
 
-/* The loop is dead: the board's time goes on, nobody feeds the watchdog, which then takes the
- * drives' enable away. It is set to two and a half periods. */
+/* The loop is dead: the board's time goes on, and the watchdog is not fed. The watchdog, set to two
+ * and a half periods, then disables the drives. */
 static void dead(const struct on *o)
 {
     const uint32_t ticks = 6 + (uint32_t)((FAULTS_DEAD_TICKS - 6) * chance(o, 0));
@@ -240,8 +240,8 @@ static void flip(void *memory, uint32_t size_B, uint32_t how)
     byte[bit_at(size_B, how)] ^= (uint8_t)(1u << (how & 7));
 }
 
-/* The next bit that leaves its parameter a value of its row: a window longer than its memory, say,
- * ends the process at once. */
+/* The next bit whose flip leaves its parameter in its row's range. A window longer than its memory,
+ * for example, would end the process immediately. */
 static uint32_t spanned(const struct faults_memory *m, uint32_t how)
 {
     for (uint32_t k = 0; k < m->pars * 32u; k++, how++) {

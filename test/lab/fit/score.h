@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Score: falls of a plant at the paper's six points and at 1.5 times both gains, from places of the
- * wall, the counts and the clocks that fill all there are evenly (sim/settle.h). */
+/* Score: falls of a plant at the paper's six points and at 1.5 times both gains. Places of the
+ * wall, counts and clocks are spread evenly (sim/settle.h). */
 #ifndef FIT_SCORE_H
 #define FIT_SCORE_H
 

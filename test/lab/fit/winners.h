@@ -6,8 +6,7 @@
 #include "lab/fit/search.h"
 
 /* The best plants of each velocity by `falls` falls a row: a table, and plants.csv in the folder.
- * Says which is the most robust, or, if none is inside both gates, what stands in the way. 0, or
- * as jobs_run(). */
+ * Prints the most robust one, or why none is inside both gates. 0, or as jobs_run(). */
 int winners_judge(const struct search *s, int falls, int jobs, const char *out);
 
 #endif

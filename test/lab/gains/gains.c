@@ -14,7 +14,7 @@ static struct {
     struct gains_share share[GAINS_RATES];
 } is;
 
-/* The map's, unless others are asked for. */
+/* The map's rates, unless the options have others. */
 static void rates_of(struct gains_options *a, const struct gains_map *map)
 {
     if (a->rates_given) { return; }

@@ -6,7 +6,7 @@
 #include "advise/gains.h"
 #include "lab/drop/cells.h"
 
-/* Areas of the k-b plane; a node of a ray stands for what lies about it, gain squared. */
+/* Areas of the k-b plane. A node of a ray covers the area around it, gain squared. */
 struct gains_share {
     double rate_Hz;
     double all, stable, at_rest;            /* of the map; nine of ten falls, all falls rest */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand-lab glove --selftest: the paper's Table I, peak-to-peak noise and stable bits of joint
- * angle, motor position and motor current at rest, and what low-pass and quantizer make of
- * the first. */
+/* exhand-lab glove --selftest: the paper's Table I. It lists peak-to-peak noise and stable bits of
+ * joint angle, motor position and motor current at rest. Then the effect of low-pass and quantizer
+ * on the angle. */
 #include "lab/glove/glove.h"
 
 #include "base/option.h"
@@ -237,7 +237,7 @@ static int behind_table(const struct glove_frames *f)
     return err;
 }
 
-/* A dead sensor is the quietest of all, so Table I alone does not tell. */
+/* A dead sensor has the least noise of all, so Table I alone does not show it. */
 static int faults_line(uint32_t faults)
 {
     if (faults == 0) { return 0; }

@@ -117,7 +117,7 @@ TEST(the_program_takes_what_it_says)
     } row[] = {{"--help", 0}, {"1000 24", 0}, {"25000/25000000 32", 0}, {"", 2}, {"1000", 2},
         {"0 24", 2}, {"20030 24", 2}, {"2/1 24", 2}, {"1/ 24", 2}, {"1000x 24", 2},
         {"4294967297 24", 2}, {"1000 15", 2}, {"1000 33", 2}, {"1000 -1", 2}, {"1000 24 1", 2},
-        {"1 16", 1}}; /* at 1 Hz 10 m/s are more than 16 bits tell */
+        {"1 16", 1}}; /* at 1 Hz 10 m/s exceed 16 bits */
     for (size_t k = 0; k < LEN(row); k++) {
         const int is = status(FREEZE, row[k].words);
         CHECK(is == row[k].status, "freeze %s: %d, want %d", row[k].words, is, row[k].status);

@@ -79,8 +79,8 @@ static void compare(const struct known *k, int64_t cur_lsb, int64_t mon_lsb)
         f_off >> EXH_Q_CUR);
 }
 
-/* Noise-free: within 2 LSB of the current's format (30 nA: half one of the point, 1.5 of
- * the table), and kf within 1 LSB and what half an LSB in the least current makes. */
+/* Without noise the current is within 2 LSB of its format (30 nA): half an LSB of the point, 1.5 of
+ * the table. kf is within 1 LSB, plus the effect of half an LSB in the least current. */
 TEST(a_straight_table_is_recovered_to_the_lsb)
 {
     unsigned cases = 0, measured = 0;

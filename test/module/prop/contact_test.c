@@ -164,7 +164,7 @@ TEST(law_without_memory)
     }
 }
 
-/* Where neither hysteresis nor F0 is asked for, both laws are the same to the bit. */
+/* Without hysteresis and F0 both laws are the same to the bit. */
 TEST(both_laws_agree)
 {
     while (check_case(1)) {

@@ -156,8 +156,8 @@ static void start_at(unsigned shift)
     }
 }
 
-/* Staged anew in every so many ticks, dropped now and then: inside in every tick, and never told by
- * the guard. */
+/* Pairs are staged every few ticks and dropped now and then. The active pair is inside in every
+ * tick, and the guard never reports a change. */
 TEST(inside_in_every_tick)
 {
     uint64_t ticks = 0;
@@ -220,8 +220,8 @@ TEST(the_way_ends)
     }
 }
 
-/* Whatever stands in both arrays, as a damaged keyframe may have it: inside after one step, and
- * from then on. */
+/* Any values in both arrays, as a damaged keyframe may have them. The pair is inside after one
+ * step, and from then on. */
 TEST(inside_from_anywhere)
 {
     while (check_case(20)) {

@@ -82,7 +82,7 @@ TEST(angle_is_within_half_an_lsb)
     }
 }
 
-/* One channel among others, any codes in any order, told again in plain words. */
+/* One channel among others, any codes in any order, judged again by the words of the header. */
 TEST(faults_as_the_header_tells)
 {
     const int32_t scale = 65536;
@@ -236,8 +236,8 @@ TEST(any_poses_end_in_a_word)
     }
 }
 
-/* An abduction whose code goes with a knuckle's but for some noise: from too little to tell
- * them apart, what rounding left was once divided by, and the sums overflowed. */
+/* An abduction whose code follows a knuckle's but for some noise. Too little noise once left a
+ * divisor of rounding errors alone, and the sums overflowed. */
 TEST(what_moves_together_is_refused)
 {
     static struct exh_glove_pose pose[EXH_GLOVE_POSES_MAX];

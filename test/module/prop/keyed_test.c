@@ -149,7 +149,7 @@ TEST(a_million_packets_act_never)
         CHECK(hear(&k) <= 0 && box.taken == taken, "it acts");
         CHECK(box.newest == newest && box.seen == seen, "the window is another");
         if (++tried % 4096 != 1) { continue; }
-        listen(say(&box, &key, 0)); /* who is there is proved anew by it */
+        listen(say(&box, &key, 0)); /* it proves the peer again */
         CHECK(hear(say(&world, &key, 1)) > 0, "the world is not heard");
     }
     check_note("keyed: %" PRIu64 " packets without the key or not of now, 0 act", tried);

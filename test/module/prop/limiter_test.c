@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* limiter.h: whatever is commanded and measured, whatever fails, and whatever stands in its memory:
- * nothing beyond its limits is sent. Judged by wider arithmetic from the parameters alone.
- * EXH_CASES=10000000 makes 10^7 steps of it. */
+/* limiter.h: for any command, measurement, failure and memory contents, nothing beyond its limits
+ * is sent. Wider arithmetic judges it from the parameters alone. EXH_CASES=10000000 makes 10^7
+ * steps. */
 #include "exhand/limiter.h"
 
 #include "check.h"
@@ -166,7 +166,7 @@ static void judge_place(
     was->v = now->enable && was->out.enable ? v : 0;
 }
 
-/* Causes that one step shows by itself. */
+/* Causes that are visible in one step alone. */
 static uint32_t plain_causes(
     const struct exh_limiter_cfg *cfg, const struct exh_limiter_in *in, uint32_t before_us)
 {

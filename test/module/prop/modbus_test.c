@@ -11,7 +11,7 @@
 
 /* --- binary32 --- */
 
-/* v 2^n, n within -64 .. 62; what does not fit is not asked for. */
+/* v 2^n, n within -64 .. 62. The caller ensures that the result fits. */
 static struct wide scaled(struct wide v, int32_t n)
 {
     for (; n > 0; n--) { v = wide_add(v, v); }
@@ -39,7 +39,7 @@ static void nearest(uint32_t bits, int32_t raw, unsigned frac)
 {
     int32_t e;
     int64_t m = mant_of(bits, &e);
-    const int32_t to = e + (int32_t)frac; /* m 2^to stands against raw */
+    const int32_t to = e + (int32_t)frac; /* m 2^to is compared with raw */
     struct wide exact = wide_of(raw), got = wide_of(m), half;
     if (raw == 0) {
         CHECK(bits == 0, "0 of %u: %" PRIx32, frac, bits);

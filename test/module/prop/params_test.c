@@ -73,7 +73,7 @@ static const struct exh_signal rows[] = {
 static const struct exh_signal_group groups[] = {{rows, 3, 3}};
 static const struct exh_signal_table table = {groups, 1};
 
-/* Whatever is staged, applied, dropped and looked at: never told. */
+/* No sequence of staging, applying, dropping and looking is reported. */
 TEST(legal_changes_are_never_told)
 {
     while (check_case(1000)) {

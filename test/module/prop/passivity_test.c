@@ -22,7 +22,7 @@ static struct rig {
     int64_t bound; /* way * the greatest force held, N counts q20 */
 } rig;
 
-/* The code nearest to the current for a force, and the current that it stands for. */
+/* The code nearest to the current for a force, and the current of that code. */
 static int32_t coded(int32_t force_N_q20)
 {
     const int32_t asked = exh_table_at(rig.drive.force_to_cur, force_N_q20);
@@ -118,8 +118,8 @@ static int32_t any_move(void)
     return check_i32_in(-rig.cfg.way_cnt, rig.cfg.way_cnt);
 }
 
-/* What flowed, reckoned anew from the forces held: of outputs in time, and of outputs late by
- * `late` 16ths of a tick, the string's way divided anyhow between the two forces. Both times 16. */
+/* Energy given out, computed again from the forces held. In time, or late by `late` 16ths of a
+ * tick, where any share of the string's way falls to either force. Both times 16. */
 struct flow {
     int64_t in_time, late;
     int32_t held, before;
@@ -171,9 +171,9 @@ TEST(no_contact_gives_out_more_than_the_bound)
     }
 }
 
-/* A spring so stiff that a tick's way is its whole force, met at the speed limit, and then
- * back and forth: the bound is reached within 1 %, and never passed. Without the controller
- * each turn gives as much again. */
+/* The worst case: in a tick a stiff spring reaches its whole force. It is met at the speed limit,
+ * then the string moves back and forth. The energy reaches the bound within 1 % and never passes
+ * it. Without the controller each turn gives as much again. */
 static int64_t worst_given_out(int32_t on, int turns)
 {
     const int32_t way = rig.cfg.way_cnt;
@@ -251,7 +251,7 @@ TEST(the_limit_is_never_above_and_hardly_below)
     }
 }
 
-/* Missed ticks: m on end make the bound m + 1 times as large, once. */
+/* m consecutive missed ticks make the bound m + 1 times as large, once. */
 TEST(missed_ticks_count_for_ticks)
 {
     while (check_case(4000)) {

@@ -163,19 +163,19 @@ TEST(reciprocal_within_its_bound)
     }
 }
 
-/* --- its states, told a second time --- */
+/* --- a second model of its states --- */
 
 struct account {
     int frozen, seen_far;
     struct exh_plane now, held;
     uint32_t age;
     int32_t lim;
-    uint32_t doubts; /* ticks in doubt on end */
+    uint32_t doubts; /* consecutive ticks in doubt */
     uint32_t frozen_n, born_n, refused_n, ignored_n, stale_n, let_go_n;
     int counted;
-    int near, met; /* 0 stands for d_lim; told of while free */
+    int near, met; /* 0: it counts as d_lim; a plane came while free */
     uint32_t late_n;
-    int told;      /* of this object, on end */
+    int told;      /* consecutive planes of this object */
     int64_t ahead; /* q_lim - q at the freeze */
 };
 
@@ -229,7 +229,7 @@ static int32_t account_step(struct account *a, const struct exh_precontact_par *
         d = distance(&a->held, in->tip_m_q30, pad);
         a->doubts = !seen || (in->touching && d < free - par->doubt_m_q30) ? a->doubts + 1 : 0;
         const int back = (int64_t)a->lim - in->pos_m_q30 > a->ahead - par->d_lim_m_q30;
-        go = a->doubts > 5; /* 4 ms, and what has begun */
+        go = a->doubts > 5; /* 4 ms, and the tick that has begun */
         if (!go && (a->doubts > 0 || in->touching || (d >= free && !back))) {
             a->age += a->age <= 100;
             return d;
@@ -275,7 +275,7 @@ static int32_t account_step(struct account *a, const struct exh_precontact_par *
         a->seen_far = 0;
     } else if (!a->counted && a->met && in->vel_mps_q27 > 1342177 && /* 0.01 m/s */
                a->told < 2) {
-        a->lim = INT32_MAX; /* until it is told again */
+        a->lim = INT32_MAX; /* until the next plane */
     } else if (!a->counted && a->met && in->vel_mps_q27 > 1342177 && par->scale_q24 <= 2 << 24) {
         a->frozen = 1;
         a->near = 0;
@@ -365,7 +365,7 @@ TEST(states_against_a_second_account)
         "all states seen");
 }
 
-/* Nothing that is told after the freeze reaches a force, whatever else comes in. */
+/* No plane that arrives after the freeze changes a force, for any other input. */
 TEST(no_message_after_the_freeze_is_felt)
 {
     while (check_case(100)) {
@@ -598,8 +598,8 @@ TEST(the_link_is_not_felt)
 
 /* --- what curves and moves while frozen: theory's bound, computed beside --- */
 
-/* A sphere that moves towards a finger that comes down and slides, in the plane y = 0; m q30,
- * a millisecond a tick. The plane told is the tangent at the point nearest the fingertip. */
+/* A sphere moves towards a finger that comes down and slides, in the plane y = 0. m q30, a
+ * millisecond a tick. The plane sent is the tangent at the point nearest the fingertip. */
 struct slide {
     int64_t R, down, aside, up; /* radius; finger and sphere, a tick */
     int64_t x0, z0;             /* finger at tick 0; the sphere's centre is 0 there */

@@ -45,7 +45,7 @@ static int any_box(struct box *b, unsigned n)
     return 1;
 }
 
-/* code/rawpA amperes, q26, rounded and limited: what the code stands for. */
+/* code/rawpA amperes, q26, rounded and limited: the current of the code. */
 static int stands_for(const struct exh_drive_par *par, int32_t codes, int32_t coded)
 {
     const struct wide exact = wide_shl(wide_of(codes), EXH_Q_CUR + EXH_Q_DAC);
@@ -139,7 +139,7 @@ TEST(gate_holds_with_any_input)
     }
 }
 
-/* What came last, as the state machine should remember it. */
+/* The last inputs, as the state machine should remember them. */
 struct memory {
     uint64_t late;
     uint32_t ticks, opened, in_release;

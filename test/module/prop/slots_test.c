@@ -78,7 +78,7 @@ TEST(old_or_new_whenever_the_supply_fails)
                 buf[EXH_SLOT_HEAD_B + i] = (uint8_t)(check_u64() & 0xFF);
             }
             n = exh_slots_encode(&to, flash[0], flash[1], slot_B, buf, sizeof buf, len_B);
-            if (n == 0) { continue; } /* by chance it stands there */
+            if (n == 0) { continue; } /* the same image is there by chance */
             CHECK(n == (int32_t)EXH_SLOT_B(len_B) && to < 2, "%" PRId32 " to %u", n, to);
             if (erase(to & 1, how == 0)) {
                 (void)program(

@@ -41,8 +41,8 @@ static int64_t left_of(uint32_t a, uint32_t n)
     return left;
 }
 
-/* A delay and a lag behind it, and noise: while less than the tolerance is left of the largest step
- * after cfg.ticks, nothing is told, whatever is commanded. */
+/* A delay, a lag and noise. While the rest of the largest step after cfg.ticks is below the
+ * tolerance, no fault is reported for any command. */
 TEST(what_follows_is_never_told)
 {
     static int32_t coded[TICKS];
@@ -100,7 +100,7 @@ TEST(as_the_history_says)
     }
 }
 
-/* A current that stands while all that is coded is farther from it than the tolerance. */
+/* A constant current, while every code is farther from it than the tolerance. */
 TEST(what_stands_is_told_in_time)
 {
     while (check_case(2000)) {

@@ -131,9 +131,9 @@ TEST(pole_share_is_exact)
 
 /* --- foaw --- */
 
-/* By definition: the least-squares slope over n+1 samples from its normal
- * equations, tried for n = 1, 2 … until a sample leaves the line through the
- * newest by more than tol. hist[0] is the newest. Slope as *num / *den. */
+/* By definition: the least-squares slope over n+1 samples from its normal equations. n = 1, 2 …
+ * until a sample leaves the line through the newest by more than tol. hist[0] is the newest. Slope
+ * as *num / *den. */
 static void foaw_reference(
     const int64_t *hist, int have, int n_max, int tol, int64_t *num, int64_t *den)
 {
@@ -278,8 +278,8 @@ TEST(track_poles_are_double)
     }
 }
 
-/* Every count at every tick may be anything: nothing wraps, and a count that
- * stands still brings each estimator back to 0. */
+/* Every count at every tick may be anything: nothing wraps. A constant count brings each estimator
+ * back to 0. */
 TEST(any_counts_then_rest)
 {
     while (check_case(2000)) {

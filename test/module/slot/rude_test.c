@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Whatever a controller answers, what goes out is the gate's: not a number, infinite, huge,
- * negative, late. */
+/* For any answer of a controller the output is the gate's: not a number, infinite, huge, negative,
+ * late. */
 #include "rig.h"
 
 #include "exhand/safety.h"
@@ -70,7 +70,7 @@ static void run_rude(int what, int pace)
     /* A busy machine may miss whole falls: the fault ends this run, not the fall. */
     c.board.falls = pace ? 1000 : 1;
     c.board.max_ticks = pace ? 600000 : 8000;
-    if (pace) { c.board.device.height_m = 0.01; } /* nobody waits for more */
+    if (pace) { c.board.device.height_m = 0.01; } /* a short fall, because the run is paced */
     c.board.slack_s = 0.05;                       /* other programs may be about */
     (void)run_drop(&c, &r);
     run_free(&r);
