@@ -55,7 +55,7 @@ static int32_t any_size(struct golden_rng *r, int32_t most)
 
 static uint32_t any_u32(struct golden_rng *r) { return (uint32_t)(golden_u64(r) & UINT32_MAX); }
 
-/* The scene names a board: nobody asks it here. */
+/* The scene refers to a board. It is not used here. */
 uint32_t exh_board_cycles(void) { return 0; }
 
 int exh_board_read_glove(struct exh_glove_in *in)
@@ -282,7 +282,7 @@ static void send_planes(struct golden_rng *r, uint32_t rate_Hz)
     send(&p, r);
 }
 
-/* id, instances, what is asked for, and what cannot be. */
+/* id, instances, range of valid values, and an invalid one. */
 static const struct {
     uint16_t id, n;
     int32_t lo, hi, bad;

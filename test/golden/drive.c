@@ -121,7 +121,7 @@ void golden_drive_par(struct exh_drive_par *p, struct golden_rng *r, uint32_t ra
     if (p->person_A_q26 > 442918502) { p->person_A_q26 = 442918502; }
 }
 
-/* An axis with tables of its own. */
+/* An axis with its own tables. */
 struct axis {
     struct exh_drive_par par;
     struct exh_drive_cfg cfg;

@@ -24,22 +24,21 @@ int golden_cells(void);
 int golden_singles(
     const char *name, uint32_t first, uint32_t crc, int ask, uint32_t digest[GOLDEN_HUNDRED]);
 
-/* 1 if there are files, so that nobody else compares. */
+/* 1 if there are files: then no other comparison is made. */
 int golden_files(void);
 
-/* A module's digests at 1..GOLDEN_RATES go to the end of the table EXH_WRITE, if one is asked for:
- * in hundreds, the first of them with the name. */
+/* Appends a module's digests at 1..GOLDEN_RATES to the table EXH_WRITE, if it is given: in
+ * hundreds, the first of them with the name. */
 void golden_write(const char *name, uint32_t first, const uint32_t digest[GOLDEN_HUNDRED]);
 
-/* 1 if EXH_EXPLAIN=0: count, and tell nothing. */
+/* 1 if EXH_EXPLAIN=0: count, and print nothing. */
 int golden_quiet(void);
 
 /* Calls the generator for a run whose digest is wrong, and returns what to say of it: the
  * first tick that differs, expected and got. Never NULL; good until the next call. */
 const char *golden_explain(const char *name, golden_run *run, uint32_t rate_Hz);
 
-/* The same against the trace in the folder EXH_TRACES: "" where all is as it says, and where no
- * folder is asked for. */
+/* The same against the trace in the folder EXH_TRACES. "" if both agree, or without a folder. */
 const char *golden_trace(const char *name, golden_run *run, uint32_t rate_Hz);
 
 #endif

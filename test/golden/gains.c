@@ -99,7 +99,7 @@ static int32_t move(void)
     return done;
 }
 
-/* Both at once, no wall and knots among them: somewhere to go. */
+/* Stages both k and b. No wall and knots are among the goals. */
 static void wish(struct golden_rng *r, int32_t k, int32_t b)
 {
     const int64_t how = golden_draw(r, 0, 15);

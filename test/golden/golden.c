@@ -21,7 +21,7 @@ void golden_state_end(struct golden *g, const struct exh_bytes *c)
     g->state_B += c->at;
 }
 
-/* CRC-32 by a table of its own: the library's is among what is tested. */
+/* CRC-32 by a separate table: the library's is under test. */
 static uint32_t crc_add(uint32_t crc, const uint8_t *p, uint32_t n)
 {
     static uint32_t table[256];

@@ -24,7 +24,7 @@
 #define GOLDEN_TICKS    256u
 #define GOLDEN_AGAIN    192u   /* at this tick everything is set up anew, at another rate */
 #define GOLDEN_RESTORE  100u   /* the state before this tick is read back from its bytes */
-#define GOLDEN_RATES    2000u  /* all of these are compared, if no others are asked for */
+#define GOLDEN_RATES    2000u  /* all of these are compared, if no others are requested */
 #define GOLDEN_BEYOND   20000u /* there are digests up to here */
 #define GOLDEN_HUNDRED  100u   /* so many rates have one CRC of their digests */
 #define GOLDEN_HUNDREDS (GOLDEN_BEYOND / GOLDEN_HUNDRED)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # The golden vectors: made by a model in Python, and checked against planted errors.
 
-# Digests of single rates, as the library here computes them; who reads them holds each hundred
-# against digests.inc. make test leaves them, too, so that no rate is computed twice.
+# Digests of single rates, as the library here computes them. A reader checks each hundred against
+# digests.inc. make test writes them too, so that no rate is computed twice.
 golden_rates := $(B)/golden/rates.txt
 $(golden_rates): $(B)/test/golden/golden_test
 	@mkdir -p $(@D)

@@ -25,12 +25,12 @@ static uint32_t digest_of(golden_run *run, uint32_t rate_Hz)
     return g.crc;
 }
 
-/* What came of a module's rates. */
+/* Results of a module's rates. */
 struct tally {
     uint32_t ran, differ, first; /* the first rate that differs */
     uint32_t crc;                /* of the digests that ran */
     uint32_t hundreds, crc_hundreds;
-    uint32_t unknown; /* rates whose digest nobody says */
+    uint32_t unknown; /* rates without a known digest */
     int rough;        /* differ has whole hundreds of which some rates may agree */
 };
 
@@ -64,13 +64,13 @@ static void one_by_one(
     static uint32_t digest[GOLDEN_HUNDRED];
     const uint32_t before = t->differ;
     const int whole = h->n == GOLDEN_HUNDRED;
-    /* The generator takes its time: of whole hundreds only the first that differs is asked for. */
+    /* The generator takes its time: of whole hundreds only the first that differs is requested. */
     const int known = golden_singles(name, first, want, !whole || before == 0, digest);
     if (!known && !whole) { t->unknown += h->n; }
     for (uint32_t i = 0; known && i < h->n; i++) {
         if (h->got[i] != digest[h->rate[i] - first]) { differs(t, h->rate[i]); }
     }
-    if (whole && t->differ == before) { /* nobody knows which, or the CRC is an old one */
+    if (whole && t->differ == before) { /* no digest says which, or the CRC is an old one */
         t->rough = 1;
         for (uint32_t i = 0; i < h->n; i++) { differs(t, h->rate[i]); }
     }

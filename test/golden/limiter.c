@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* limiter: each kind, with whatever is watched, what set-up refuses, and what comes in wrong. */
+/* limiter: each kind, any watched quantities, refusals of set-up, and wrong inputs. */
 #include "modules.h"
 
 #include "exhand/limiter.h"

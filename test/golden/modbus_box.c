@@ -94,7 +94,7 @@ void golden_box_tick(struct golden_box *b, struct golden_rng *r, uint32_t k)
     exh_trace_step(&b->trace, s.tick, b->signal);
     b->params.locked = (k + 3) >> 4 & 1; /* before the registers know */
     b->regs.locked = k >> 4 & 1;
-    if (golden_draw(r, 0, 7) == 0) { /* somebody else wants something */
+    if (golden_draw(r, 0, 7) == 0) { /* another source stages a value */
         uint32_t i = (uint32_t)golden_draw(r, 0, BOX_PARAMS - 1);
         const struct exh_signal *row = exh_signal_at(&par_table, i, NULL);
         const int32_t any = (int32_t)golden_draw(r, row->min, row->max);
@@ -355,7 +355,7 @@ uint32_t golden_request(const struct golden_box *b, struct golden_rng *r, uint8_
     return len_B;
 }
 
-/* --- what came of it --- */
+/* --- results --- */
 
 void golden_put_bytes(struct golden *g, const uint8_t *p, uint32_t len_B)
 {

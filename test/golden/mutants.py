@@ -2,16 +2,16 @@
 # SPDX-License-Identifier: MIT
 """Mutants: small changes of the library that the golden vectors must notice.
 
-Each row names a module, a source and a text in it with another in its place. The changed source is
-compiled and linked with the test's objects, the module is run at every rate, and the share of rates
-whose digest differs is printed. Below 95 % (rows of THIN: what stands there), or a build
-that fails: exit 1. A text that is not there: exit 2, whichever are dealt.
+Each row names a module, a source, a text in it and its replacement. The changed source is compiled
+and linked with the test's objects, and the module is run at every rate. The share of rates whose
+digest differs is printed. Exit status 1: a share below 95 % (rows of THIN: below the number there),
+or a build that fails. Exit status 2: a text that is not in its source, in any row.
 
     mutants.py [--some N] [--seed S] [MODULE...]
 
-B, CC: where the test was built (build), the compiler (cc)
---some N: of each module every Nth, and one at least, as the seed deals them (that of the commits,
-if none is given: each commit has others), at a fifth of the rates.
+B, CC: where the test was built (build), the compiler (cc).
+--some N: every Nth mutant of each module, and one at least, at a fifth of the rates. The seed
+chooses them. Without --seed it is made of the commits, so that each commit has others.
 """
 
 import argparse
@@ -43,8 +43,8 @@ TRACK, WATCH, GATE, TABLE = (L + "act/tracking.c", L + "safe/motion.c", L + "act
                              L + "act/table.c")
 PASSIVITY, GAINS, CHATTER = (L + "law/passivity.c", L + "law/gains.c", L + "safe/chatter.c")
 
-# module, source, text, what stands there instead. A changed header is compiled into the module's
-# own run, which is where its inline functions are.
+# module, source, text, its replacement. A changed header is compiled into the module's run, which
+# is where its inline functions are.
 MUTANTS = (
     ("fix", L + "num/fix.c", "if (rem >= den - rem) { mant++; }", ""),
     ("fix", L + "num/fix.c", "if (r >= den) {\n            r", "if (r > den) {\n            r"),
@@ -86,7 +86,7 @@ MUTANTS = (
     ("signal", L + "num/signal.c", "exh_bytes_u8(&c, &row.when);", ""),
     ("signal", L + "num/params.c", "raw < row->min ||", "raw <= row->min ||"),
     ("signal", L + "num/params.c", "(left >> shift) + ((", "(left >> shift) + (0 * ("),
-    # taken <= time: the two are the same at few rates; unit/params tells it.
+    # taken <= time: the two are the same at few rates; unit/params detects it.
     ("signal", L + "num/params.c", "if (p->locked && exh_signal_is_slewed(row)) {",
      "if (exh_signal_is_slewed(row)) {"),
     ("signal", L + "num/params.c", "falls ? 0 : p->shift & 31u", "p->shift & 31u"),
@@ -434,9 +434,9 @@ MUTANTS = (
     ("drop", H + "axis.h", "exh_velocity_window_step(a->velocity, a->velocity_cfg, cnt)",
      "exh_velocity_window_step(a->velocity, a->velocity_cfg, cnt + 1)"),
 )
-# What 256 ticks show at fewer rates, as the fingers of one box hinder each other at arming: what it
-# must be seen at all the same, and what tells it besides. Open: stimuli that come to these at every
-# rate.
+# The fingers of one box hinder each other at arming, so 256 ticks show these at fewer rates. A row
+# has the share at which it must still be seen. A comment names another test that detects it. Open:
+# stimuli that reach these at every rate.
 THIN = {
     "if (p->phase == EXH_PRECONTACT_FROZEN &&": 0.60,  # sim/bilateral
     # a plane that comes near the finger is rare among random ones: unit/precontact, sim/late
@@ -463,8 +463,8 @@ THIN = {
     "s->ticks < cfg->ticks": 0.37,                     # unit/chatter, as of the next
     "left & ~(left >> 63)": 0.55,
     "to->a >= from->a": 0.28,                          # unit/filter; two high kinds are rare
-    # Of 768 requests, 256 on the line, few come there; unit/modbus, unit/trace and unit/modbus_rtu
-    # tell them.
+    # Of 768 requests, 256 on the line, few come there. unit/modbus, unit/trace and unit/modbus_rtu
+    # detect them.
     "q->len_B != 10u + q->p[9]": 0.88,
     "? r->active[i]": 0.50,
     "r->touched[i >> 5] &= ~bit;": 0.65,
@@ -507,8 +507,8 @@ def holds(source, old):
 
 
 def changed(where, module, source, old, new):
-    """Writes the mutant into a folder that comes before all others; the file to compile, and the
-    one that it stands for."""
+    """Writes the mutant into a folder that comes before all others. Returns the file to compile,
+    and the one that it replaces."""
     with open(os.path.join(ROOT, source)) as f:
         text = f.read()
     public = source.startswith(H)
@@ -526,7 +526,7 @@ def run(command, **more):
 
 
 def share(mutant, rates):
-    """Of the rates, those at which the module's digest differs; or the reason why nobody knows."""
+    """The share of rates at which the module's digest differs, or why it is unknown."""
     module, source, old, new = mutant
     with tempfile.TemporaryDirectory() as where:
         path, original = changed(where, module, source, old, new)
@@ -571,7 +571,7 @@ def main():
     if lost:
         p.error("texts that no source has: change each as its source was\n  " + "\n  ".join(lost))
     homeless = sorted({m for m, source, _, _ in MUTANTS if source.endswith(".h")} - CALLS.keys())
-    if homeless:
+    if homeless:  # reported in every run, not only when the deal has one of theirs
         p.error("modules with a mutant in a header that CALLS does not name: " + str(homeless))
     rates, slack = ({"EXH_RATES": FIFTH}, SLACK) if a.some > 1 else ({}, 0)
     if a.some > 1:

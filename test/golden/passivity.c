@@ -66,7 +66,7 @@ static void any_asked(struct exh_force_ledger *f, struct golden_rng *r, int32_t 
     f->damper_N_q20 = golden_draw(r, -(INT32_C(1) << 22), INT32_C(1) << 22);
 }
 
-/* What the code stands for: some 20000 LSB beside it, now and then nothing. */
+/* The current of the code: with an error of up to 20000 LSB, now and then 0. */
 static int32_t any_coded(const struct finger *d, struct golden_rng *r, int32_t force)
 {
     const int64_t off = golden_draw(r, -20000, 20000);

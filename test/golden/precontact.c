@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* precontact: the distance to a plane told, q_lim frozen before contact; advice. */
+/* precontact: the distance to a plane sent, q_lim frozen before contact; advice. */
 #include "modules.h"
 
 #include "exhand/fix.h"
@@ -147,7 +147,7 @@ static int refused(int64_t how, struct exh_period T)
 
 /* --- a tick --- */
 
-/* A plane as told; the finger may go on to another object. */
+/* A plane as sent. The finger may go on to another object. */
 static struct exh_plane any_plane(unsigned f, int64_t how, struct golden_rng *r)
 {
     const uint8_t materials = world.cfg[f].materials;

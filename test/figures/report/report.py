@@ -6,18 +6,20 @@
               [--help]
 
 A section is a row of sections.tsv: its name, what make has to build (or -), a command, the seconds
-that it takes, a title, and what its picture says. The command runs at the top of the tree with B
-(build), OUT (where its CSV files go) and SHORT (1 with --short:
-few points) in its environment. NAME.plt then draws NAME.png from them, after style.gp; a section
-without NAME.plt has no picture. What the command writes into OUT/NAME.md is its table in the page;
-else NAME.csv is, if it is not long.
+that it takes, a title, and the text for its picture. The command runs at the top of the tree. B
+(build), OUT (directory of its CSV files) and SHORT (1 with --short: few points) are in its
+environment.
+
+NAME.plt then draws NAME.png from them, after style.gp. A section without NAME.plt has
+no picture. The table in the page is OUT/NAME.md if the command writes it. Otherwise it is NAME.csv,
+if it is not long.
 
 Exit status of a command: 0 ok; 3 a tool is missing, which skips the section and names it; else the
 section has failed. Lines of its output that begin with "skipped: " name what it went without, those
 with "note: " go into the page, the rest into OUT/NAME.log. One command in several rows runs once.
 
---short: few points, for CI; --only: these sections; --jobs N: so many sections at a time (as many
-as there are cores) Exit status: 0 ok, 1 a section failed, 2 bad usage, 130 interrupted.
+--short: few points, for CI. --only: these sections. --jobs N: so many sections at a time (the
+number of cores). Exit status: 0 ok, 1 a section failed, 2 bad usage, 130 interrupted.
 """
 
 import argparse
@@ -44,7 +46,7 @@ VERDICT = ("**Take exhand where the CPU has no FPU for double, where a log of on
 
 
 class Section:
-    """A row of the table and what came of it."""
+    """A row of the table and its results."""
 
     def __init__(self, row):
         self.name, self.make, self.command, seconds, self.title, self.says = row
@@ -88,7 +90,7 @@ def run(command, env, limit_s):
 
 
 class Report:
-    """All that is asked for, in one directory."""
+    """The requested sections, in one directory."""
 
     def __init__(self, args, sections):
         self.args, self.sections = args, sections
@@ -236,7 +238,7 @@ class Report:
 
 
 def made(target, status, text):
-    """What came of make: .ci/deps says which tool is missing."""
+    """Status and text for a result of make. .ci/deps names the missing tool."""
     lacks = re.findall(r"^.*: missing: .*$", text, re.M)
     if status and lacks:
         return "skipped", lacks[0].strip()

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Does report.py tell what it should: sections that end well, are skipped, fail, take too long or
-share a run; pages and statuses? Exit status: 0 ok, 1 not."""
+"""Tests report.py with sections that end well, are skipped, fail, take too long or share a run.
+Checks its pages and statuses. Exit status: 0 ok, 1 not."""
 
 import os
 import re

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Work-precision diagrams: error over cost, both logarithmic, a panel per case.
 
-Ours in one colour, other integer code, floating point hollow; the front of integer code, of which
-nothing is both cheaper and more exact, as a line, where it has two points at least. Ours, the front
-and the best of floating point have names in the panel; what is behind them is faint and nameless.
+Our code has one colour. Other integer code has another, and floating point is hollow. The front of
+integer code is a line, if it has two points at least: nothing is both cheaper and more exact. Our
+code, the front and the best of floating point have names in the panel. All else is faint and
+nameless.
 """
 
 import csv
@@ -67,8 +68,9 @@ def stairs(step, x, y):
 
 
 def place(points, x, y, width, height, em, line=()):
-    """Where the labels go, and where a line from the mark ends at each; shares of the panel from
-    its lower left: each beside its mark, none over another one, a mark or the line."""
+    """Places of the labels, and where a line from the mark ends at each. Both are shares of the
+    panel from its lower left. Each label is beside its mark, and none covers another one, a mark or
+    the line."""
     def pixel(cost, error):
         return (math.log(cost / x[0]) / math.log(x[1] / x[0]) * width,
                 math.log(error / y[0]) / math.log(y[1] / y[0]) * height)

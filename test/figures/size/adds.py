@@ -188,7 +188,7 @@ GOAL_HEAD = ["processor", "set-up on", "compiled", "text_B", "data_B", "bss_B", 
              "with loop and grip: text_B", "RAM_B", "stack_B", "insn/tick",
              "share of 3072 B, 256 B"]
 FROZEN = "1000"
-# Where set-up is, how it is compiled, and what make is told.
+# Where set-up is, how it is compiled, and the arguments of make.
 GOAL_WAYS = [("target", "-O2", ()), ("target", "-Os", ("O=s",)),
              ("frozen", "-O2", ("FROZEN=" + FROZEN, "WHOLE=")),
              ("frozen", "-Os", ("O=s", "FROZEN=" + FROZEN, "WHOLE=")),

@@ -1,11 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# No floating point and no division in the library: banned.sh ARCHIVE OBJDUMP
-# Refutes "integer only" and "divides nowhere" on the object code: names every function that has
-# a divide instruction, an x87 one, an SSE/AVX instruction that computes, compares or converts
-# floats, or a VFP one. Registers of
-# these units may move and combine integers (struct copies, memset). Software floating point
-# and division show as undefined helpers, which undef.sh refuses.
+# banned.sh ARCHIVE OBJDUMP: no floating point and no division in the library. It refutes "integer
+# only" and "divides nowhere" on the object code. It names each function with a divide instruction,
+# an x87 or VFP one, or an SSE/AVX one that computes, compares or converts floats. Registers of
+# these units may move and combine integers (struct copies, memset). Software floating point and
+# division show as undefined helpers, which undef.sh refuses.
 # Exit status: 0 none, 1 some, 2 bad usage or an unknown machine, 3 no such tool.
 # shellcheck source=test/figures/size/archive.sh
 . "${0%/*}/archive.sh"

@@ -3,25 +3,26 @@
 """What a scene costs, which modules are in it and why, and what one thing more adds: costs.py
 [--out DIR] [--short] [--update] [--help]
 
-Reads what size.sh has built and measured in B/size (runs it where something is newer), and writes
-into DIR (B/size/costs; OUT in the environment): cost, modules, features, adds and goal, each as
-.csv, with a .md where a table reads better.
+Reads what size.sh has built and measured in B/size. Runs it if a source is newer. Writes into DIR
+(B/size/costs; OUT in the environment) these tables, each as .csv, some as .md too:
 
     cost      scene x port: bytes, worst stack, instructions per tick (size.sh says how)
     modules   scene x port x library module: bytes in the image, bytes that the module has,
-    instructions per tick, and the shortest way
-              from the scene's table of functions to it, by the relocations of the objects; from
-              main(), if the scene does not lead there
-    features  scene x port: what would go if nothing called some modules: they, and all that only
-    they lead to adds      what a finger, the glove, the link, passivity, a log and others add:
-    images and runs with and without goal      library and scene of `minimal` on Cortex-M3 and M0
+              instructions per tick, and the shortest way to it by the relocations of the objects:
+              from the scene's table of functions, or else from main()
+    features  scene x port: what the image would lose if nothing called some modules: they, and all
+              that only they lead to
+    adds      what a finger, the glove, the link, passivity, a log and others add: images and runs
+              with and without
+    goal      library and scene of `minimal` on Cortex-M3 and M0
 
 --short: no variants are built or run: of adds those between scenes, goal for what size.sh has
 built.
 --update: the tables of docs/TABLES.md anew, between <!-- costs NAME --> and <!-- end -->.
 Instructions of modules and adds are those of this machine's code, by callgrind: the mean of the
-ticks that size.sh counts. Exit status: 0 ok, 1 the walk over the relocations does not find what the
-linker kept, 2 bad usage, 3 a tool is missing.
+ticks that size.sh counts.
+Exit status: 0 ok, 1 the walk over the relocations does not find what the linker kept, 2 bad usage,
+3 a tool is missing.
 """
 import argparse
 import csv

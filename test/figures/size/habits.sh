@@ -1,12 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# What the library never does, on its object code: habits.sh ARCHIVE OBJDUMP
-# Refutes "no recursion", "no calls through pointers" and "no memory of its own that changes": looks
-# for cycles in the graph of calls and tail calls (a function that jumps to itself is a loop), for
-# calls of a register or a word in memory (a tail call through one cannot be told from a switch's
-# table), and for .data, .bss and common symbols, but for the self-test's: its operands are in
-# memory, so that no compiler works out the answers. Objects must be compiled with
-# -ffunction-sections.
+# habits.sh ARCHIVE OBJDUMP: what the library never does, on its object code. It refutes "no
+# recursion", "no calls through pointers" and "no memory that changes":
+#   - no cycles in the graph of calls and tail calls. A function that jumps to itself is a loop.
+#   - no calls of a register or of a word in memory. A tail call through one looks like a switch's
+#     jump table, so it is not found.
+#   - no .data, .bss and common symbols, except the self-test's. Its operands are in memory, so that
+#     no compiler computes the answers.
+# Objects must be compiled with -ffunction-sections.
 # Exit status: 0 none, 1 some, 2 bad usage or an unknown machine, 3 no such tool.
 # shellcheck source=test/figures/size/archive.sh
 . "${0%/*}/archive.sh"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The smallest caller of a limiter, for its size. What it is set up with and what comes in are data
- * of the caller. */
+/* The smallest caller of a limiter, for its size. Its set-up and its inputs are data of the
+ * caller. */
 #include "exhand_limiter.h"
 
 extern struct exh_limiter_par drive_par;

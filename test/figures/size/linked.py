@@ -2,10 +2,9 @@
 """What a linked image consists of, and why: out of the linker's map, and of the relocations of the
 objects that it was linked from.
 
-Every function and table of ours has a section of its own (-ffunction-sections), and the linker
-keeps what is referred to from what it keeps. The same walk is made here over the objects'
-relocations, so that the way to a module can be told, and what would go if some functions were never
-called.
+Every function and table of ours has a separate section (-ffunction-sections). The linker keeps each
+section that a kept section refers to. The same walk here, over the objects' relocations, shows the
+way to a module. It also shows what the image would lose if some functions were never called.
 """
 import glob
 import re

@@ -23,7 +23,7 @@ for map in "$@"; do
     }
     /^Linker script and memory map/ { on = 1 }
     !on || /^ \*/ { next }
-    /^ \.[a-z]/ && NF == 1 { name = $1; next } # long names stand alone
+    /^ \.[a-z]/ && NF == 1 { name = $1; next } # a long name has its own line
     /^ \.[a-z]/ && NF >= 4 { name = $1; at = $2; size = $3; file = $4 }
     /^  +0x/ && NF >= 3 && name != "" { at = $1; size = $2; file = $3 }
     size ~ /^0x/ && at !~ /^0x0+$/ {

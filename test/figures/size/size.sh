@@ -1,22 +1,21 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# What a scene costs on a port: size.sh [--update] [SCENE...]
-# Refutes "a scene links only what it calls": prints bytes, worst-case stack, instructions per
-# tick and the library symbols of each scene x port, and compares the symbols with the committed
+# size.sh [--update] [SCENE...]: what a scene costs on a port.
+# Refutes "a scene links only what it calls". For each scene x port it prints bytes, worst-case
+# stack, instructions per tick and the library symbols. It compares the symbols with the committed
 # symbols.tsv (symbols.py). --update writes the columns of these scenes anew.
 #
-#   posix  library and scene as this machine's compiler makes them, in an image linked against
-#          ports/template: the simulator around them would drown them. Instructions by callgrind,
-#          the mean of those of 3000 ticks, into the wall and back, that run in contact (scenes
-#          without a wall: that run; without safety: all; said beside the table).
-#   pc104  the image with constants for cards (CARDS=none), which is what runs under QEMU, linked of
-#          its parts, so that they can be told apart. Of one that is linked as one program
+#   posix  library and scene by this machine's compiler, in an image linked against ports/template.
+#          The simulator around them would be far larger. Instructions by callgrind: the mean of
+#          those of 3000 ticks, into the wall and back, that run in contact. Scenes without a wall:
+#          of the ticks that run. Without safety: of all. A note beside the table says so.
+#   pc104  the image with constants for cards (CARDS=none), as QEMU runs it. It is linked from its
+#          parts, so that their bytes can be counted. Of an image that is linked as one program
 #          (SCENE_WHOLE) the stack must fit, too.
-#          Instructions by its own count there (time stamp counter, one per instruction), the
-#          dearest tick of 2000, arming, ramp and running among them; with nothing moving.
-#   mps2   the image, a loop-back for drives. Instructions in virtual time under QEMU, to 1: 64 ns
-#          each,
-#          seen by a timer of 25 MHz (bilateral: 32 ns, to 2); the dearest tick, nothing moving.
+#          Instructions by its time stamp counter, one per instruction: the longest tick of 2000,
+#          with arming, ramp and running among them, and nothing moving.
+#   mps2   the image, a loop-back for drives. Instructions in virtual time under QEMU, 64 ns each,
+#          to 1 (bilateral: 32 ns, to 2), by a timer of 25 MHz. The longest tick, nothing moving.
 #          minimal once more as minimal-frozen-1000 (make FROZEN=1000): scene and library set up and
 #          linked as one program.
 #   stm32f405  the image for drives: bytes and stack alone.
@@ -34,7 +33,7 @@ ticks=2000
 sweep=3000
 update=no
 failed=no
-# no more: what the caller's make was told (CC, O, ...) would change the figures
+# Nothing more: the caller's options of make (CC, O, ...) would change the figures.
 MAKEFLAGS=-j$(nproc 2>/dev/null || echo 1)
 export MAKEFLAGS
 
@@ -136,8 +135,8 @@ stack_fits()
     fi
 }
 
-# linked_bytes SCENE: text, data, bss of library and scene in the image on the template port, out
-# of the linker's map. Long section names stand on a line of their own.
+# linked_bytes SCENE: text, data and bss of library and scene in the image on the template port,
+# from the linker's map. Long section names have their own line there.
 linked_bytes()
 {
     ours="libexhand[.]a[(]|/examples/$1/|/examples/glove/cal[.]o|/examples/drop/drop[.]o"
@@ -203,7 +202,7 @@ without()
 # counted SCENE: most instructions of one tick on pc104, or -
 counted()
 {
-    [ "$1" = calibrate ] && { echo -; return; } # it wants to be told of a mass
+    [ "$1" = calibrate ] && { echo -; return; } # it needs a known mass
     # shellcheck disable=SC2046 # none or one word
     QEMU_FLAGS="-icount shift=0,sleep=off" ports/pc104/run.sh "$b/pc104/$1.elf" "ticks=$ticks" \
         $(without "$1") \
@@ -285,8 +284,8 @@ mps2_row()
     row "$1" mps2 $bytes "$stack" "$(counted_m "$1")"
 }
 
-# The image for drives, linked of its parts, so that the stack can be told; not run: what runs it is
-# no part of this. Its symbols of the library are those of mps2.
+# The image for drives, linked from its parts, so that the stack can be computed. It is not run
+# here: no emulator of it is part of this. Its library symbols are those of mps2.
 stm32f405_row()
 {
     cross=arm-none-eabi-

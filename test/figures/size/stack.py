@@ -2,18 +2,23 @@
 # SPDX-License-Identifier: MIT
 """Worst-case stack of an image, in bytes: stack.py [--root main] [--objdump objdump] OBJECT...
 
-Each OBJECT was compiled by gcc with -fcallgraph-info=su: its call graph lies beside it, with the
-ending .ci. The deepest path from the root is printed, the bytes first. Indirect calls: the few
-function pointers of this project stand in constant tables (struct exh_scene, struct
-exh_loop_hooks), so an indirect call is taken to reach any function whose address is in the data
-of any object; but one in the log (exh_log_*, lib/src/run/log.c) only what a scene's own table or a
-tap's (struct exh_log_tap tap) or log_later's (struct exh_log_way here) points to: it calls the
-scene's state() and these, while the loop's hooks call the log; one in log_later.c only what a
-scene's own table points to; likewise one in the black box, which asks the scene to show its
-signals, and in pc104's and stm32f405's modbus, which asks the scene what is allowed; one in scene
-custom only what its slot points to; and one in calibrate_tick() only what its own table of
-steps points to. A function whose address is taken only by code is not seen: give it a table.
-Functions without a graph (assembler, the C library) count as nothing and are named.
+Each OBJECT was compiled by gcc with -fcallgraph-info=su: its call graph is beside it, with the
+ending .ci. The deepest path from the root is printed, the bytes first.
+
+The few function pointers of this project are in constant tables (struct exh_scene, struct
+exh_loop_hooks). So an indirect call reaches any function whose address is in the data of any
+object. In these callers it reaches only what some tables point to:
+
+    log.c         (exh_log_*, lib/src/run) a scene's table, a tap's (struct exh_log_tap tap), and
+                  log_later's (struct exh_log_way here). The loop's hooks call the log.
+    log_later.c   a scene's table
+    the black box a scene's table: it asks the scene to show its signals
+    modbus        (pc104, stm32f405) a scene's table: it asks the scene what is allowed
+    scene custom  its slot
+    calibrate_tick()  its own table of steps
+
+A function whose address is taken only by code is not seen: give it a table. Functions without a
+graph (assembler, the C library) count as nothing and are named.
 
 Exit status: 0 bounded, 1 not (recursion, a frame of unknown size), 2 bad usage, 3 no objdump.
 """

@@ -4,7 +4,7 @@
 FILE
 
 symbols.tsv has a row a function and a column a scene and port, x where that image has the function.
-FILE has the functions of one image, a line each. Each that differs is told by name.
+FILE has the functions of one image, a line each. Each that differs is printed.
 --update writes the column anew, and removes rows that no image has.
 Exit status: 0 as committed, 1 not.
 """

@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# What the library needs from outside: undef.sh ARCHIVE NM [ALLOWED_HELPER...]
-# Refutes "needs nothing but four string functions and the assertion hook". Helpers of the
-# compiler (shifts, multiplications on small machines) are named one by one; division helpers
-# are refused even then: the tick must not divide, and set-up has its own division.
+# undef.sh ARCHIVE NM [ALLOWED_HELPER...]: what the library needs from outside. It refutes "needs
+# nothing but four string functions and the assertion hook". Helpers of the compiler (shifts,
+# multiplications on small machines) are named one by one. Division helpers are refused even then:
+# the tick must not divide, and set-up has its own division.
 # Exit status: 0 nothing else, 1 something else, 2 bad usage, 3 no such tool.
 set -eu
 
@@ -21,9 +21,9 @@ symbols=$(mktemp)
 trap 'rm -f "$symbols"' EXIT
 "$nm" -g -P "$archive" >"$symbols"
 
-# -P: name, type, value, size; a header "archive[member]:" has no type. Weak references
-# count as needs: a library that works by half is not what we promise. The table of offsets of
-# position-independent code is made by the linker: nobody has to provide it.
+# -P: name, type, value, size. A header "archive[member]:" has no type. Weak references count as
+# needs: without them the library would not work fully. The linker makes the table of offsets of
+# position-independent code, so it is no need.
 awk -v archive="$archive" \
     -v allowed="memcpy memset memmove memcmp exh_assert_failed${*:+ $*}" '
     NF < 2 || $1 == "_GLOBAL_OFFSET_TABLE_" { next }

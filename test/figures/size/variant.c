@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* main() of an image that costs.py compares with itself: with or without a log, and with the
- * fingers of a mask. Beside what lib/src/run/image.c does: a scene that wants a calibration is told
- * that there is none.
+ * fingers of a mask. Unlike lib/src/run/image.c, it passes no calibration to a scene that needs
+ * one.
  *     -DVARIANT_LOG         lib/src/run/log.c, to the board's log
  *     -DVARIANT_FINGERS=n   mask: fingers in use, of a scene that asks */
 #include "exhand/run/deadman.h"

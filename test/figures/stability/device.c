@@ -60,8 +60,8 @@ static double range_of(struct wall *w, int ticks)
     return s.high - s.low;
 }
 
-/* Over the last 1000 ticks of 7000, or a quarter second of two, whichever is longer: at rest within
- * a tenth of a step, within three steps, or in a swing. */
+/* The movement in the last 1000 ticks of 7000, or in the last quarter second of two, whichever is
+ * longer. It is at rest (within a tenth of a step), within three steps, or a swing. */
 static enum ends run(struct wall w, unsigned parts)
 {
     const int settle = (int)fmax(6000, 1.75 / ((double)w.T.num / w.T.den));

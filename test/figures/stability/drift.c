@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Drift: laws that are cheap enough to run for 10^9 ticks, half a day at 20 kHz. The input repeats
  * every 1000 ticks. So after the transient every period must give the bits of an early one, and
- * sums must grow by the same number in each. Where a state has bits below those of the output,
- * these bits may cycle, and the last bits of the output with them. The test allows as much after
- * 10^9 ticks as early on, and no more. Counters begin just below their ends and pass them in every
- * period. */
+ * sums must grow by the same number in each. A state may have bits below those of the output. These
+ * may cycle, and the output's last bits with them: as much after 10^9 ticks as early on. Counters
+ * begin just below their ends and pass them in every period. */
 #include "stability.h"
 
 #include <math.h>
@@ -26,7 +25,7 @@ static void make_wave(void)
     }
 }
 
-/* --- the laws: a tick, and what comes out --- */
+/* --- the laws: a tick, and its output --- */
 
 static const struct exh_period T = {1, 20000};
 static const struct exh_velocity_scale scale = {EXH_Q(5, 1000000, EXH_Q_STEP), {1, 20000}};

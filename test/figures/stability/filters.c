@@ -27,7 +27,7 @@ struct kind {
     double tau; /* ticks */
 };
 
-/* Ticks until the state stands, x held; -1: it does not within 70 time constants and 200 ticks. */
+/* Ticks until the state is constant, x held. -1: not within 70 time constants and 200 ticks. */
 static int64_t to_rest(const struct kind *k, union state *s, int32_t x)
 {
     const int64_t most = (int64_t)(LIMIT * k->tau) + 200, block = (int64_t)(k->tau / 8) + 1;
@@ -156,7 +156,7 @@ struct rest {
     int longest;
 };
 
-/* What is left of the observer's speed once it stands is said in velocity.h. */
+/* The rest of the observer's speed at a constant state is documented in velocity.h. */
 static int stands_right(const struct kind *k, union state *s, int32_t x)
 {
     const int32_t y = k->step(s, k->cfg, x);

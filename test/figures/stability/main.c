@@ -51,7 +51,7 @@ double rho_of(const struct wall *w)
     return linear_monodromy(&M, &p, &law) == 0 ? eigen_radius(&M) : -1;
 }
 
-/* A file in the directory asked for; nowhere where none is. */
+/* A file in the output directory, or /dev/null without one. */
 static FILE *open_out(const char *name, const char *ends)
 {
     char path[512];

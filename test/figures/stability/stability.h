@@ -21,7 +21,7 @@ int quantized_plane(enum size size);
 int filters_at_rest(enum size size);
 int drifts(uint64_t ticks);
 
-/* A CSV file in the directory asked for; never NULL. */
+/* A CSV file in the output directory. Never NULL. */
 FILE *csv_open(const char *name, const char *header);
 void csv_close(FILE *f);
 

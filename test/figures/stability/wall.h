@@ -15,7 +15,7 @@
 #define WALL_DELAY_MAX 3
 
 struct wall {
-    /* what is asked for */
+    /* set by the caller */
     struct exh_period T;
     double k_Npm, b_Nspm, mass_kg;
     int delay;                      /* whole ticks until a command acts */

@@ -325,7 +325,7 @@ class Bilateral:
                 (SUPPLY if self.supply.step(code, missed) else 0))
 
     def tick(self, enc, mon, supply, din, missed, command, raw, glove_age, mail):
-        """Signals by finger, the box's, and what goes to the D/A."""
+        """Signals by finger, those of the box, and codes for the D/A."""
         par, at = self.par, self.at
         moved, seen, early, raised = {}, {}, {}, 0
         for f in at:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""filter and quantizer: low-pass of several channels, and codes that stand still."""
+"""filter and quantizer: low-pass of several channels, and codes that stay constant."""
 
 from struct import Struct
 

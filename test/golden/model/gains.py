@@ -160,7 +160,7 @@ class Params:
         return 0
 
     def apply(self, shift):
-        """k and b stand while locked, the others go."""
+        """k and b do not change here while locked. The other values do."""
         done = self.pending | self.moving
         if done:
             for is_, wanted in zip(self.active, self.staged):

@@ -79,7 +79,7 @@ class Glove:
         return self.good[i]
 
     def believe(self, raw):
-        """Who is faulty, and 22 codes q16."""
+        """Mask of faulty sensors, and 22 codes q16."""
         x = [self.believed(i, r) << 16 for i, r in enumerate(raw)]
         if not self.started:
             self.channel = [Channel(v) for v in x]

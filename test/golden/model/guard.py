@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""guard and supply: is what must stand still what it was, and are the drives fed?"""
+"""guard and supply: has constant memory changed, and do the drives have power?"""
 
 import zlib
 from struct import pack

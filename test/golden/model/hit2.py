@@ -60,8 +60,8 @@ def side(g, term):
     return 0, g, term, *SIDE
 
 
-# Sensors: thumb rotation 0, its two joints 1 2, abduction 3; index 4 5 6; middle 7 8 9, from index
-# 10; ring 11 12 13, from middle 14; little 15 16 17, from ring 18.
+# Sensors. Thumb: rotation 0, its two joints 1 2, abduction 3. Index: 4 5 6. Middle: 7 8 9, from
+# index 10. Ring: 11 12 13, from middle 14. Little: 15 16 17, from ring 18.
 _g = gain(-15, 15, -60, 130)
 _h = gain(0, 85, -85, 45)
 MAP = (((-bias(-15, 15, -60, 130), (-_g, 0), (0, 0), *SIDE),

@@ -186,7 +186,7 @@ class Limiter:
         return f if c.wall_below else -f
 
     def look(self, now, command, pos, vel, effort, age, deadman):
-        """What is present; what is asked for; the position."""
+        """Present causes, the requested output, and the position."""
         c = self.c
         cause = CAUSE["time"] if self.time_is_bad(now) else 0
         if c.uses & DEADMAN and not deadman:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""precontact: distance to a plane told, q_lim frozen before contact; advice."""
+"""precontact: distance to a plane sent, q_lim frozen before contact; advice."""
 
 from struct import Struct
 
@@ -182,7 +182,7 @@ class Finger:
                           self.near, self.late, self.told))
 
 
-# --- what is asked for at set-up ---
+# --- requests at set-up ---
 
 SPOILT = 22
 
@@ -250,7 +250,7 @@ def any_material(rng):
 
 
 def any_told(rng, finger, objects, at, f):
-    """A plane as told, and its age; the finger may go on to another object."""
+    """A plane as sent, and its age. The finger may go on to another object."""
     how = rng.draw(0, 31)
     if how == 27:
         at[f] = rng.draw(0, 3)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""signal: a table's CRC, and parameters staged, applied at once or little by little, saved and
+"""signal: a table's CRC, and parameters staged, applied immediately or little by little, saved and
 loaded."""
 
 import zlib

@@ -22,7 +22,7 @@ class Trace:
         self.next, self.waited = self.head, 0
 
     def stop(self):
-        """Another world has asked for nothing."""
+        """Another world has requested nothing."""
         self.start((0, 0, 0, 0, 0))
         self.result = self.answer = 0
 

@@ -36,8 +36,8 @@ def any_par(rng, rate):
 
 
 class Monitor:
-    """A scene's monitor: mostly the code that stands for what was coded, now and then for a while
-    any."""
+    """A scene's monitor: mostly the code of the commanded current. Now and then any code for a
+    while."""
 
     def __init__(self):
         self.astray = 0
