@@ -28,8 +28,8 @@ mcdc_cc    := clang-19
 mcdc_flags  = $(filter-out -O$(O),$(base)) -O1 $(PORT_HOSTFLAGS) -Itest -Iports -DEXH_FIX_AUDIT \
               -fPIC -fprofile-instr-generate \
               -fcoverage-mapping -fcoverage-mcdc
-# A decision that this compiler does not count (!(a && b)) is to be written otherwise; in tests it
-# may stand.
+# This compiler does not count some decisions (!(a && b)). Write them otherwise. In tests they may
+# stay.
 mcdc_never := no such message
 $(B)/mcdc/obj/lib/%.o $(B)/mcdc/obj/ports/%.o: mcdc_never := unsupported MC/DC
 mcdc_src   := $(call tests_in,module/unit module/prop device/cards golden)

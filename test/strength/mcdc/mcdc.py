@@ -3,20 +3,19 @@
 """Runs the tests that `make mcdc-built` made, and says of lib/ and ports/cards which conditions
 they leave undecided.
 
-A condition of a decision of several (a && b) is covered when two runs of the decision differ in its
-value and in the decision's, and in no other condition that was looked at (MC/DC, unique cause with
-short circuits: clang's). A condition that is a decision by itself is covered when it was true and
-false, a case when it was gone to; a function when it was called.
+A condition of a decision of several (a && b) is covered by two runs of the decision: its value and
+the decision's differ, and no other evaluated condition does. This is MC/DC, unique cause with short
+circuits, as clang counts it. A decision of one condition is covered when it was true and false. A
+case is covered when it was taken, a function when it was called.
 
-Each that is not covered must stand in missing.txt with its reason; one that stands there and is
-covered, or is no more, must go. Exit 1 on either, on a failing test, and on a reason that is none
-("to do") with --strict.
+Each that is not covered must be in missing.txt with its reason. A row that is covered, or that no
+longer exists, must go. Exit status 1: either of these, or a failing test. With --strict, a reason
+"to do" too.
 
     mcdc.py [--build DIR] [--jobs N] [--update] [--strict] [--only FILE] [--tests TEXT]
 
 --update: missing.txt anew; reasons are kept, new ones get "to do"
---tests:  only binaries whose path has TEXT in it (for what a test covers by itself); nothing is
-compared
+--tests:  only binaries whose path has TEXT in it, for the coverage of one test. Nothing is compared
 """
 
 import argparse
@@ -89,7 +88,7 @@ def export(build, binary):
 
 
 class Source:
-    """Lines of files, and what stands in them."""
+    """Lines of files, and the functions in them."""
 
     def __init__(self):
         self.line_of = {}
@@ -171,7 +170,7 @@ def add_function(f, condition, called, name_of, source):
 
     again = collections.Counter()
     for l0, c0, l1, c1, _, _, alone in f["mcdc_records"]:
-        mine = collections.defaultdict(list)  # by use of the macro in which it stands
+        mine = collections.defaultdict(list)  # by use of the macro that contains it
         for b, c in zip(f["branches"], of_branch):
             if b[8] == DECISION and (l0, c0) <= (b[0], b[1]) and (b[2], b[3]) <= (l1, c1):
                 mine[b[6]].append(c)
@@ -208,7 +207,7 @@ def gaps(functions, source):
     return missing, have
 
 
-# --- missing.txt: a line each, and what it stands for ---
+# --- missing.txt: a line each, and its item ---
 
 
 def read_missing():

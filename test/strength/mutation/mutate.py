@@ -2,10 +2,9 @@
 """Mutants of a C source: small changes, each at one place, of operators, numbers, conditions,
 returns and statements.
 
-What this file knows of C is its tokens and how brackets nest; the compiler says which changes are
-none of C. Not changed:
-arguments of EXH_ASSERT (a caller's mistake, which no test makes), names, texts, what stands at file
-level but numbers.
+This file knows C's tokens and how brackets nest. The compiler rejects changes that are not C. Not
+changed: arguments of EXH_ASSERT (a caller's mistake, which no test makes), names, texts, and all at
+file level but numbers.
 """
 
 import bisect
@@ -46,7 +45,7 @@ def tokens(text):
         if kind == "op" and m.group() == "#":
             line = re.compile(r"#[ \t]*define[ \t]+\w+(\([^)]*\))?|(?:\\\n|/\*.*?\*/|[^\n])*",
                               re.S).match(text, m.start())
-            out.append(Token("op", "#", m.start(), line.end()))  # an end of what came before
+            out.append(Token("op", "#", m.start(), line.end()))  # ends the code before it
             i = line.end()
         elif kind != "blank":
             out.append(Token(kind, m.group(), m.start(), m.end()))
@@ -106,7 +105,7 @@ def conditions(ts, of, i):
 
 
 def statement(ts, of, i):
-    """The statement that begins with token i, or after what it hangs on, goes, or returns 0."""
+    """The statement that begins with token i, or after its conditions, is removed or returns 0."""
     while ts[i].text in ("if", "while", "for", "switch", "else", "do"):
         i = (of[i + 1] + 1 if ts[i].text in ("if", "while", "for", "switch") and i + 1 in of
              else i + 1)
@@ -170,8 +169,8 @@ class Source:
         return self.text[:m.at] + m.new + self.text[m.end:]
 
     def shown(self, m):
-        """(function, lines as they are, lines as they become), blanks as one: a name that stands
-        while these lines do."""
+        """(function, lines as they are, lines as they become), with single blanks. This name is
+        valid until these lines change."""
         lo = self.starts[bisect.bisect_right(self.starts, m.at) - 1]
         hi = self.text.find("\n", m.end)
         now, new = self.text[lo:hi], self.text[lo:m.at] + m.new + self.text[m.end:hi]

@@ -1,24 +1,24 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Plants small errors all over lib/src, one at a time, and runs the tests of that source: do they
-tell it?
+"""Plants small errors all over lib/src, one at a time, and runs the tests of that source, which
+should detect them.
 
     mutation.py [--build DIR] [--jobs N] [--sample N | --all] [--seed S] [--limit SECONDS]
                 [--report] [--list] [SOURCE...]
 
-A mutant (mutate.py) is compiled, -O2, and left out when it does not compile, when its object is the
-original's bit for bit, or another mutant's. What is left is preloaded into the tests of its source
-(tests.txt), which stop at the first that fails: killed. What survives runs once more with undefined
-behaviour trapped, as `make test` has sanitizers. A survivor stands in survivors.tsv with its
-reason; one that does not stand there, one that stands there and is killed, or whose lines are no
-more: exit 1, and so does a source of which less than 95 of 100 are killed, those with a reason
-aside.
+A mutant (mutate.py) is compiled with -O2. It is left out if it does not compile, or if its object
+equals the original's or another mutant's bit for bit. The others are preloaded into the tests of
+their source (tests.txt), which stop at the first that fails: killed. A survivor runs once more with
+undefined behaviour trapped, as `make test` has sanitizers.
 
---sample N (100): of each source so many, as the seed (1) deals them; --all: all
---limit SECONDS: begin no mutant after that; what ran is kept, and is not run again while its source
-stays as it is
---report: the table of all that ran so far, and nothing else; --list: the survivors without reason
-of what ran
+survivors.tsv lists the survivors with their reasons. Exit status 1: a survivor is not in it, a
+mutant in it is killed or its lines no longer exist. Also if less than 95 of 100 mutants of a source
+are killed, not counting those with a reason.
+
+--sample N (100): so many of each source, as the seed (1) chooses them. --all: all.
+--limit SECONDS: begin no mutant after that. Results are kept, and are not run again while their
+source stays unchanged.
+--report: the table of all that ran so far, and nothing else. --list: the survivors without reason.
 """
 
 import argparse
@@ -54,7 +54,8 @@ KILLED, SURVIVED = ("killed", "survived")
 
 
 def read_tests():
-    """Of each source its tests in their order; one that has no line: those of its own name."""
+    """The tests of each source in their order. A source without a line has the tests of its
+    name."""
     of = {}
     with open(os.path.join(HERE, "tests.txt"), encoding="utf-8") as f:
         for line in f:
@@ -174,7 +175,7 @@ class Planted:
             return hashlib.sha256(f.read()).hexdigest()[:16]
 
     def plant(self, m):
-        """{what, by, object}: what came of it."""
+        """{what, by, object}: the result for this mutant."""
         with tempfile.TemporaryDirectory(dir=self.build) as where:
             o = self.compile(where, self.c.changed(m))
             if o is None:
@@ -232,7 +233,7 @@ def key(m):
 
 
 class Account:
-    """Of one source: who survived, and which reasons stand for nothing."""
+    """Of one source: the survivors, and the reasons that are no longer needed."""
 
     def __init__(self, planted, reasons):
         ran = planted.ran()
@@ -260,7 +261,7 @@ def show(source, item, reason=""):
 
 
 def report(accounts):
-    """Markdown: what ran of each source, and who told it."""
+    """Markdown: what ran of each source, and which tests killed it."""
     print("| source | mutants | ran | killed | by unit, golden, prop, trap | survive for a reason "
           "| survive | score |")
     print("|---|---|---|---|---|---|---|---|")

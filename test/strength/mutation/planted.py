@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Plants errors in what keeps force from a person, one at a time: each must be told by the test
-that is named for it, a unit test or a law, without any digest.
+"""Plants errors in the code that limits the force on a person, one at a time. The named test, a
+unit test or a law, must detect each without any digest.
 
     planted.py --build DIR [--jobs N] [--some N] [--seed S] [GROUP...]
 
-A row: source, a text in it, what stands there instead, the test, its case. The text stands there
-once, the case passes without the error and fails with it; else exit 1. The library is a shared
-object (make mutation-built), and the changed source is preloaded; of lib/src/run, which no library
-has, the test includes the source, and is compiled anew.
+A row: source, a text in it, its replacement, the test, its case. Exit status 1 if the text is not
+there exactly once, if the case fails without the error, or if it passes with it. The library is a
+shared object (make mutation-built), and the changed source is preloaded. A source of lib/src/run is
+in no library. There the test includes the source, and is compiled again.
 
---some N: every Nth, as the seed deals them; the texts of all are looked for.
+--some N: every Nth, as the seed chooses them. The texts of all are checked.
 """
 
 import argparse

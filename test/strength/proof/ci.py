@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""What CI runs. The record is whole and the document is of it; what is cheap is proved again, first
-what has another text now.
+"""The CI's part of the proofs. The record must be complete, and the document must match it. Cheap
+units are proved again, first those whose text has changed.
 
-What is of another text and dear is told and does not fail: make proof ARGS=--update is due then.
-Frama-C is large (README.md): where it is not installed, z3 and what goes through every value run,
-if they are there.
+A changed unit that is expensive is reported and does not fail: make proof ARGS=--update is due
+then. Frama-C is large (README.md). Without it, z3 and the programs of every/ run, if they are
+installed.
 """
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -13,7 +13,7 @@ import record
 import table
 import tools
 
-BUDGET_S = 35.0  # seconds of a core, as the record tells
+BUDGET_S = 35.0  # seconds of a core, from the record
 
 
 def on_record(p, was):

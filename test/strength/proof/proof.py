@@ -2,29 +2,30 @@
 # SPDX-License-Identifier: MIT
 """Proves the tick path, unit by unit (README.md).
 
-A unit is a file eva/any_UNIT.c, whose first comment says what has to be known of it:
+A unit is a file eva/any_UNIT.c, whose first comment has these lines:
 
     PROVES: what it is about, a few words            (then what is shown, for docs/PROOFS.md)
     WP: what WP shows of it                          (may be missing)
     EVA: more options for Eva                        (may be missing)
-    WITH: files besides, that it cannot include      (may be missing)
-    PLANT: file: text -> what it becomes             (an error that Eva has to tell; any number)
+    WITH: more files, that it cannot include         (may be missing)
+    PLANT: file: text -> what it becomes             (an error that Eva must detect; any number)
 
-A unit of every/ is a program with the same comment that goes through every argument there is, built
-to stop at undefined behaviour; it returns 0 if what it says holds of all.
+A unit of every/ is a program with the same comment that tries every argument, built to stop at
+undefined behaviour. It returns 0 if its claim holds for all.
 
-With eva/UNIT.acsl, annotations are put into the copy of the source for Eva, in the form that the
-files of wp/ have. Units that WP judges, too, stand in tools.py.
+With eva/UNIT.acsl, annotations are put into the copy of the source for Eva, in the form of the
+files of wp/. Units that WP judges, too, are listed in tools.py.
 
   proof.py [--root DIR] [--out DIR] [--only UNIT,...] [--no-mutants] [--update [--shrink]]
            [--jobs N] [--fresh]
+
   proof.py --table      writes the tables of docs/PROOFS.md, from counts.txt and the units
-  proof.py --ci         what CI runs: the record is complete and of these sources; what is cheap is
+
+  proof.py --ci         for CI: the record must be complete and of these sources. Cheap units are
                         proved again
 
-Exit 0 when every unit proves what counts.txt says and every planted error is told, 1 when not,
-3 when a tool is missing. What was proved of the same text before is not proved again (--fresh: it
-is).
+Exit status 0: every unit proves as many as counts.txt has, and every planted error is detected. 1:
+not. 3: a tool is missing. An unchanged text is not proved again, except with --fresh.
 """
 import argparse
 import os
@@ -77,8 +78,8 @@ def jobs(p, only, was, mutants):
 
 
 def run_all(todo, parallel):
-    """Longest first. row -> result of the proofs; how many planted errors were not told; seconds of
-    a core."""
+    """Runs the longest first. Returns row -> result of the proofs, the number of planted errors
+    that were not detected, and seconds of a core."""
     got, untold, total_s = {}, [], 0.0
     print("%-44s %-12s %8s %6s %6s" % ("unit", "tool", "proved", "of", "s"))
     pool = ThreadPoolExecutor(parallel)
@@ -119,7 +120,7 @@ def held(got, was):
 
 
 def update(got, was, shrink, everything):
-    """Writes the record. A count shrinks only where that is asked for."""
+    """Writes the record. A count shrinks only with --shrink."""
     for k, r in got.items():
         old = was.get(k)
         if old and r["proved"] < old.proved and not shrink:

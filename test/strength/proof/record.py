@@ -58,7 +58,7 @@ def counts():
 
 
 def write_counts(rows):
-    """The keys are one line: whoever changes the library changes that line and few counts."""
+    """The keys are one line, so that a change of the library changes that line and few counts."""
     with open(COUNTS, "w") as f:
         f.write("# unit.tool, proved, of: make proof ARGS=--update. A number may not shrink.\n")
         f.writelines("%s %d %d\n" % (k, r.proved, r.of) for k, r in sorted(rows.items()))

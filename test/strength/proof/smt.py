@@ -75,7 +75,7 @@ def share_of_limit():
 
 
 def whole_codes_are_no_more():
-    """Whole D/A codes of a current 0..6.6 A are not negative and stand for no more than it."""
+    """Whole D/A codes of a current 0..6.6 A are not negative and are no more than it."""
     cur, scale, p = z3.Ints("cur scale p")
     box = z3.And(cur >= 0, cur <= 442918502, scale >= 0, scale < 1 << 31)
     return holds(z3.Implies(box, cur * scale >= 0)) and \

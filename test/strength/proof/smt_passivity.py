@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The lemmas of docs/NUMERICS.md on passivity, for all integers.
 
-Work of a tick is one variable, u = held * way, so that all is linear: P * way is B, a movement of
-at least -way takes at most u from e. By induction over ticks: what holds of a state holds of the
+Work of a tick is one variable, u = held * way, so that all is linear. P * way is B, and a movement
+of at least -way takes at most u from e. By induction over ticks: what holds of a state holds of the
 next.
 """
 import z3
@@ -71,7 +71,7 @@ def in_time_keeps_its_bound_beside_late():
 
 
 def missed_ticks_count():
-    """Lemma 4 for 0..16 ticks missed on end."""
+    """Lemma 4 for 0..16 consecutive missed ticks."""
     e, u, d, b = z3.Ints("e u d b")
     return all(
         holds(z3.Implies(z3.And(b >= 0, e >= -(m + 1) * b, may_hold(e, u, b), d >= -(m + 1) * u),

@@ -41,7 +41,7 @@ WP = {
 # Contracts of other units that a unit is judged by, beside those of fix.
 WP_BESIDE = {"gate": ["safety"]}
 
-# Planted errors that WP must tell: unit, in which function and by which of its properties, file,
+# Planted errors that WP must detect: unit, in which function and by which of its properties, file,
 # text, what it becomes.
 WP_PLANTS = [
     ("gate", "code_of", "lib/src/act/gate.c", "exh_clamp32(asked, -span, span)",
@@ -183,12 +183,12 @@ def put(path, f):
 
 
 def places(text, part):
-    """Where the part stands in the text; how the formatter broke it into lines does not matter."""
+    """The places of the part in the text. Its line breaks do not matter."""
     return re.findall(r"\s+".join(re.escape(word) for word in part.split()), text)
 
 
 def once(where, text, part):
-    """The part as it stands in the text, where it has to stand once."""
+    """The part as it is in the text, where it must be once."""
     found = places(text, part)
     if len(found) != 1:
         raise SystemExit("%s: %d times, once is wanted: %s" % (where, len(found), part))
@@ -261,7 +261,7 @@ class Proof:
         for h in ("stdint.h", "stddef.h", "stdbool.h", "string.h", "limits.h", "__fc_builtin.h"):
             with open(os.path.join(self.stubs, h), "w"):
                 pass
-        # Debian's z3 is one that why3 knows; another may stand before it in the path.
+        # Debian's z3 is one that why3 knows. Another one may be before it in the path.
         self.env = dict(os.environ, PATH="/usr/bin:" + os.environ["PATH"],
                         WHY3CONFIG=os.path.join(out, "why3.conf"))
 
@@ -328,7 +328,7 @@ class Proof:
         return result
 
     def prove(self, tool, unit, name, change=None, functions=None):
-        """By eva64, eva32, every or wp; with an error planted, to be told."""
+        """Proves by eva64, eva32, every or wp. With a planted error, the proof must fail."""
         tree = self.tree(name + ".tree", change)
         try:
             if tool == "wp":
@@ -346,8 +346,7 @@ class Proof:
             if spec:
                 annotate(spec, tree)
         flags = "-I%s/lib/src -I%s/lib/include -I%s/examples -I%s/eva" % (tree, tree, tree, HERE)
-        # One alarm tells an error that is planted; of a unit that is proved, what it reaches is
-        # wanted.
+        # With a planted error one alarm is enough. Of a proof, the reached functions are wanted.
         more = ["-eva-stop-at-nth-alarm", "1"] if change else ["-metrics", "-metrics-eva-cover"]
         code, said, s = run(["frama-c", "-cpp-extra-args=" + flags, "-machdep", MACHDEP[width]] +
                             EVA + unit.options +

@@ -136,11 +136,12 @@ def language(path):
 
 def comments(path, text):
     """The paragraphs of the comments of a source, as blocks() has those of a page. A line for a
-    tool is none: PLANT of a proof, noqa, the licence."""
+    tool is none: the keys of a proof, noqa, the licence."""
     for n, body in language(path)(text):
         block = []
         for k, line in enumerate(body.split("\n")):
-            tool = re.match(r"!/| ?SPDX| (?:noqa|shellcheck|pylint|fmt|NOLINT)\b| PLANT:", line)
+            tool = re.match(r"!/| ?SPDX| (?:noqa|shellcheck|pylint|fmt|NOLINT)\b|"
+                            r" (?:PROVES|EVA|WITH|PLANT):", line)
             if block and (tool or re.match(r"\s*$|\s*[*+-]\s|   ", line)):
                 yield "prose", block
                 block = []

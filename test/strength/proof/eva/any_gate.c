@@ -15,7 +15,7 @@
 #include "act/gate.c"
 #include "safe/safety_open.c"
 
-#define MAY_STOP /* a box whose state says fewer fingers than are asked for */
+#define MAY_STOP /* a box whose state says fewer fingers than are used */
 #include "any.h"
 
 static struct exh_safety s;

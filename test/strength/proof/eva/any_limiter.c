@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: the limiter's step
- * The guard of any motor: any memory as its state, anything that comes in, each kind, with whatever
- * set-up leaves: no undefined behaviour, and a position stays where it may be measured.
+ * The guard of any motor: any memory as its state, any input, each kind, any configuration of
+ * set-up. No undefined behaviour, and a position stays within the measurable range.
  *
- * WP: |effort sent| <= `effort_max` for every state of memory, whatever is asked for and whatever heat leaves; at rest it is 0;
- * in RELEASE it falls in every step until 0, and never changes its sign.
+ * WP: |effort sent| <= `effort_max` for every state of memory, every command and every share that
+ * heat leaves. At rest it is 0. In RELEASE it falls in every step until 0, and never changes its
+ * sign.
  *
  * EVA: -eva-precision 1
  * PLANT: lib/src/safe/limiter.c: exh_wrap_add64(s->heat, e * e - cfg->heat_square) -> s->heat + e * e

@@ -2,7 +2,7 @@
 /* PROVES: Modbus
  * Any bytes as a request, of lengths up to 12 and of the longest; writes of many registers have
  * ten counts. The map of registers answers anything. Nothing is read outside the request or
- * written outside an answer of 253 bytes, and the map is asked for no more than fits.
+ * written outside an answer of 253 bytes, and the map gets no request that is too long for it.
  *
  * EVA: -eva-slevel 60
  * PLANT: lib/src/talk/modbus.c: if (n < 1 || n > READ_BITS) { return -EXH_MODBUS_VALUE; } -> (void)0;
@@ -21,7 +21,7 @@
 
 static uint8_t req[260], resp[EXH_MODBUS_PDU_B];
 
-/* The map: eva/any_regs.c. Here it reads and writes all that it is asked for. */
+/* The map: eva/any_regs.c. Here it reads and writes all that is requested. */
 static void takes(const uint8_t *from, uint32_t B)
 {
     /*@ assert to_be_read: \valid_read(from + (0 .. B - 1)); */
@@ -90,7 +90,7 @@ static void ask(uint32_t len_B)
     }
 }
 
-/* These, of n values told in the bytes at `at` and following. */
+/* A request of this function for n values. n is in the bytes from `at` on. */
 static void write(uint8_t function, uint32_t at, uint16_t n, uint32_t len_B)
 {
     uint8_t *q = req + (sizeof req - len_B);

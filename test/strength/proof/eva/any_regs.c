@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: register map, read
  * Set-up of tables with anything in their rows. A request of any address and number in tables of
- * any size finds registers within its block only. A map of two tables of eight values and a trace
- * of two frames, with any content: one register, two, all and one more, at each address of each
- * block and after its end. Any bits; binary32 of any value.
+ * any size finds registers within its block only. The map has two tables of eight values and a
+ * trace of two frames, with any content. One register, two, all and one more, at each address of
+ * each block and after its end. Any bits; binary32 of any value.
  *
  * EVA: -eva-slevel 100 -eva-slevel-function block:1000,staged_count:600 -eva-slevel-merge-after-loop staged_count -eva-split-return-function exh_regs_trace_locate:0
  * PLANT: lib/src/talk/regs.c: return s->end <= 2 * values ? 0 : EXH_MODBUS_ADDRESS; -> return s->end <= 2 * values + 1 ? 0 : EXH_MODBUS_ADDRESS;

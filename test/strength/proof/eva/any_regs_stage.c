@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: register map, written
- * The map of unit regs, written: one register, two, all and one more, of any bytes, at each
- * address of the writable blocks and after their ends, staged or commanded. Any coils. Staged
- * values are passed on, dropped and taken; commands of any content. No value leaves the range of
- * its table.
+ * Writes to the map of unit regs: one register, two, all and one more, of any bytes, staged or
+ * commanded. At each address of the writable blocks and after their ends. Any coils. Staged values
+ * are passed on, dropped and taken. Commands of any content. No value leaves the range of its
+ * table.
  *
  * EVA: -eva-slevel 100 -eva-slevel-function block:1000 -eva-slevel-merge-after-loop exh_regs_validate,write_all -eva-split-return-function judge:0,written:0,from_float:0
  * PLANT: lib/src/talk/regs_stage.c: if ((uint32_t)at + n > EXH_COILS) { return EXH_MODBUS_ADDRESS; } -> (void)0;

@@ -18,7 +18,7 @@
 #include <stdint.h>
 #include "__fc_builtin.h"
 #include <string.h> /* the contract of memcpy */
-#define volatile    /* for who reads it interrupted; nobody else writes */
+#define volatile    /* for interrupted readers; the ring has one writer */
 #include "num/bytes.c"
 #define exh_crc32 crc32 /* its proof is any_bytes.c */
 static uint32_t crc32(uint32_t crc, const void *buf, size_t len_B)

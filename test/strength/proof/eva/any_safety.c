@@ -33,7 +33,7 @@ static void step(uint8_t from, uint8_t to)
 int main(void)
 {
     step(0, 5);
-    step(6, 255); /* no state at all: told, and shut */
+    step(6, 255); /* no valid state: reported, and shut */
     END();
     return 0;
 }

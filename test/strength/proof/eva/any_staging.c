@@ -49,7 +49,7 @@ static void any_rule(void)
     }
 }
 
-/* What is staged and active of walls is within their rows, or the guard tells. */
+/* Staged and active values of walls are within their rows, or the guard reports them. */
 static void any_pairs(void)
 {
     for (unsigned i = 0; i < TABLE_VALUES; i++) {

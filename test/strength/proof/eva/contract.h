@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* What the library's functions of a tick are given and what they leave: any value within a predicate. any_contract.c shows of the
- * functions that they keep to these; called.h stands in their place where a scene is judged, and asks the same of the scene. */
+/* Inputs and results of the library's functions of a tick: any value within a predicate.
+ * any_contract.c proves that the functions keep to these. For the proof of a scene, called.h
+ * replaces the functions and demands the same of the scene. */
 #ifndef PROOF_CONTRACT_H
 #define PROOF_CONTRACT_H
 

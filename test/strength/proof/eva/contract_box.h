@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* As contract.h, of the functions that a box with glove and link has besides. Units precontact, hand, hand_tip, glove and wire show
- * that they keep to these. */
+/* As contract.h, for the further functions of a box with glove and link. Units precontact, hand,
+ * hand_tip, glove and wire prove that they keep to these. */
 #ifndef PROOF_CONTRACT_BOX_H
 #define PROOF_CONTRACT_BOX_H
 
