@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # run.sh BINARY...: runs each test, prints its result and its notes (lines that begin with "  | "),
-# of one that failed everything it said; ends with `N passed, N failed`.
+# and all output of a failed one. Ends with `N passed, N failed`.
 #
-# Environment: PARTS (1): the random cases of each are dealt to so many processes (EXH_PART,
-# EXH_PARTS), JOBS (1) of which run at a time; a line each, as it ends. LIMIT (3600 s): what
-# runs longer hangs, and has failed. The longest takes a minute of a core.
+# Environment: PARTS (1): so many processes share the random cases of each test (EXH_PART,
+# EXH_PARTS). JOBS (1) of them run at a time, and each prints a line when it ends. LIMIT (3600 s): a
+# longer run hangs, and has failed. The longest takes a minute of a core.
 
 # run_part BINARY PART: its line, and `PASSED FAILED` at the end of the file $TALLY
 run_part()

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Devices and protocols against programs of others.
 
-# The host program with Linux's drivers of the cards in the place of ours, and cards that are
-# outside.
+# The host program with Linux's drivers of the cards instead of ours. The cards are outside the
+# machine.
 strangers_obj := $(B)/posix/test/device/strangers/cards.o \
                  $(B)/posix/test/device/strangers/guest/linux.o
 $(B)/posix/exhand-linux: $(exh_obj) $(filter-out %/ports/posix/cards.o,$(sim_obj)) \

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Any bytes as any file that the host reads, as datagrams of a log and as a stock glove's line. The
- * first byte of an input says which; what follows is the file. 'l', 'p', 'i', 'c' and 'u' have
- * their CRCs put right first, at which a mutation would fail. A parser may take the file or refuse
- * it: it must end, and touch nothing that is not its own. Links with driver.c, or with libFuzzer.
+ * first byte of an input selects the kind, and the rest is the file. Files of 'l', 'p', 'i', 'c'
+ * and 'u' get correct CRCs first, because a mutation would fail there. A parser may take the file
+ * or refuse it. It must end, and touch nothing that is not its own. Links with driver.c, or with
+ * libFuzzer.
  */
 #define _GNU_SOURCE
 #include "base/logfile.h"
@@ -254,7 +255,7 @@ static const struct parser {
     {'M', 0, mesh, NULL}, {'E', 0, lines_of_an_encoder, NULL}, {'X', 0, positions, NULL},
     {'Y', 0, glove_line, NULL}};
 
-/* As a file of its own. */
+/* As a separate file. */
 static void run(const struct parser *p, const uint8_t *byte, size_t n)
 {
     char path[40];

@@ -40,13 +40,13 @@ $(B)/fuzz/modbus-libfuzzer: test/fuzz/modbus_fuzz.c $(lib_src) $(wildcard lib/in
 	$(Q)clang $(filter-out -MMD -MP,$(base)) -DFUZZ_NO_MAIN $(san) -fsanitize=fuzzer \
 	    -o $@ $(filter %.c,$^)
 
-# Files that the host reads. In a make of its own: the whole program is built with sanitizers.
+# Files that the host reads. In a separate make: the whole program is built with sanitizers.
 files_obj := $(patsubst %,$(B)/posix/test/fuzz/%.o,files_fuzz $(if $(FUZZ_NO_MAIN),,driver)) \
              $(filter-out %/exhand/main.o,$(exh_obj)) $(dev_obj) $(gpio_none)
 $(B)/fuzz/files: $(files_obj) $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(cli_libs)
-# -O1 -g1 compiles in half of the time, and an error is told with its line.
+# -O1 -g1 compiles in half of the time, and an error is printed with its line.
 san_vars             := B=$(B)/san O=1 CFLAGS="$(san) -g1" LDFLAGS="$(san)"
 files_vars_plain     := $(san_vars)
 files_vars_libfuzzer := B=$(B)/fuzz/clang CC=clang FUZZ_NO_MAIN=1 \

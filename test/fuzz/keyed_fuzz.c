@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A socket with a key gets any packets: from an attacker who has the true packets, and sometimes
- * from one who has the key.
+/* A socket with a key gets any packets. The attacker knows the true packets, and sometimes the key.
  *
  * An input is a sequence of datagrams in the format of wire_fuzz.c, so both share a corpus. Before
  * each are a byte and a length (u16), whose upper 7 bits are its delay. Bits of the byte repair the
@@ -47,7 +46,7 @@ static uint64_t get(const uint8_t *p)
     return v;
 }
 
-/* What is asked for is put right: the length of all. */
+/* Repairs the requested fields, and returns the length of all. */
 static size_t make(uint8_t *p, size_t n, unsigned right, unsigned late)
 {
     uint8_t *const tail = p + n;

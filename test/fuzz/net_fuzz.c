@@ -142,7 +142,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         data += 3;
         size -= 3;
         len_B = len_B < size ? len_B : size;
-        f = malloc(len_B ? len_B : 1); /* of its own size: what reads beyond is seen */
+        f = malloc(len_B ? len_B : 1); /* exactly its size: a read beyond it is seen */
         MUST(f != NULL);
         memcpy(f, data, len_B);
         data += len_B;

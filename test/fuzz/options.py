@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """options.py [--some N] PROGRAM [COMMAND...]: every option of every command, as --help lists them,
-with each of some twenty bad values, or with N of them that are dealt in turn. A run must not crash,
-hang, or end well in silence: one line on standard error names the option and the value. What is no
-mistake is in ALLOWED, with its reason. Prints each finding and a count. Exit status: 0 none, 1
+with bad values.
+
+Each option gets each of some twenty bad values, or N of them in turn. A run must not crash, hang,
+or end well in silence. One line on standard error must name the option and the value. ALLOWED lists
+values that are no mistake, with the reason. Prints each finding and a count. Exit status: 0 none, 1
 findings.
-Environment: JOBS, runs at a time; MEMORY_B, of a run, 0: no limit, as sanitizers need."""
+Environment: JOBS, runs at a time. MEMORY_B, of a run, 0: no limit, as sanitizers need."""
 import collections
 import os
 import re
@@ -126,7 +128,7 @@ def limits():
 
 
 def run(program, shared, command, arguments):
-    """Status (None: it hangs) and standard error, in a folder of its own."""
+    """Status (None: it hangs) and standard error, in a separate folder."""
     option = arguments[0].split("=")[0][2:]
     needs = NEEDS.get((command, option), COMMANDS[command])
     with tempfile.TemporaryDirectory(dir=shared["dir"]) as folder:

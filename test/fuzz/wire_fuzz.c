@@ -110,7 +110,7 @@ static void tick(struct box *b, const struct exh_precontact_cfg *cfg, int on_the
         const struct exh_precontact was = *s;
         const uint32_t bits = exh_precontact_step(s, cfg, &in);
         const uint32_t froze_late = bits & EXH_PRECONTACT_LATE ? bits & EXH_PRECONTACT_FREEZE : 0;
-        if (froze_late) { /* at once, and where the finger is inside */
+        if (froze_late) { /* immediately, and the finger is inside */
             MUST(s->late && s->lim_m_q30 <= in.pos_m_q30);
         } else if (bits & EXH_PRECONTACT_STANDS) {
             MUST(s->lim_m_q30 == was.lim_m_q30);
@@ -143,7 +143,7 @@ static void heard(
     MUST(is->former == (same ? was->former : was->session));
 }
 
-/* One that nothing hangs on the order of, from behind the newest, and never before. */
+/* A message whose order does not matter, from before the newest, and not taken before. */
 static void taken_late(
     const struct exh_wire_rx *was, const struct exh_wire_rx *is, uint32_t seq, int type)
 {
@@ -178,8 +178,7 @@ static void must_hear(struct exh_wire_rx *rx, uint32_t session)
     MUST(exh_wire_decode(rx, &p, buf, (size_t)n) == EXH_WIRE_PARAM);
 }
 
-/* Whatever is asked for is traced or refused; a trace of any values is read back as one in range.
- */
+/* Any request is traced or refused. A trace of any values is read back as one in range. */
 static void asked(const struct exh_wire_trace_request *a)
 {
     struct exh_trace t;

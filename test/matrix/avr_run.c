@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* avr_run IMAGE...: each image of avr.c on an emulated ATmega1284P, with the rates that
- * EXH_RATES=lo..hi:step asks for. Prints what they say. Exit status 1: one did not end by itself.
- * The chip has 16 KiB of memory; an image whose data need more than 15 gets 63, and that is said.
+/* avr_run IMAGE...: each image of avr.c on an emulated ATmega1284P, with the rates of
+ * EXH_RATES=lo..hi:step. Prints their output. Exit status 1: an image did not end. The chip has 16
+ * KiB of memory. An image whose data need more than 15 KiB gets 63, and a line says so.
  */
 #include <stdio.h>
 #include <stdlib.h>

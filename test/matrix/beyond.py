@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""beyond.py DIR GOLDEN [N]: 2001..20000 Hz of every module of test/golden/digests.inc by the
-program GOLDEN, as many modules at a time as JOBS says: all 180 hundreds (`make matrix-beyond`), or
-N of them, drawn anew for each module (`make golden-beyond`; EXH_SEED repeats a draw). Compares the
-CRC over a module's hundreds with the generator's, writes DIR/beyond.tsv, ends with `N passed, N
+"""Runs every module of test/golden/digests.inc at 2001..20000 Hz: beyond.py DIR GOLDEN [N].
+GOLDEN is the program. JOBS modules run at a time, all 180 hundreds of each (`make matrix-beyond`),
+or N hundreds, drawn anew for each module (`make golden-beyond`; EXH_SEED repeats a draw). Compares
+the CRC over a module's hundreds with the generator's, writes DIR/beyond.tsv, ends with `N passed, N
 failed`. Standard library only.
 """
 

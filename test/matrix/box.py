@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""box.py DIR [--only T,T]: the host program for every target of targets.tsv, by its gcc;
-test/closed/sim/bits.sh compares what each makes with the host's in DIR/host: Table II, logs of it
-and of the full box, a calibration, replays, faults. `make matrix-box`. Writes DIR/box.tsv, keeps
-the rows of targets that are not asked for, and writes docs/MATRIX.md's table anew. Standard library
-only.
+"""box.py DIR [--only T,T]: the host program for every target of targets.tsv, by its gcc.
+test/closed/sim/bits.sh compares each target's results with the host's in DIR/host: Table II, logs
+of it and of the full box, a calibration, replays, faults. `make matrix-box`. Writes DIR/box.tsv,
+keeps the rows of other targets, and writes docs/MATRIX.md's table anew. Standard library only.
 """
 
 import argparse
@@ -35,7 +34,7 @@ def built(t, where):
 
 
 def kept(path):
-    """{target: (target, agree, of, commit)} of runs of before."""
+    """{target: (target, agree, of, commit)} of earlier runs."""
     if not os.path.exists(path):
         return {}
     with open(path) as f:

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Start of a Cortex-M under an emulator: vectors, memory, the words of the command line as an
- * environment, text and the way out by semihosting (a breakpoint that the emulator answers). No
- * device of a board is touched: memory's place is the linker's. */
+ * environment. Text and exit use semihosting (a breakpoint that the emulator answers). No device of
+ * a board is touched. The linker sets the place of memory. */
 #include <stddef.h>
 #include <stdint.h>
 
 #define SYS_WRITE0        0x04u
 #define SYS_GET_CMDLINE   0x15u
 #define SYS_EXIT_EXTENDED 0x20u
-#define ENDED             0x20026u /* the program ended by itself */
+#define ENDED             0x20026u /* the program ended normally */
 #define FAULT             5u
 
 /* cortex_m.ld */
@@ -108,8 +108,8 @@ __attribute__((section(".vectors"), used)) static const struct {
 } vectors = {__stack_top, {metal_reset, fault, fault, fault, fault, fault, fault, fault, fault,
                               fault, fault, fault, fault, fault, fault}};
 
-/* --- what compilers call: clang for this CPU by names of its own, with value and length the other
- * way round --- */
+/* --- calls of compilers: clang for this CPU has its own names, with value and length the other way
+ * round --- */
 
 void *memcpy(void *restrict dst, const void *restrict src, size_t len_B);
 void *memmove(void *dst, const void *src, size_t len_B);

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # The same tests on other CPUs and by other compilers (test/matrix/README.md).
 
-# Two programs with a printer of their own, as CMocka is not there: golden vectors over the library
-# as it is shipped, and all other tests that need no machine as one, over a library whose
+# Two programs with a separate printer, because CMocka is not there. One is golden vectors over the
+# library as it is shipped. The other is all other tests that need no machine, over a library whose
 # saturations are counted. SUITE_LINK links what CC compiled, SUITE_LTO is none, gcc or clang,
 # SUITE_CFLAGS is for all but the golden vectors.
 suite_def   := -D_POSIX_C_SOURCE=200809L -DEXH_CHECK_PLAIN

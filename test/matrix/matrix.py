@@ -3,7 +3,7 @@
 """The matrix: unit tests, laws and golden vectors on every target, by every compiler and option.
 
     matrix.py                     build and run all (make matrix), docs/MATRIX.md anew
-    matrix.py --only WORD[,WORD]  what has all parts of one of them in its name: mips, clang,
+    matrix.py --only WORD[,WORD]  all whose name has all parts of one of them: mips, clang,
                                   mips-gcc-O2, lto
     matrix.py --resume            without what build/matrix/matrix.tsv has
     matrix.py --ci                the part of it that CI runs at this commit
@@ -41,7 +41,7 @@ CI = {"i686-gcc-O2": (4, 100000), "mips-gcc-O2": (100, 300), "s390x-clang-O3": (
       "cortex_m0-gcc-Os": (100, 300), "avr-gcc-Os": (1000, 0), "x86_64-clang-O0": (100, 300),
       "x86_64-gcc-O3-lto": (100, 300)}
 TRAPS = ("i686-gcc-O2",)  # in CI: what overflows in 32 bits and not in 64 traps
-# In CI: so many commits in a row have all of its rates and cases; make test-i686 has them at once.
+# In CI, so many consecutive commits have all of its rates and cases. make test-i686 has them all.
 DEALT = {"i686-gcc-O2": 4}
 TRAP = "-fsanitize=undefined -fsanitize-undefined-trap-on-error"
 

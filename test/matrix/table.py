@@ -77,7 +77,7 @@ def words(r):
 
 
 def kept(path):
-    """{(target, variant): words} of a table of before; what is of other bits is left out."""
+    """{(target, variant): words} of an earlier table, without results of other bits."""
     try:
         with open(path) as f:
             rows = [line.rstrip("\n").split("\t") for line in f][1:]
@@ -131,7 +131,7 @@ def document(table):
 
 
 def section(name, lines):
-    """What stands in docs/MATRIX.md between <!-- name --> and the next <!-- end -->, anew."""
+    """Replaces the text in docs/MATRIX.md between <!-- name --> and the next <!-- end -->."""
     with open(DOC) as f:
         text = f.read()
     begin, end = "<!-- %s -->\n" % name, "<!-- end -->\n"

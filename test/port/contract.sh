@@ -1,9 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
-# The port contract, and fault handlers, on images under QEMU: contract.sh DIR
-# DIR holds the images of `make contract`, PORT/SCENE.elf. In virtual time, the same on every
-# machine. The POSIX port runs the same checks in `make test`, pc104 with its cards in `make hil`.
-# Exit status: 0 all as told, 1 not, 2 bad usage, 3 no emulator.
+# contract.sh DIR: the port contract, and fault handlers, on images under QEMU. DIR holds the images
+# of `make contract`, PORT/SCENE.elf. They run in virtual time, the same on every machine. The POSIX
+# port runs the same checks in `make test`, pc104 with its cards in `make hil`.
+# Exit status: 0 the contract holds, 1 not, 2 bad usage, 3 no emulator.
 set -u
 
 [ $# -eq 1 ] && [ -d "$1" ] || { echo "usage: $0 DIR" >&2; exit 2; }

@@ -166,7 +166,7 @@ TEST(inputs_of_an_idle_box_are_healthy)
     }
 }
 
-/* Nothing moves a box that is told to give no current: a held string by a few counts. */
+/* With a command of no current nothing moves the box: a held string by a few counts. */
 TEST(counts_of_an_idle_box_stand_still)
 {
     uint32_t first;
@@ -245,7 +245,7 @@ TEST(cycles_run_while_it_waits)
     }
     CHECK(least > 0 && most - least <= most / 10,
         "four ticks took %" PRIu32 " .. %" PRIu32 " cycles", least, most);
-#ifdef CONTRACT_CYCLES_HZ /* known: what was set is what comes, within 1 % */
+#ifdef CONTRACT_CYCLES_HZ /* known: the period is the set one, within 1 % */
     {
         const uint64_t want = 4 * (uint64_t)period.num * CONTRACT_CYCLES_HZ;
         const uint64_t got = (uint64_t)most * period.den,
@@ -365,8 +365,8 @@ TEST(a_disabled_drive_gives_no_current)
     exh_board_safe();
 }
 
-/* Told 0.5 A while it is not enabled, then zero in the frame that enables it: no current of the
- * code before. */
+/* Commanded 0.5 A while disabled, then zero in the frame that enables it. No current of the earlier
+ * code flows. */
 TEST(codes_and_enables_act_together)
 {
     int32_t code;
@@ -441,7 +441,7 @@ TEST(glove_is_read_with_its_age_or_absent)
         CHECK_EQ_I64(exh_board_read_glove(&in), 0);
         CHECK(in.age_ticks <= last.age_ticks || in.age_ticks == last.age_ticks + 1u,
             "age %u after %u", in.age_ticks, last.age_ticks);
-        /* The first may have been converted twice in its tick: when asked for, and for the next. */
+        /* The first may have been converted twice in its tick: on request, and for the next. */
         CHECK(n == 0 || in.age_ticks <= last.age_ticks ||
                   memcmp(in.raw, last.raw, sizeof in.raw) == 0,
             "an older frame of other codes, age %u", in.age_ticks);

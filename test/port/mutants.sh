@@ -1,9 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
-# Breaks the small port's promises one by one: the contract must tell. mutants.sh DIR
+# mutants.sh DIR: breaks the small port's promises one by one, and the contract must detect each.
 # DIR holds the objects of `make image PORT=mps2 SCENE=contract`. Each line below is a file of
 # ports/mps2, a sed expression, and the promise of board.h that it breaks.
-# Exit status: 0 all were told, 1 not, 2 bad usage.
+# Exit status: 0 all were detected, 1 not, 2 bad usage.
 set -u
 
 [ $# -eq 1 ] && [ -d "$1/mps2/contract" ] ||

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# Walks: a script does what the documents tell a reader to type.
+# Walks: a script types what the documents show to a reader.
 
 ##@ Walks through the documents
 ## Run the sweeps of examples/sweep by GNU parallel, ssh and Slurm on this machine, and compare with

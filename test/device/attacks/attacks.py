@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""attacks.py [options] EXHAND: a box whose link, ports and files somebody attacks.
+"""attacks.py [options] EXHAND: attacks on the link, the ports and the files of a box.
 
 A row an attack: what was tried how often, what the box counted, the verdict. By the box's own log:
 - in no tick is a force or current above the person's ceiling, person_f and person_i;

@@ -145,7 +145,8 @@ def liar(box, other, key):
 
 
 def recorded(options, folder, name, log, key):
-    """A log sent to `exhand listen`, between lies: (lies told, status, what it said, the file)."""
+    """A log sent to `exhand listen`, with false packets: (false packets sent, status, output,
+    file)."""
     at, out = ("127.0.0.1", rig.free_port()), os.path.join(folder, name + ".out")
     words = [options.exhand, "listen", "--at", "%s:%d" % at, "--out", out, "--silence", "3",
              "--wait", "20"] + (["--key", rig.key_file(folder, key, "listen")] if key else [])

@@ -36,7 +36,7 @@ def tape(options, log):
 class Image(rig.Box):
     """An image under QEMU; its log by another way than the host's."""
 
-    flood, of, ends_with = 2000, [], (0,)  # QEMU's network keeps what it cannot hand on at once
+    flood, of, ends_with = 2000, [], (0,)  # QEMU's network keeps what it cannot pass on immediately
 
     def __init__(self, options, log, name, words, flags, **environment):
         self.exhand, self.log = options.exhand, log
@@ -84,7 +84,8 @@ class Linked(Image):
 
 
 class Line:
-    """A master on COM2, by hand. No request is longer than QEMU's UART takes at once."""
+    """A master on COM2, without a library. No request exceeds what QEMU's UART takes in one
+    write."""
 
     def __init__(self, port):
         rig.until(lambda: self.opened(port), 30, "no COM2")
@@ -95,7 +96,7 @@ class Line:
         return self.sock.connect_ex(("127.0.0.1", port)) == 0
 
     def hear(self, n):
-        """n bytes, or what came of them in time."""
+        """n bytes, or those that came in time."""
         data = b""
         try:
             for _ in range(n):
@@ -105,7 +106,7 @@ class Line:
         return data
 
     def said(self, pdu):
-        """0, or the exception; asked again while nobody answers."""
+        """0, or the exception. Asks again while there is no answer."""
         frame = b"\1" + pdu
         for _ in range(5):
             self.sock.sendall(frame + crc16(frame))

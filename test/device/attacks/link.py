@@ -113,7 +113,7 @@ def misshapen(aim):
 
 
 def tags_forged(aim):
-    """A tag of nobody, and one of another key."""
+    """Random tags, and tags of another key."""
     whole = aim.world.make(wire.PARAM, HARDER[0], aim.world.number + 500)
     echo = struct.pack("<QQ", aim.world.keyed.next + 500, aim.world.keyed.heard)
     false = wire.Keyed(os.urandom(16))
@@ -123,7 +123,7 @@ def tags_forged(aim):
 
 
 def flood_of(send_to, aim):
-    """In a process of its own, as fast as it goes: random bytes of all lengths."""
+    """In a separate process, as fast as possible: random bytes of all lengths."""
     bodies = [aim.chance.randbytes(aim.chance.randrange(1, 300)) for _ in range(100)]
     pid = os.fork()
     if pid == 0:
@@ -145,10 +145,10 @@ def flood_as_peer(aim):
     return flood_of(aim.world.sock, aim)
 
 
-# name, what it does, by what, what is counted: column -> least share of what was tried; what the
-# true peer is: it "stays" heard, or is heard "again" within a second of the end. Where an attack
-# goes by the peer's address with the numbers that come next, a link without a key believes it
-# (docs/WIRE.md, "Whom to answer"): the peer's next HELLO behind `quiet` is heard.
+# name, text, function, least shares, state of the true peer. A share is that of a counter (column)
+# in the packets sent. The true peer "stays" heard, or is heard "again" within a second of the end.
+# An attack may use the peer's address with the next numbers. A link without a key accepts it
+# (docs/WIRE.md, "Whom to answer"). Then the peer's next HELLO after `quiet` is heard.
 OPEN = (
     ("param-port", "PARAM mat_k 1e6, mat_f_max 100, another port", param_other_port,
      {OTHERS: 0.9}, "stays"),
@@ -175,7 +175,7 @@ KEYED = (
     ("key-misshapen", "cut off and too long", misshapen, {"damaged": 0.3}, "stays"),
     ("flood-port", "random bytes, another port", flood_other_port, {OTHERS: 0.0}, "again"),
 )
-# Of `exhand bilateral`, which tells no senders.
+# Of `exhand bilateral`, which prints no senders.
 APPROACHES = (
     ("bil-session", "PARAM of the true session, another port", param_of_session, {}, "stays"),
     ("bil-storm", "HELLO of fresh sessions", hello_storm, {"late": 0.9}, "stays"),

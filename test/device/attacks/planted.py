@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Errors planted one at a time: each verdict must tell the one that it is there for."""
+"""Plants errors one at a time: each verdict must detect the error that it is meant for."""
 
 import contextlib
 import multiprocessing
@@ -21,7 +21,7 @@ def of(table, name, **other):
 
 
 def with_the_key(aim):
-    """Somebody who knows the key, and makes a wall softer."""
+    """An attacker who knows the key makes a wall softer."""
     world = aim.world
     return link.paced(aim, aim.by_peer, [world.keyed.seal(world.make(wire.PARAM, SOFTER))
                                     for _ in range(100)])
@@ -95,7 +95,8 @@ def try_one(n):
 
 
 def run(parts, names):
-    """parts(name, number): the part run, and what was wrong. 1 if an error was not told."""
+    """parts(name, number): the part run, and its findings. Returns 1 if an error was not
+    detected."""
     missed, some = 0, [n for n, error in enumerate(PLANTED) if error[0] in names]
     WITH["parts"] = parts
     with multiprocessing.get_context("fork").Pool(AT_ONCE, maxtasksperchild=1) as pool:

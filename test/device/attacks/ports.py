@@ -17,7 +17,7 @@ APPLY, SAVE, RUN, CLEAR = 0, 2, 4, 5
 HARDER = (("f_max", 40.0), ("k", 20000.0), ("q_lim", -0.5))
 IDLE = 50
 PAUSE_S = 0.4  # of a monitor between two reads
-READING = []   # how a box is told that nobody may write
+READING = []   # options of a box without write permission
 
 
 class Client:

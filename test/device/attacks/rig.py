@@ -18,7 +18,7 @@ DISTANCE_M = 0.1253                  # of it from the palm: met at some 25 mm of
 RATE_HZ = 500
 CEILING = {"person_f": 2.0, "person_i": 0.5}  # N, A
 COLUMN = {"person_f": "f_des_n", "person_i": "i_des_a"}
-TOLD = {}  # what boxes are told other than that: planted.py
+TOLD = {}  # replaces values of CEILING: planted.py
 
 
 def until(what, seconds, said):
@@ -30,7 +30,7 @@ def until(what, seconds, said):
 
 
 def ceiling():
-    """Words that tell a box the person's ceiling."""
+    """Options with the person's ceiling."""
     return [word for name, value in {**CEILING, **TOLD}.items()
             for word in ("--set", "%s=%g" % (name, value))]
 
@@ -134,7 +134,7 @@ class World(threading.Thread):
 
 
 class Box:
-    """`exhand run`, its log and what it says; or `exhand bilateral`, which ends by itself."""
+    """`exhand run`, its log and its output. Or `exhand bilateral`, which ends without a signal."""
 
     flood = 1000000
 
@@ -147,7 +147,7 @@ class Box:
             command = ["bilateral", "--speed", "natural", "--approaches", str(approaches), "--out",
                        os.path.join(folder, name)]
         self.of = ["--finger", "index"] if "--udp" in words else []
-        self.ends_with = (0, 1) if self.ends else (130,)  # 1: an approach while nobody was heard
+        self.ends_with = (0, 1) if self.ends else (130,)  # 1: an approach without a peer
         self.said = os.path.join(folder, name + ".said")
         with open(self.said, "wb") as said:
             self.process = subprocess.Popen(

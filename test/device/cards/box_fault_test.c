@@ -58,7 +58,7 @@ TEST(updates_that_do_not_end_are_a_fault)
         err = put(1);
         if (err == 0) { err = exh_box_read_drive(&in); }
     }
-    CHECK_EQ_I64(n, 4); /* the first after opening has a flag of its own */
+    CHECK_EQ_I64(n, 4); /* the first after opening has a separate flag */
     fails(err, EXH_BOX_B, EXH_CARD_DA_TIMEOUT);
 }
 
@@ -66,7 +66,7 @@ TEST(an_enable_that_does_not_go_off_is_a_fault)
 {
     opened(five());
     bus.s526[0].pins_stuck = 0x40;
-    CHECK_EQ_I64(put(1), 0); /* all on: nobody can tell */
+    CHECK_EQ_I64(put(1), 0); /* all on: not visible */
     CHECK_EQ_I64(exh_box_read_drive(&in), 0);
     exh_box_safe();
     fails(exh_box_read_drive(&in), EXH_BOX_A, EXH_CARD_LINES);
@@ -318,8 +318,8 @@ TEST(configurations_are_refused_by_name)
         "box: configuration: channels, interval or lost_limit of the scan: value not allowed: 22");
 }
 
-/* The lines of a box wired for five fingers mean something else: one finger is refused there,
- * before anything is written, and runs with the wiring of five when that is said. */
+/* With a box wired for five fingers the lines have other meanings. One finger is refused there
+ * before any write. It runs if the configuration says that the box is full. */
 TEST(one_finger_on_a_full_box_has_to_be_said)
 {
     struct exh_box_config c = one();

@@ -281,7 +281,7 @@ int bus_safe(void)
 {
     for (unsigned i = 0; i < 2; i++) {
         const struct fake_s526 *c = &bus.s526[i];
-        if (bus.dead_card == i && bus.n > bus.dead_from) { continue; } /* nobody can */
+        if (bus.dead_card == i && bus.n > bus.dead_from) { continue; } /* it takes no writes */
         for (unsigned k = 0; k < 4 && c->base; k++) {
             if (c->da_out[k] != 32768) { return 0; }
         }

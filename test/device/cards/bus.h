@@ -19,7 +19,7 @@ struct fake_s526 {
     uint16_t mute; /* flags that never come */
     uint16_t late; /* so many reads of ISR before A/D's flag */
     uint16_t wait;
-    uint32_t settle_us, channel_us, done_us; /* 0, 0: at once */
+    uint32_t settle_us, channel_us, done_us; /* 0, 0: immediately */
     uint16_t ee[64], ee_at;
     int16_t ad[10];   /* what channels and references read */
     int16_t ad_noise; /* references alternate by it */
@@ -55,7 +55,7 @@ struct bus {
     struct access log[BUS_LOG];
     unsigned n; /* accesses since bus_clear(); the log has the first BUS_LOG */
     uint32_t time_us, access_us;
-    uint8_t stopped;               /* time stands still */
+    uint8_t stopped;               /* time does not advance */
     unsigned dead_card, dead_from; /* from this access on it is empty ports; 3: none */
     unsigned safe_at;              /* exh_box_safe() comes before this access; UINT_MAX: never */
     unsigned hot;                  /* accesses after it at which an output was not safe */

@@ -122,8 +122,8 @@ TEST(a_reference_off_10_V_on_a_nominal_card_changes_no_code)
     }
 }
 
-/* Nor where the reference, or the zero, lies so high that 10 V is beyond the range: how far is not
- * known, and a gain made of it would tell every voltage too high. */
+/* The same if the reference, or the zero, is so high that 10 V is beyond the range. How far is
+ * unknown, and a gain computed from it would make every voltage too high. */
 TEST(a_reference_beyond_the_range_raises_no_gain)
 {
     bus_reset();
@@ -169,7 +169,7 @@ TEST(da_codes_are_the_voltage_s)
     }
 }
 
-/* An A/D with an offset and another gain, measured by its references, tells the voltage. */
+/* An A/D with an offset and another gain, measured by its references, has the true voltage. */
 TEST(ad_codes_are_the_voltage_s)
 {
     static const int32_t full[] = {31600, 32200, 32490, 32700}, zero[] = {-300, -7, 0, 1, 60};
@@ -269,7 +269,7 @@ TEST(garbage_in_the_eeprom_is_refused_by_name)
     refused(open_it(), -EXH_E_IO, EXH_CARD_EEPROM, EXH_CARD_AD_VREF);
     CHECK_EQ_I64(fault.got, 5000000);
     bus_reset();
-    bus_double(&bus.s526[0].ee[0], 1, 3000000, 0); /* too low to be told */
+    bus_double(&bus.s526[0].ee[0], 1, 3000000, 0); /* too low to be printed */
     refused(open_it(), -EXH_E_IO, EXH_CARD_EEPROM, EXH_CARD_DA_GAIN);
     CHECK_EQ_I64(fault.got, INT32_MIN);
     bus_reset();
@@ -313,8 +313,8 @@ TEST(another_card_is_not_written)
     CHECK(bus_said(0, "r 2F4 526C"), "more than one look");
 }
 
-/* The first accesses of all: who is there, then safe outputs, then counter 0's preloads, high
- * word first, both, before the load. */
+/* The first accesses of all: the signature, then safe outputs, then counter 0's preloads, high word
+ * first, both, before the load. */
 TEST(outputs_are_safe_before_anything_is_tested)
 {
     bus_reset();
@@ -419,7 +419,7 @@ TEST(and_by_polls_where_time_stands_still)
     }
 }
 
-/* Whoever was held up for longer than the limit still sees that the card was in time. */
+/* A wait that was interrupted for longer than the limit still sees that the card was in time. */
 TEST(a_wait_that_was_held_up_polls_once_more)
 {
     bus_reset();

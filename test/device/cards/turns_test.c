@@ -57,7 +57,7 @@ TEST(one_finger_takes_7_and_4)
     }
 }
 
-/* Up and down over the ends of 16 and of 24 bits, by all steps that are told apart. */
+/* Up and down over the ends of 16 and of 24 bits, by all steps that are unambiguous. */
 TEST(counts_are_those_of_24_bits)
 {
     static const int32_t step[] = {
@@ -235,7 +235,7 @@ TEST(a_scan_in_parts_is_as_sound_as_one_in_a_piece)
     }
 }
 
-/* Asked for before it has ended: the last frame again, and the scan goes on. */
+/* A request before the scan has ended: it gives the last frame again, and the scan goes on. */
 TEST(a_scan_in_parts_that_still_runs_is_counted)
 {
     struct exh_box_counts n;

@@ -82,8 +82,8 @@ TEST(all_that_linux_was_seen_to_do)
     CHECK_EQ_I64(box.pins.dout[0], 0x60);
 }
 
-/* What a sequence was told to be by the facts, and the other tests here are written from, is what
- * Linux does: kinds, ports and, but for results, values. */
+/* The other tests here are written from sequences in the facts. Linux has the same sequences:
+ * kinds, ports and, except for results, values. */
 static void check_fact(const struct access *fact, unsigned n)
 {
     unsigned at = 0;
@@ -97,8 +97,8 @@ static void check_fact(const struct access *fact, unsigned n)
     }
 }
 
-/* "outb 0x20 -> 8; outb 0 -> 7; outb 0 -> 9; outb 0x80 -> 2; outb 0xFF -> 3; outb 0x0C -> 11",
- * then reg 2, 3, 7, 8, 9, 11: "An emulated board must return exactly these". */
+/* "outb 0x20 -> 8; outb 0 -> 7; outb 0 -> 9; outb 0x80 -> 2; outb 0xFF -> 3; outb 0x0C -> 11". Then
+ * reg 2, 3, 7, 8, 9, 11: "An emulated board must return exactly these". */
 TEST(its_detection_is_the_facts)
 {
     static const struct access fact[] = {{2, 'w', 1, MM + 8, 0x20}, {2, 'w', 1, MM + 7, 0x00},

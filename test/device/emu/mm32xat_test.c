@@ -31,7 +31,7 @@ TEST(init_and_detect)
     CHECK_EQ_I64(inb(MM + 11), 0x0C);
 }
 
-/* A reset takes time: what comes too early is not taken. */
+/* A reset takes time: a write that comes too early has no effect. */
 TEST(a_reset_takes_time)
 {
     power_on();

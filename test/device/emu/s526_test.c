@@ -246,8 +246,8 @@ static uint64_t double_at(unsigned at, unsigned address)
     return v;
 }
 
-/* "Read word: outw 0x0080 -> ISR; outw(addr<<3 | 5) -> EEC; poll ISR bit 7; outw 0x0080 -> ISR;
- * w = inw(EED)"; "DAC ch k gain a at 8k..8k+3, offset b at 8k+4..8k+7; A/D Vref at 0x20..0x23" */
+/* "Read word: outw 0x0080 -> ISR; outw(addr<<3 | 5) -> EEC; poll ISR bit 7; outw 0x0080 -> ISR; w =
+ * inw(EED)". "DAC ch k gain a at 8k..8k+3, offset b at 8k+4..8k+7; A/D Vref at 0x20..0x23" */
 TEST(the_eeprom_describes_the_card)
 {
     power_on();

@@ -11,7 +11,7 @@
 
 struct chip_line {
     int level;                     /* an input's, or what it was last set to */
-    const char *holder;            /* somebody else's, or NULL */
+    const char *holder;            /* another program's name, or NULL */
     int held, output, pulled_down; /* by us, and how */
     const char *consumer;
 };

@@ -1,9 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# fetch: what gpio.sh needs of others, into DIR: Debian's kernel, the source of its simulated GPIO
-# chip (Debian builds none) and what compiles a module for it, busybox; libgpiod of this Debian
-# (1.6) and of the next one (2), all by a private apt that leaves the system's alone. Nothing is
-# installed, nothing of it is kept in the repository. Exit 3: what is missing, in one line.
+# fetch: gets what gpio.sh needs into DIR, by a private apt that leaves the system's unchanged. The
+# packages are Debian's kernel, busybox, libgpiod of this Debian (1.6) and of the next one (2).
+# Debian does not build its simulated GPIO chip, so its source and a compiler for the module are
+# among them. Nothing is installed, and nothing of it is kept in the repository. Exit status 3: one
+# line names what is missing.
 set -u
 dir=$1
 mkdir -p "$dir" && cd "$dir" || exit 3

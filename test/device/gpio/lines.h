@@ -111,7 +111,7 @@ static int times(const char *text, const char *what)
 TEST(requested_low_and_pulled_down)
 {
     chip_reset();
-    chip.line[ENABLE].level = chip.line[ALIVE].level = 1; /* whoever had them before */
+    chip.line[ENABLE].level = chip.line[ALIVE].level = 1; /* left high by another program */
     CHECK(strcmp(gpio_lines_library, GPIO_LIBRARY) == 0, "%s", gpio_lines_library);
     CHECK_EQ_I64(opened(PAIR), 0);
     for (unsigned i = 0; i < CHIP_LINES; i++) {
@@ -129,7 +129,7 @@ TEST(requested_low_and_pulled_down)
     CHECK_EQ_I64(chip.opened, 0);
 }
 
-/* Only what was named is asked for, and without inputs or outputs nothing is read or set. */
+/* Only named lines are requested. Without inputs or outputs nothing is read or set. */
 TEST(a_field_alone)
 {
     start("gpiochip0:alive=7");
@@ -216,7 +216,7 @@ TEST(a_contact_closes_nothing)
     gpio_close();
 }
 
-/* Either opens the channel at once; they may differ for 500 ticks, which is counted. */
+/* Either contact opens the channel immediately. They may differ for 500 ticks, which is counted. */
 TEST(two_contacts)
 {
     uint32_t times_differed;
@@ -238,11 +238,12 @@ TEST(two_contacts)
     (void)gpio_differed_s(GPIO_DEADMAN, &times_differed);
     CHECK_EQ_I64(times_differed, 0);
     gpio_close();
-    CHECK_EQ_I64(gpio_differed(), 2); /* to be told at the end */
+    CHECK_EQ_I64(gpio_differed(), 2); /* to be printed at the end */
 }
 
-/* A tick more, and it is told, once, and stays open until both have been: a welded contact shows
- * when its other opens, and cannot be reset by closing that again. */
+/* A tick more, and the fault is reported once. The channel stays open until both contacts have been
+ * open. So a welded contact shows when the other opens, and closing that one again resets
+ * nothing. */
 TEST(two_contacts_that_disagree)
 {
     const char *text;
@@ -279,7 +280,7 @@ TEST(a_halted_terminal_stalls_no_tick)
     dup2(tty.slave, 2);
     words_begin(1);
     gpio_say(words_say);
-    alarm(60);                      /* a tick that stands still ends the test */
+    alarm(60);                      /* a tick that blocks ends the test */
     for (int k = 0; k < 100; k++) { /*/* so many lines a ring has room for, and no terminal */
         chip.line[SECOND].level = 0;
         for (int i = 0; i < 501; i++) { CHECK_EQ_I64(din(), EXH_DIN_DEADMAN); }
@@ -403,7 +404,7 @@ TEST(lines_that_cannot_be_set)
     gpio_close();
 }
 
-/* A line that fails once or twice is set low all the same. */
+/* A line that fails once or twice is still set low. */
 TEST(low_at_the_third_try)
 {
     const struct exh_drive_out out = {.enable = 1, .alive = 2};
@@ -431,7 +432,7 @@ enum ending { BY_EXIT, BY_SIGNAL, BY_STOP };
 static void child(enum ending how, int sig, int to)
 {
     if (sig) { signal(sig, SIG_DFL); }
-    (void)setpgid(0, 0); /* nobody stops a group whose parents have gone, as a service's have */
+    (void)setpgid(0, 0); /* the kernel stops no orphaned group, such as a service's */
     start(ALL);
     chip.put_fd = to;
     tick(1, 1);

@@ -3,7 +3,7 @@
 #define GPIO_LIBRARY "libgpiod 2"
 #include "lines.h"
 
-extern int fake_objects; /* of the library's that nobody freed */
+extern int fake_objects; /* objects of the library that are not freed */
 
 TEST(everything_is_freed)
 {

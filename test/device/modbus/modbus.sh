@@ -14,8 +14,8 @@ python3 -c 'import sys; sys.path.insert(0, "'"$B"'/pymodbus"); import pymodbus, 
         exit 3
     }
 
-# What stands behind "modbus: " once the box has told where it serves: a busy machine takes its
-# time, a box that has ended never will.
+# Prints the text after "modbus: " once the box has printed its address. A busy machine takes its
+# time. A box that has ended never prints one.
 told_by()
 {
     local from=$SECONDS place state="has ended"
@@ -35,14 +35,14 @@ rate=500
 box=0 line=0
 trap 'for p in $box $line; do [ $p = 0 ] || kill $p 2>/dev/null || true; done' EXIT
 
-# SCENE WHERE [OTHER]: the scene serves WHERE; strangers come to the port it tells, or to OTHER.
+# SCENE WHERE [OTHER]: the scene serves WHERE. The clients use the port it prints, or OTHER.
 strangers()
 {
     local place
     "$B/posix/exhand" regs --scene "$1" --csv > "$work/map.csv"
     rm -f "$work/saved" "$work/log"
     : > "$work/said"
-    # gripped and let go at once: it stays OFF; what the device does goes on
+    # Gripped and let go immediately: it stays OFF, but the device still moves.
     "$B/posix/exhand" run --scene "$1" --pace --rate $rate --seconds 600 --let-go 0.001 --slack 1 \
         --save "$work/saved" \
         --log "$work/log" --modbus "$2" --modbus-write > "$work/said" 2>&1 & box=$!

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Two strangers at the registers of a running box: pymodbus, and mbpoll beside it.
 
-strangers.py WHERE MAP SAVED READ: WHERE is a port of 127.0.0.1 or the device of a serial line, MAP
-`exhand regs --csv`, SAVED where the box was told to save. The box is OFF: what one reads the other
-must, but for the outputs and limits of the tick, which move (the simulated finger goes on all the
-same). What was read of those goes to READ, with the ticks around; logged.py looks for it in the
-box's log. Exit 1 at the first thing that is wrong.
+strangers.py WHERE MAP SAVED READ: WHERE is a port of 127.0.0.1 or the device of a serial line. MAP
+is the output of `exhand regs --csv`, SAVED the --save file of the box. The box is OFF, so both
+clients must read the same. Outputs and limits of a tick are excepted: they move with the simulated
+finger. Their readings go to READ, with the ticks around. logged.py looks for them in the box's log.
+Exit status 1 at the first error.
 """
 import csv
 import json
@@ -92,7 +92,7 @@ def keep(before, behind, who, table, at, values):
 
 
 def pymodbus_reads():
-    """Every value by a request of its own; what was read, a register a key."""
+    """Every value by a separate request. Returns what was read, a register a key."""
     seen = {}
     for (table, at), r in row_of.items():
         if table in read:

@@ -42,7 +42,7 @@ static void drain(uint64_t until_ns)
     }
 }
 
-/* Each with samples of its own: sampled, and brought before the next one is. */
+/* Each frame has other samples: it is sampled, and sent before the next one is. */
 static void frames(int n)
 {
     for (; n > 0; n--) {
@@ -102,7 +102,7 @@ TEST(a_frame_that_is_asked_for_is_one)
     CHECK_EQ_I64(in.frames, 20);
 }
 
-/* The first ones are refused until their form is sure; with the unit's word at once. */
+/* The first ones are refused until their form is sure. If the unit says its form, none is. */
 TEST(the_form_is_learned_or_told)
 {
     for (int told = 0; told < 2; told++) {
@@ -134,14 +134,14 @@ TEST(a_form_that_changes_is_taken_when_it_is_sure_unless_told)
     }
 }
 
-/* ---- What goes wrong --------------------------------------------------------------------- */
+/* ---- Errors ------------------------------------------------------------------------------ */
 
 #define FRAMES 4000
 #define EVERY  4
 #define BAD    (FRAMES / EVERY)
 
-/* Of FRAMES frames every EVERY-th: how many come, and what is counted of it; ANY: another cause may
- * have some of them, the sum stands. */
+/* Of FRAMES frames every EVERY-th is bad. How many frames come, and the count of this cause. ANY:
+ * another cause may have some of them, but the sum is right. */
 #define ANY -1
 static const struct {
     enum emu_cyber_kind kind;
@@ -237,7 +237,7 @@ TEST(all_frames_wrong_and_then_well_again)
 
 /* ---- Any bytes ------------------------------------------------------------------------------ */
 
-/* What comes out stood in what went in, from a 0 to a 0. */
+/* Each output was in the input, from a 0 to a 0. */
 TEST(any_bytes_give_only_what_has_the_form_of_a_frame)
 {
     static const uint8_t odd[] = {0, 0, 0, 'S', 'G', 'e', 's', 'g', '?', 'u', 1, 3};

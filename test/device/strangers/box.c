@@ -25,7 +25,7 @@ void *memcpy(void *restrict dst, const void *restrict src, size_t len_B)
     return dst;
 }
 
-/* Power off and on; what stands on the pins from outside stays. The fault begins at once. */
+/* Power off and on. The signals on the pins stay. The fault begins immediately. */
 void EXPORT(box_open)(uint32_t kind, uint32_t card)
 {
     const struct emu_pins before = box.pins;

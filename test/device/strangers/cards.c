@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Cards, of the host program: in the place of ports/posix/cards.c. The device shows its codes on
- * the cards' connectors as it does there, but what reads and writes the cards are Linux's drivers.
- * It runs inside the machine; comedi 0, 1, 2 are the cards A, B and MM-32X-AT, attached.
+/* Cards of the host program, instead of ports/posix/cards.c. The device shows its codes on the
+ * cards' connectors as it does there, but Linux's drivers read and write the cards. It runs inside
+ * the machine. comedi 0, 1, 2 are the cards A, B and MM-32X-AT, attached.
  */
 #include "../../../ports/posix/cards.h"
 
@@ -21,7 +21,7 @@ static struct {
 
 struct emu_box *posix_cards_box(void) { return &cards.none; }
 
-/* Nobody looks on here. */
+/* There is no watch here. */
 const struct posix_cards_watch *posix_cards_watch(void)
 {
     static const struct posix_cards_watch nothing;

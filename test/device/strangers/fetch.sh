@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# fetch: what strangers.sh needs of others, into DIR: Debian's i386 kernel with the drivers, a BIOS,
-# a linker for WebAssembly, all by a private apt that leaves the system's alone; v86 by npm.
-# Nothing of it is kept in the repository. Exit 3: what is missing, in one line.
+# fetch: gets what strangers.sh needs into DIR. A private apt that leaves the system's unchanged
+# gets Debian's i386 kernel with the drivers, a BIOS and a linker for WebAssembly. npm gets v86.
+# Nothing of it is kept in the repository. Exit status 3: one line names what is missing.
 set -u
 dir=$1
 mkdir -p "$dir" && cd "$dir" || exit 3

@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""docs.py EXHAND WORLD: what the documents of the tree name is there; EXHAND-lab stands beside
-EXHAND. In code, that is between backticks or in a block: every make target, variable, port and
-scene, every command of these programs and every option that stands behind one, options alone (some
-program or script has them), names of functions, signals and tests; anywhere: files, documents and
-links. And the other way: every document, port, scene and folder of tests has its place in the page
-that lists them, every picture is shown, the bench's table is that of its baseline. WORLD need not
-be there. Exit status: 0 all as told, 1 not. Standard library only.
+"""docs.py EXHAND WORLD: the documents name only what the tree has. EXHAND-lab is beside EXHAND.
+
+In code, between backticks or in a block, it checks every make target, variable, port and scene. It
+checks every command of these programs with its options, and that some program or script has an
+option that is named alone. It checks names of functions, signals and tests. Anywhere, it checks
+files, documents and links.
+
+Also the reverse: every document, port, scene and folder of tests has its place in the page that
+lists them. Every picture is shown. The bench's table is that of its baseline. WORLD may be missing.
+Exit status: 0 all hold, 1 not. Standard library only.
 """
 
 import functools
@@ -18,13 +21,13 @@ import sys
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
 TOP = ("lib", "ports", "examples", "test", "docs", "ldscripts")
-# Whoever reads writes these: docs/PORTING.md's port.
+# A reader of docs/PORTING.md writes these.
 OURS_NOT = ("ports/mine", "ldscripts/mine")
 # Of libmodbus, CMake, Zephyr, Linux.
 OTHERS = ("modbus_get_float_abcd", "add_subdirectory", "qemu_cortex_m3", "latency_timer",
           "mine_clock", "mine_say") # of the port that docs/PORTING.md types
 
-# A page with one of each that must be told, and as much that must not be.
+# A page with one fault of each kind, and as much that is no fault.
 PLANTED = """
 `make no-target`, `make NO_VARIABLE=1 test`, `make PORT=no-port`, `exhand no-command`,
 `exhand drop --no-option`, `--none-has-it`, docs/NONE.md, `test/no-place`, [link](no-file.md),

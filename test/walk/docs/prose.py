@@ -3,11 +3,11 @@
 """prose.py [--stats | --update | --comments FILE...] EXHAND WORLD: the documents keep the rules of
 docs/STYLE.md.
 
-Prints each fault as PAGE:LINE: a sentence or paragraph that is too long, an idiom of prose.tsv, a
-link that leads nowhere, a command or name that the tree does not have (by docs.py), too many words.
-A page may have as many faults as prose.tsv allows it, and none where it allows none. Code and what
-a command generates (between <!-- COMMAND --> and <!-- end -->) is not judged. A cell of a table
-is a paragraph of up to 40 words a sentence.
+Prints each fault as PAGE:LINE. A fault is a sentence or paragraph that is too long, an idiom of
+prose.tsv, a link that leads nowhere, or too many words. It is also a command or name that the tree
+does not have (by docs.py). A page may have as many faults as prose.tsv allows it, and none where it
+allows none. Code and what a command generates (between <!-- COMMAND --> and <!-- end -->) is not
+judged. A cell of a table is a paragraph of up to 40 words a sentence.
 
 --stats prints words and sentences of each page, and of the comments of each folder of C sources;
 --update lowers ceilings to today's number and gives new pages a row. --comments FILE... prints the
@@ -176,7 +176,7 @@ def sentences(block, end=END):
 
 
 def anchors(text):
-    """What may stand behind # in a link to a page, as GitHub makes it of headings."""
+    """The anchors of a page for links, as GitHub makes them of headings."""
     heads = re.findall(r"^#+ (.*)$", text, re.M)
     return {re.sub(r"[^\w -]", "", h.lower()).replace(" ", "-") for h in heads}
 

@@ -6,6 +6,7 @@ Circles: no two sources of a scope need each other, by their includes and by the
 objects under BUILD. Folders of the library and rooms of the program have no circle either.
 Arrows: examples never include ports; ports include examples only as ALLOWED says; a room of the
 program includes only the base room and what the simulated device offers to all.
+
 Budgets: budget.tsv has a limit for the lines of a room, of its longest file and of its longest
 function, and for its bytes. Growth beyond a limit is a decision: change the limit and say why.
 Exit status: 0 all hold, 1 not. Standard library only; nm reads the objects.

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""structure_test.py: structure.py tells planted errors, and nothing of a tree without them."""
+"""structure_test.py: structure.py detects planted errors, and nothing in a tree without them."""
 
 import os
 import shutil

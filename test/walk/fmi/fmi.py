@@ -34,7 +34,7 @@ def say(ok, text):
 
 
 class Native:
-    """A run as native.c tells it: parameters, and a dictionary a tick."""
+    """A run as native.c prints it: parameters, and a dictionary a tick."""
 
     def __init__(self, program, rate, falls):
         self.rate, self.falls, self.param, self.tick = rate, falls, {}, []
@@ -212,8 +212,8 @@ def together(importer, folder, native):
 
 
 def moved(folder, native, unit, inputs, outputs, late):
-    """In mid-fall into an instance that was told nothing, neither period nor parameters: what it
-    still gives. late: outputs behind the step."""
+    """Moves a fall in its middle into an instance without period and parameters, and returns what
+    it still gives. late: outputs behind the step."""
     h, kept, bad = 1 / native.rate, [t["c"] for t in native.tick].index(1) - 3, False
     u = (controller if late else device)(ByFmpy, folder, native)
     for n, tick in enumerate(native.tick):
@@ -252,7 +252,8 @@ WALL = {"uncalibrated": 1, "q_lim": 0.07, "k": 2000.0, "b": 15.0}
 
 
 def parallel(folder, steps):
-    """Both at once in FMPy, as a master does that knows no order: codes come a period later."""
+    """Both in the same step in FMPy, as a master without an order does: codes come a period
+    later."""
     c, d, rows = ByFmpy(folder["ExhandController"]), ByFmpy(folder["ExhandDevice"]), []
     for name, value in WALL.items():
         c.put(name, value)
@@ -274,7 +275,7 @@ def parallel(folder, steps):
 
 
 def parallel_ecos(folder, steps):
-    """The same in ecos, an engine with an importer of its own in C++."""
+    """The same in ecos, an engine with a separate importer in C++."""
     s, rows = ecospy.EcosSimulationStructure(), []
     for short, name in (("c", "ExhandController"), ("d", "ExhandDevice")):
         archive = shutil.make_archive(str(folder[name]) + "-built", "zip", folder[name])

@@ -6,7 +6,7 @@
 set -eu
 B=${B:-build}
 venv=$B/fmi/venv
-export MAKEFLAGS= # FMPy's own make is nobody's child
+export MAKEFLAGS= # FMPy's own make gets no flags of this one
 command -v cmake >/dev/null ||
     { echo "fmi: missing: cmake: sudo apt-get install -y --no-install-recommends cmake make" >&2
     exit 3; }

@@ -1,11 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # fresh.sh RELEASE [PAGE...]: types each command block of the pages (default README.md and
-# docs/PORTING.md) on a bare Debian of that release (bookworm is 12, trixie 13), in a clone of what
-# is committed. The bare root has no package that the smallest debootstrap leaves out; the pages
-# install the others. Environment: AT, where the roots are (build/fresh). They are kept, to look
-# into. Needs to be root. Exit status: 0 all blocks passed, 1 not, 2 a root is not ours to remove, 3
-# not root or no debootstrap.
+# docs/PORTING.md) on a bare Debian of that release (bookworm is 12, trixie 13). It works in a clone
+# of the last commit. The bare root has no package that the smallest debootstrap leaves out. The
+# pages install the others. Environment: AT, the directory of the roots (build/fresh). They are
+# kept, for a look into them. Needs root.
+#
+# Exit status: 0 all blocks passed, 1 not, 2 a root is not ours to remove, 3 not root or no
+# debootstrap.
 set -eu
 cd "$(dirname "$0")/../../.."
 release=${1:-bookworm}

@@ -37,7 +37,7 @@ make_root() # RELEASE ROOT PACKAGE...
         { tail -n 20 "$root.log"; exit 1; }
     # what debootstrap needed
     rm -rf "$root"/var/lib/apt/lists/* "$root"/var/cache/apt/archives/*.deb
-    # of a mirror that stands still; debootstrap does not ask either
+    # For a mirror that is not updated. debootstrap does not check the date either.
     echo 'Acquire::Check-Valid-Until "false";' >"$root/etc/apt/apt.conf.d/90fresh"
     # No package of a root that is thrown away needs to survive a power cut: no sync for each file.
     echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/90fresh"

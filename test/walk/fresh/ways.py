@@ -1,18 +1,22 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """ways.py DIR [--release NAME] [--only WORD] [--update]: each way of examples/link/README.md on a
-Debian that holds nothing, of which DIR gets one and then a copy a way: its lines as they stand,
-those that install packages too. Behind `git clone` stands a clone of what is committed here. Prints
-a table, a row a way, and with --update puts it into that file:
-  commands  all of them, the three before any way counted
-  packages  of Debian and, behind a plus, of PyPI; with MB, of apt's lists, these packages, and the
-  clone minutes   by the clock, and of them those that did not fetch or install; then seconds of a
-  core, user and system, which hang
-            less on what else the machine does
-  MB        by which the disk is fuller: also apt's lists and the archives that it keeps
-What PlatformIO's registry would have brought is put there in between (registry.py), which counts in
-the last two alone. Needs to be root. Exit status: 0 all programs said what that file says, 1 not, 2
-DIR is not ours, 3 not root or no debootstrap. Standard library only.
+bare Debian.
+
+DIR gets one bare root and then a copy for each way. All lines are typed as printed, also those that
+install packages. `git clone` gives a clone of the last commit here. Prints a table, a row a way.
+--update writes it into that file:
+
+    commands  all of them, with the three before any way
+    packages  of Debian and, behind a plus, of PyPI
+    MB        downloaded: apt's lists, these packages, and the clone
+    minutes   by the clock, and of them those that did not fetch or install
+    seconds   of a core, user and system: they depend less on the machine's other load
+    MB        added on the disk: also apt's lists and the archives that it keeps
+
+The packages of PlatformIO's registry are put there in between (registry.py). They count in the last
+two alone. Needs root. Exit status: 0 all programs printed what that file says, 1 not, 2 DIR is not
+ours, 3 not root or no debootstrap. Standard library only.
 """
 
 import argparse

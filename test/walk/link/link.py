@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """link.py DIR [--only WORD]: the ways of examples/link/README.md, each in a new directory under DIR
-beside a clone of what is there now, its lines as they stand but for what installs packages; the
-last line's output must be what the README says. Prints a row a way: commands, seconds, bytes of the
-program. What programs those packages have and are not here are named and the way skipped,
-PlatformIO without PyPI as well; EXH_ALL=1 makes that a failure. Exit status: 0 all said the same, 1
-not. Standard library only.
+beside a clone of the present tree.
+
+Its lines are typed as printed, except those that install packages. The last line's output must be
+what the README says. Prints a row a way: commands, seconds, bytes of the program. If a program of
+those packages is not installed, it is named and the way is skipped. So is PlatformIO without PyPI.
+EXH_ALL=1 makes that a failure. Exit status: 0 all outputs are the same, 1 not. Standard library
+only.
 """
 
 import argparse
@@ -40,8 +42,8 @@ def ways():
 
 
 def registry(line, tree):
-    """What comes behind this line, because PlatformIO's registry does not: nothing, or a
-    command."""
+    """The command to insert after this line, because PlatformIO's registry is not available, or
+    none."""
     return (["pio/bin/python %s/test/walk/link/registry.py" % tree]
             if line.startswith("pio/bin/pip ") else [])
 

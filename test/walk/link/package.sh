@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# package.sh DIR: what CMake installs for others to find, with the folder of libraries given in full
-# and not: the paths of exhand.pc, and which versions find_package(exhand) takes; and that the
-# metadata for registries has this version. Exit status: 0, 1 not as it should be, 3 what is
-# missing.
+# package.sh DIR: what CMake installs for other projects, with the folder of libraries given in full
+# and not. It checks the paths of exhand.pc, the versions that find_package(exhand) takes, and the
+# version in the metadata for registries. Exit status: 0, 1 not as it should be, 3 one line names
+# what is missing.
 set -eu
 unset MAKEFLAGS MFLAGS MAKELEVEL CC # of a make that is around
 for tool in cmake pkg-config; do

@@ -1,14 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""uses.py AMALGAMATION: what README.md and examples/link/README.md promise who uses a part.
+"""uses.py AMALGAMATION: what README.md and examples/link/README.md promise a user of a part.
 
-A ```c block is a whole program: it compiles as printed, without a warning, with the pair of each
-header of AMALGAMATION that it includes, runs, and prints the ```text block behind it (```sh blocks
-may be between). A ```python block does so by EXH_PYTHON (python3), or is named and left out where
-that has no exhand.
+A ```c block is a whole program. It compiles as printed, without a warning, with the pair of each
+header of AMALGAMATION that it includes. It runs, and prints the ```text block behind it (```sh
+blocks may be between). A ```python block does so by EXH_PYTHON (python3). If that has no exhand,
+the block is named and left out.
+
 A row of the table of uses links by its own sources, and by no fewer.
-The first lines of examples/limiter/README.md, typed beside the tree's lib and examples, print what
-its next block has; what needs a program that is not here is named and left out.
+
+The first lines of examples/limiter/README.md are typed beside the tree's lib and examples. They
+print its next block. A line that needs a missing program is named and left out.
+
 A public header alone compiles as C99 and C++11, and declares exh_assert_failed() where its sources
 call it. Exit status: 0, 1 not as it should be. Standard library only.
 """

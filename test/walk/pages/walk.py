@@ -10,7 +10,9 @@ lines that begin with apt-get are not typed.
 A block under a line `FILE`: is the content of that file. Under a line `FILE`, `NAME`: it replaces
 NAME and the comment above it in that file. In a block with $, a line with $ is typed, and the lines
 behind it are its output. Each line of a ```sh block is typed, and the next ```text block is the
-output of that block. In an output, `...` in a line is any text, and a line `...` is any lines. A
+output of that block.
+
+In an output, `...` in a line is any text, and a line `...` is any lines. A
 block of another kind is a failure, because no one types it. A compiler's warning is a failure, too.
 
 Prints a line for each block: place, result, seconds, first line. Exit status: 0 all blocks did what

@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
-# python.sh SCENES [ARG...]: builds sdist and wheel of ports/python, installs the wheel in an
-# environment of its own (build/python/venv), and runs the tests by pytest ARG.... B: the build.
-# Exit status: 0, 1 a test failed, 3 what is missing.
+# python.sh SCENES [ARG...]: builds sdist and wheel of ports/python, installs the wheel in a
+# separate environment (build/python/venv), and runs the tests by pytest ARG.... B: the build. Exit
+# status: 0, 1 a test failed, 3 one line names what is missing.
 set -eu
 B=${B:-build}
 scenes=$1

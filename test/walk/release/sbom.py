@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Prints the bill of materials as SPDX 2.3 tag-value: exhand, and what it is built, run and tested
-with on this machine, with Debian's versions; NOASSERTION is what is not installed here.
+"""Prints the bill of materials as SPDX 2.3 tag-value. It lists exhand and all that it is built, run
+and tested with on this machine, with Debian's versions. NOASSERTION: it is not installed here.
 
     sbom.py            prints it (make sbom)
     sbom.py --check    1 if a field that the standard requires is missing

@@ -1,9 +1,10 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
-# scale.sh DIR: the sweeps of examples/sweep on this machine: by GNU parallel, by ssh to a server of
-# its own, as a Slurm array on a cluster of one. Each must leave the file of cells that one process
-# leaves, byte for byte. Needs parallel; openssh-server; slurmctld, slurmd, slurm-client, munge and
-# root: what is not there is named and left out. Exit status: 0 all the same, 1 not, 2 wrong usage.
+# scale.sh DIR: the sweeps of examples/sweep on this machine: by GNU parallel, by ssh to a local
+# server, as a Slurm array on a cluster of one. Each must leave the same file of cells as one
+# process, byte for byte. Needs parallel; openssh-server; slurmctld, slurmd, slurm-client, munge and
+# root. What is missing is named and left out.
+# Exit status: 0 all are equal, 1 not, 2 wrong usage.
 set -u
 [ $# -eq 1 ] || { echo "usage: $0 DIR" >&2; exit 2; }
 cd "$(dirname "$0")/../../.." || exit 1

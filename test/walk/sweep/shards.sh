@@ -1,8 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
-# shards.sh DIR: examples/sweep with a stand-in for what sbatch sets in the environment of a task.
-# Whatever the array is called, or the path, the map is that of one process byte for byte, or the
-# script refuses by name. GNU parallel is tried where it is. Exit status: 0 so it is, 1 not.
+# shards.sh DIR: examples/sweep with the environment that sbatch gives a task. For any name of the
+# array and any path, the map equals that of one process byte for byte, or the script refuses by
+# name. GNU parallel is tried if it is installed.
+# Exit status: 0 it is so, 1 not.
 set -u
 [ $# -eq 1 ] || { echo "usage: $0 DIR" >&2; exit 2; }
 cd "$(dirname "$0")/../../.." || exit 1

@@ -43,7 +43,7 @@ __attribute__((format(printf, 2, 3))) static void tell(int ok, const char *forma
     if (!ok) { printf("# %s\n", words); }
 }
 
-/* --- exhand, in a process of its own --- */
+/* --- exhand, in a separate process --- */
 
 /* lines: of the simulated chip, or of another where its name and a colon are in them. */
 static pid_t run(const char *lines, const char *out, int user)
@@ -179,8 +179,8 @@ static void opens(const char *what, int line, int beats_max)
                            "line 8 open)") != NULL,
             "%s: the disagreement is named", what);
     } else {
-        /* One contact of two opened: told at the end, since the run ended before the pair was at
-         * fault. */
+        /* One contact of two opened. It is reported at the end, because the run ended before the
+         * pair became a fault. */
         tell(strstr(words, "disagree for") == NULL, "%s: no disagreement at fault", what);
         tell(
             (strstr(words, "estop: its two contacts disagreed 1 times") != NULL) == (line == ESTOP),

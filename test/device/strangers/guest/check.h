@@ -28,7 +28,7 @@ void check_mask(int bug);
 /* An experiment of exhand through the cards; its log is the n-th. */
 void check_loop(unsigned n, const char *command, const char *log);
 
-/* One scan of 22 channels, or two by the card's timer, of what stands on the pins. */
+/* One scan of 22 channels, or two by the card's timer, of the voltages on the pins. */
 int mm_scan(unsigned scans);
 
 /* The short sequences that are compared with test/device/emu/linux_trace.inc. */

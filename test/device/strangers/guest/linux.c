@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#define _GNU_SOURCE 1 /* syscall, usleep: also where a standard is asked for */
+#define _GNU_SOURCE 1 /* syscall, usleep: also with -std=c99 */
 #include "linux.h"
 
 #include "pin.h"

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Loops: exhand's own experiments on the simulated device, by the host program in which Linux's
- * drivers stand between device and controller (cards.c). Their logs leave the machine byte by
- * byte; run.mjs compares them with those of the host program without cards.
- */
+/* Loops: exhand's own experiments on the simulated device. In this host program Linux's drivers are
+ * between device and controller (cards.c). Their logs leave the machine byte by byte. run.mjs
+ * compares them with those of the host program without cards. */
 #include "check.h"
 #include "linux.h"
 #include "pin.h"

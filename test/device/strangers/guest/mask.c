@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Channels 2..7 of the S526's A/D: whose error it is that Linux does not read them.
  *
- * The card keeps a result for each channel; a word starts the conversion of the channels whose
- * bits (5 + channel) are set, and selects by bits 1..4 whose result is read. The mainline driver
- * computes the bit from "channel & 9", so it converts channel 0 or 1 and reads the result that the
- * channel had before.
+ * The card keeps a result for each channel. A word starts the conversion of the channels whose bits
+ * (5 + channel) are set. Its bits 1..4 select the result to read. The mainline driver computes the
+ * bit from "channel & 9", so it converts channel 0 or 1 and reads the result that the channel had
+ * before.
  */
 #include "check.h"
 #include "linux.h"

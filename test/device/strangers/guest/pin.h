@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Pin: what stands on the connectors of the emulated cards, seen from inside the machine through
- * ports that no card has. The drivers know nothing of it.
+/* Pin: the signals on the connectors of the emulated cards, seen from inside the machine through
+ * ports that no card has. The drivers do not use them.
  */
 #ifndef GUEST_PIN_H
 #define GUEST_PIN_H

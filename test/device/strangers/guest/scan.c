@@ -14,7 +14,7 @@
 
 static uint16_t sample[SCANS_MAX * 32];
 
-/* Channels 0 .. n - 1, every period_ns; one scan alone is started at once. */
+/* Channels 0 .. n - 1, every period_ns; one scan alone starts immediately. */
 static int scan(unsigned channels, unsigned scans, unsigned period_ns, unsigned interval_ns)
 {
     unsigned list[32];

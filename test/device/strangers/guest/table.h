@@ -7,7 +7,7 @@
 
 void table_head(const char *title, const char *pin_unit, const char *linux_unit);
 
-/* One value: what stands on the pin, what it should be in Linux's unit, and what it is. */
+/* One value: that of the pin, the expected one in Linux's unit, and the actual one. */
 void table_row(const char *name, ...);
 void table_value(int64_t pin, int64_t wanted, int64_t got);
 void table_end_row(void);

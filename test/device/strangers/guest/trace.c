@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The short sequences of golden traces: one thing each, with pins that are told here. */
+/* The short sequences of golden traces: one thing each, with pins that are set here. */
 #include "check.h"
 #include "linux.h"
 #include "pin.h"

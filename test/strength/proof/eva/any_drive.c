@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* PROVES: force and current
- * Force and current of a finger: any ledger, any permit of exh_safety_step(), any state that
+ * Force and current of a finger. Any ledger, any permit of exh_safety_step(), any state that
  * exh_drive_serialize() accepts, any table of three knots that exh_table_setup() accepts.
  *
  * WP: Closed: force 0. Open: no force rises above `f_max` or the end of the table. Release: the
