@@ -28,11 +28,11 @@ struct exh_sincos {
     int32_t sin_q30, cos_q30; /* -2^30 .. 2^30 */
 };
 
-/* Sine and cosine of any angle. The error is at most 2.25 LSB of q30 (0.0021 ppm), measured over
- * all 2^32 angles. Results are exactly 0 or +-2^30 at multiples of a quarter turn, and never beyond
- * +-2^30. sin(-x) = -sin(x) and cos(-x) = cos(x) hold to the last bit, except at the four odd
- * eighths of a turn: there the two magnitudes differ by 2 LSB and swap. A quarter turn more gives
- * exactly cos(x), -sin(x) at every angle. Constant time: nine products, no table, no branch. */
+/* Sine and cosine of any angle, in constant time: nine products, no table, no branch. The error is
+ * at most 2.25 LSB of q30 (0.0021 ppm), measured over all 2^32 angles. Multiples of a quarter turn
+ * give exactly 0 or +-2^30. No result is beyond. A quarter turn more gives exactly cos(x), -sin(x).
+ * sin(-x) = -sin(x) and cos(-x) = cos(x) are exact, except at the four odd eighths of a turn. There
+ * the magnitudes differ by 2 LSB and swap. */
 void exh_sincos(int32_t x_turn_q32, struct exh_sincos *y);
 
 #ifdef __cplusplus

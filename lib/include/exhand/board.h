@@ -37,7 +37,7 @@ int exh_board_init(uint32_t rate_Hz, struct exh_period *achieved);
 /* Waits for the next tick. Returns the ticks missed before it (0 = on time); < 0 stops. */
 int exh_board_wait(void);
 
-/* Latches all axes at once and reads them. Returns 0 or -EXH_E_IO. */
+/* Latches all axes at the same time and reads them. Returns 0 or -EXH_E_IO. */
 int exh_board_read_drive(struct exh_drive_in *in);
 
 /* Applies all codes and enables together. Returns 0 or -EXH_E_IO. */

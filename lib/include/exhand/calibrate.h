@@ -119,12 +119,12 @@ struct exh_calib_error {
 /* The name of a kind, such as "force-to-current table". Never NULL. */
 const char *exh_calib_error_text(unsigned what);
 
-/* Makes the knots for exh_drive_setup(), exact at every point. The force table runs through the
- * origin and all points. If end_A lies beyond them, it continues to end_A with the slope of the
- * fitted line. The monitor table continues likewise to the monitor current of the last
- * point + (end_A - its current), <= 16.6 A. It is odd: it also covers negative currents. Returns
- * the number of knots, or -EXH_E_MONOTONE, -EXH_E_RANGE (reason in *bad, which may be NULL) or
- * -EXH_E_SHORT (cap too small; points + 2 and 2 points + 3 suffice). Set-up only (divides). */
+/* Makes the knots for exh_drive_setup(), exact at every point. The force table runs through 0 and
+ * all points, then with the fitted line's slope to end_A. The monitor table continues also, to the
+ * last point's monitor current + (end_A - its current), <= 16.6 A. It is odd: currents may be < 0.
+ *
+ * Returns the number of knots or an error: -EXH_E_MONOTONE, -EXH_E_RANGE, -EXH_E_SHORT (cap too
+ * small; points + 2 and 2 points + 3 suffice). *bad, if not NULL, has the reason. Set-up only. */
 int exh_calib_force_table(
     const struct exh_calib *c, struct exh_knot *knot, unsigned cap, struct exh_calib_error *bad);
 int exh_calib_monitor_table(

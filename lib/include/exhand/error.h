@@ -39,8 +39,8 @@ enum exh_error {
 const char *exh_error_text(int code);
 
 /* Sets the outputs to a safe state, then stops; must not return. The program defines it, as
- * lib/src/run/loop.c does. It is the only symbol besides mem*() that the library needs. A C++
- * program includes this header before it defines the function, to get C linkage. */
+ * lib/src/run/loop.c does. The library needs no other symbol except mem*(). A C++ program includes
+ * this header before it defines the function, to get C linkage. */
 void exh_assert_failed(const char *file, int line);
 
 /* Stops the program if cond is 0, in release builds too: a human finger is near. */

@@ -184,8 +184,8 @@ static inline int32_t exh_recip_q24(int32_t x)
     return ((((INT32_C(1) << 30) + z_q30) >> (12 - shift)) + 1) >> 1;
 }
 
-/* Sets *g to num/den. Returns 0, or -EXH_E_RANGE if den is 0 or >= 2^63, if the quotient rounds to
- * 2^31 or more, or if it lies above 0 and below 2^-32. Set-up only: a long division.
+/* Sets *g to num/den and returns 0. Returns -EXH_E_RANGE if den is 0 or >= 2^63, or if the quotient
+ * is above 0 and below 2^-32 or rounds to 2^31 or more. Set-up only: a long division.
  *
  *   struct exh_gain g;
  *   int err = exh_gain_set(&g, 1, 3);

@@ -86,7 +86,7 @@ void exh_gains_enable(struct exh_params *p, int on);
  * knot), one jump connects it with k_min. shift 0: in one step.
  *
  * Staged pairs outside the rule are ignored. An active pair outside it, from a damaged keyframe,
- * becomes 0 at once. If exh_params_apply() has left nothing to move, this function moves nothing: a
+ * becomes 0 in one tick. If exh_params_apply() left nothing to move, this function moves nothing: a
  * difference is then damage, and exh_params_verify() reports it. */
 void exh_gains_step(struct exh_params *p, const struct exh_gains_par *rule);
 

@@ -218,10 +218,10 @@ int exh_glove_setup(struct exh_glove_cfg *cfg, const struct exh_glove_par *par,
  *
  * A code at a rail or beyond the span's margin is rejected. The last accepted code replaces it at
  * the filter's input, so a spike has no effect. After debounce_frames consecutive rejected codes
- * the channel is faulty; its angle settles at the last accepted code. After debounce_frames
- * consecutive good codes the fault ends, and the angle follows the filter's step response without a
- * jump. In the first frame a bad code is a fault at once. The code of angle 0 replaces it, or the
- * nearer end of the calibrated span.
+ * the channel is faulty. Its angle settles at the last accepted code. After debounce_frames good
+ * codes the fault ends. The angle then follows the filter's step response without a jump.
+ * - A bad code in the first frame is a fault in that frame. The code of angle 0, or the nearer end
+ *   of the calibrated span, replaces it.
  *
  * The error of an angle is (Q + H)/2 of the quantizer times the gain, plus 1/2 LSB per term. The
  * cost depends on the order and the number of cross terms. A channel with rejected codes costs some

@@ -103,12 +103,12 @@ int exh_hand_couple(struct exh_hand_finger *f, const struct exh_hand_map *map, u
 void exh_hand_tip(
     const struct exh_hand_finger *f, const int32_t *joint_turn_q32, struct exh_vec3 *tip_m_q30);
 
-/* P_F as above and its slope: metres of tip movement per metre of string, q24. The string runs over
- * the back of the finger and turns q1, and q2 with q3; q0 moves no string. Many turns satisfy
- * arm1*dq1 + (arm2 + arm3)*dq2 = 1; the function uses that of least dq1^2 + dq2^2. The error for
- * the pulls in f is at most 4 LSB (2.4e-7) if no joint turns by more than 40 rad per metre
- * (defaults: 17 and 24), 16 LSB otherwise. Rounding of the pulls to q20 adds up to 4 LSB with the
- * longest bones (5.5 in all found). It cannot saturate: below 68. */
+/* P_F as above and its slope: metres of tip movement per metre of string, q24. The string over the
+ * back of the finger turns q1, and q2 with q3. It does not turn q0. Many turns satisfy
+ * arm1*dq1 + (arm2 + arm3)*dq2 = 1. The function uses that of least dq1^2 + dq2^2.
+ * - Error for the pulls in f: 4 LSB (2.4e-7) if each joint turns <= 40 rad/m (defaults: 17, 24).
+ *   Otherwise 16 LSB. Rounding of the pulls to q20 adds up to 4 LSB (5.5 in all found).
+ * - The slope cannot saturate: it is below 68. */
 void exh_hand_tip_slope(const struct exh_hand_finger *f, const int32_t *joint_turn_q32,
     struct exh_vec3 *tip_m_q30, struct exh_vec3 *slope_q24);
 

@@ -6,10 +6,10 @@
  * packets, and checks and removes them on incoming ones. Scene, log and replay do not see them.
  * Little-endian:
  *
- *    0  the packet, whole (wire.h)
- *    n  u64 number of this packet, one more than the one before; bit 63: enum exh_wire_role
- * +8 u64 echo: the newest number received from the other end; 0: none +16 u64 tag of all bytes
- * before (mac.h)
+ *    0    the packet, whole (wire.h), of n bytes
+ *    n    u64 number of this packet, one more than the previous; bit 63: enum exh_wire_role
+ *    n+8  u64 echo: the newest number received from the other end; 0: none
+ *    n+16 u64 tag of all bytes before it (mac.h)
  *
  * A number is never reused under a key: each run starts at a random number. A run of the other end
  * is accepted once it echoes a number that we sent after accepting the last run. No recorded packet

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Limiter: one guard for anybody's motor, between whoever commands and the drive.
+/* Limiter: a guard for any motor, between the program that commands and the drive.
  *
  * One structure of parameters, one set-up, one step a tick. In: a command, what is measured, how
  * old the command is, a dead-man switch and the time. Out: what to send, which limits act, the
@@ -19,10 +19,10 @@
  *             .. 104.8576 units, by exh_contact_force() (contact.h); then as an effort
  *
  * States are those of the box (enum exh_state, safety.h) by the same table:
- *   OFF -> ARM (limits rise from 0) -> RUN <-> LIMIT -> RELEASE -> OFF, or FAULT if there was a
- * cause Nothing starts by itself: `run` must be set, and the dead-man must be released once and
- * then taken. The same ends FAULT, once no cause is present. Without a dead-man, `run` must be 0
- * once. In RELEASE the effort held goes to 0 in equal steps; a position brakes to a standstill.
+ *   OFF -> ARM (limits rise from 0) -> RUN <-> LIMIT -> RELEASE -> OFF, after a cause -> FAULT
+ * Nothing starts automatically. To start, set `run`, release the dead-man once, then take it. The
+ * same ends FAULT, once no cause is present. Without a dead-man, `run` must be 0 once.
+ * In RELEASE the effort held goes to 0 in equal steps; a position brakes to a standstill.
  *
  * Rates hold by step: with steps late by a factor, efforts and positions change slower by it.
  *
@@ -79,7 +79,7 @@ enum exh_limiter_first {
     EXH_LIMITER_APPROACH /* go there within the limits; the first effort rises with the ramp */
 };
 
-/* What a drive of a position does in FAULT, once it stands still. */
+/* What a drive of a position does in FAULT, once it does not move. */
 enum exh_limiter_after {
     EXH_LIMITER_LIMP, /* `enable` is 0 */
     EXH_LIMITER_HOLD  /* `enable` stays 1, the last position is sent on */
@@ -110,7 +110,7 @@ struct exh_limiter_par {
     int32_t after;     /* POSITION: enum exh_limiter_after */
 
     int32_t age_max_us; /* a command that is older: cause STALE; us, 1 .. 10^7 */
-    int32_t gap_max_us; /* steps farther apart, or a clock that stands for so many steps' time:
+    int32_t gap_max_us; /* steps farther apart, or a clock that stops for so many steps' time:
                          * cause TIME; us, two steps .. 10^7 */
 
     int32_t speed_max; /* uses VEL: measured speed beyond it for longer than speed_ms: cause SPEED,
@@ -152,7 +152,7 @@ enum exh_limiter_limit {
 enum exh_limiter_cause {
     EXH_LIMITER_LOGIC = 1u << 0,    /* a state that cannot be: memory was damaged */
     EXH_LIMITER_NUMBER = 1u << 1,   /* EXH_LIMITER_NONE: not a number */
-    EXH_LIMITER_TIME = 1u << 2,     /* time goes back, stands still, or steps are too far apart */
+    EXH_LIMITER_TIME = 1u << 2,     /* time goes back or stops, or steps are too far apart */
     EXH_LIMITER_RELEASED = 1u << 3, /* the dead-man switch is released */
     EXH_LIMITER_STALE = 1u << 4,    /* the command is too old */
     EXH_LIMITER_RANGE = 1u << 5,    /* measured position out of range */
@@ -181,8 +181,8 @@ struct exh_limiter_out {
     uint32_t enable;  /* 1: the drive may be on; 0: it must be off */
     uint32_t state;   /* enum exh_state; its name by exh_state_name() */
     uint32_t limits;  /* enum exh_limiter_limit, of this step */
-    uint32_t first;   /* one bit of enum exh_limiter_cause: the first cause latched, the highest in
-                       * priority where several came at once; stays until the next arming */
+    uint32_t first;   /* one bit of enum exh_limiter_cause: the first cause latched. Of several in
+                       * one step, the highest in priority. It stays until the next arming */
     uint32_t causes;  /* all that were latched since */
     uint32_t present; /* seen in this step: why it does not arm */
 };
@@ -231,19 +231,19 @@ struct exh_limiter {
     struct exh_motion motion; /* state of motion.h */
 };
 
-/* Set-up (divides). 0, or -(1 + k) where the field of number k is the first that is wrong: it lies
- * outside its range, does not go with the others, or `uses` lacks what it needs.
- * exh_limiter_field_name(k) is its name. cfg is then not to be used. */
+/* Set-up (divides). Returns 0, or -(1 + k) if field number k is the first wrong one. It is outside
+ * its range, does not fit the others, or `uses` lacks what it needs. exh_limiter_field_name(k) is
+ * its name. Do not use cfg then. */
 int exh_limiter_setup(struct exh_limiter_cfg *cfg, const struct exh_limiter_par *par);
 
-/* One step. For every cfg of a set-up, every state and every input:
- * EFFORT, WALL: |send| <= effort_max, and <= what heat leaves but for the slew; send leaves 0 by no
- * more than effort_up and returns by no more than effort_down a step, rounded down to whole
- * millionths, but 1 at least; it passes through 0 with the lesser of what is left of both. 0 where
- * enable is 0.
- * POSITION: send stays within pos_min .. pos_max once it is there, and changes by no more than
- * vel_max a step, rounded up; its change changes by no more than acc_max. It begins at the measured
- * position, which is also what is sent where enable is 0. */
+/* One step. These hold for every cfg of a set-up, every state and every input.
+ * - EFFORT, WALL: |send| <= effort_max, and <= the rest that heat leaves, except for the slew.
+ *   A step from 0 is at most effort_up, one towards 0 at most effort_down (whole millionths, >= 1).
+ *   A step through 0 is limited by the smaller remainder of both. If enable is 0, send is 0.
+ * - POSITION: once send is within pos_min .. pos_max, it stays there. It changes by at most vel_max
+ *   a step, rounded up, and this change by at most acc_max. It starts at the measured position.
+ *   If enable is 0, send is the measured position.
+ */
 void exh_limiter_step(struct exh_limiter *s, const struct exh_limiter_cfg *cfg,
     const struct exh_limiter_in *in, struct exh_limiter_out *out);
 
@@ -259,7 +259,7 @@ EXH_STATIC_ASSERT(double_has_64_bits, sizeof(double) == sizeof(uint64_t));
 
 /* Nearest millionth of x, half away from 0. NaN and infinity become EXH_LIMITER_NONE; a number
  * beyond int32_t becomes +-INT32_MAX, with its sign. It looks at the number's bits (IEEE 754), so
- * it also holds where a compiler was told that there are no NaNs (-ffast-math). */
+ * it also works if a compiler assumes that there are no NaNs (-ffast-math). */
 static inline int32_t exh_limiter_micro(double x)
 {
     const uint64_t exponent = UINT64_C(0x7FF0000000000000);

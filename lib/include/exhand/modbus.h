@@ -18,8 +18,8 @@ extern "C" {
 #define EXH_MODBUS_PDU_B 253 /* longest request or response */
 
 /* Answers one request: functions 1 2 3 4 5 6 15 16 22 23 and 43/14 (device identification). Returns
- * the bytes of the response, which may be an exception, 0 if len_B is 0, or -EXH_E_SHORT if cap_B
- * is below EXH_MODBUS_PDU_B; then it did nothing. req and resp must not overlap. */
+ * the bytes of the response, which may be an exception. 0: len_B is 0. -EXH_E_SHORT: cap_B is below
+ * EXH_MODBUS_PDU_B, and it did nothing. req and resp must not overlap. */
 int exh_modbus_answer(
     struct exh_regs *r, const uint8_t *req, size_t len_B, uint8_t *resp, size_t cap_B);
 

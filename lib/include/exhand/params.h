@@ -81,8 +81,8 @@ int exh_params_validate_by(
 int32_t exh_params_slew_step(int32_t now, int32_t goal, unsigned shift);
 
 /* Makes the staged values active; call it once, between ticks. While locked, slewed values move one
- * step; before, they change at once. Returns 1 if it changed anything. Its cost is then one of two
- * constants: all values after a new staging, slewed rows alone while they move. */
+ * step. Before that they change in one call. Returns 1 if it changed anything. Its cost is then one
+ * of two constants: all values after a new staging, slewed rows alone while they move. */
 int exh_params_apply(struct exh_params *p);
 
 /* Sets active value i, i below count. Only the module that owns the led rows calls it, between

@@ -72,10 +72,10 @@ struct exh_passivity {
 };
 
 /* Set-up (divides). held is the inverse of the drive's force_to_cur (exh_table_invert) with 0 N at
- * 0 A. held, par and the parameters of drive must outlive cfg. speed_mps_q27, at least 0.1 m/s: the
- * bound does not cover faster movement. -EXH_E_RATE: T. -EXH_E_RANGE: an invalid table or value,
- * way above 2^24 counts, or slew_down too low for the highest force to fall to 0 in one tick.
- * Lowering slew_down later adds the work of the fall to the bound. */
+ * 0 A. held, par and the parameters of drive must outlive cfg. The bound does not cover movement
+ * faster than speed_mps_q27, >= 0.1 m/s. A lower slew_down later adds the fall's work to the bound.
+ * - -EXH_E_RATE: T. -EXH_E_RANGE: an invalid table or value, or way is above 2^24 counts, or
+ *   slew_down is too low: the highest force must fall to 0 in one tick. */
 int exh_passivity_setup(struct exh_passivity_cfg *cfg, const struct exh_passivity_par *par,
     const struct exh_drive_cfg *drive, struct exh_table held, struct exh_velocity_scale scale,
     int32_t speed_mps_q27);

@@ -21,12 +21,12 @@
  * - The finger was inside the object when the plane was born, and the plane was not late.
  *
  * A plane is born when it is new: the first one, of another object, or received while the finger
- * was frozen. If it is born at d_lim <= d < 0, q_lim moves along and freezes at the touch: 0
- * replaces d_lim until the finger has been at d < d_lim. If it is born at d >= 0, inside the
+ * was frozen. If it is born at d_lim <= d < 0, q_lim moves along and freezes at the touch. Until
+ * the finger has been at d < d_lim, 0 replaces d_lim. If the plane is born at d >= 0, inside the
  * object, it is either
  * - late: the link was too slow. The world has reported on the free finger before and sent the
  *   plane twice, the string runs out, s was not limited and is at most 2. q_lim becomes its true
- *   place (q - s*d) and freezes at once. The full force would start in one step, so the caller
+ *   place (q - s*d) and freezes in this tick. The full force would start in one step, so the caller
  *   limits its rise to late_slew while late is 1, until exh_precontact_arrived(); or
  * - not late: the device has just started to pull, the world has just started to report
  *   (exh_precontact_forget()), or an object moved onto a resting finger. The force is 0 until the
@@ -35,7 +35,7 @@
  * A plane with a normal of wrong length or an unknown material is refused, without further effect.
  * Counters and the bits of every tick report all events. Per tick:
  *
- *   if (told) { err = exh_precontact_update(&pre, &cfg, &plane, age_ticks); }
+ *   if (plane_came) { err = exh_precontact_update(&pre, &cfg, &plane, age_ticks); }
  *   uint32_t bits = exh_precontact_step(&pre, &cfg, &in);
  *   law_in.lim_m_q30 = pre.lim_m_q30; // unless exh_precontact_none(&pre) */
 #ifndef EXHAND_PRECONTACT_H

@@ -88,7 +88,7 @@ int exh_probe_setup(
 void exh_probe_start(struct exh_probe *s, int32_t cnt, int32_t cur_A_q26);
 
 /* One tick. Rising: waits at the first current until one dwell is quiet and the slack is taken up,
- * then steps; DONE when a dwell moves `move` in. Falling: steps at once; DONE when a dwell moves
+ * then steps; DONE when a dwell moves `move` in. Falling: does not wait; DONE when a dwell moves
  * `move` out. Movement in the other direction is still the lifted mass. The count may wrap. */
 uint8_t exh_probe_step(struct exh_probe *s, const struct exh_probe_cfg *cfg, int32_t cnt);
 

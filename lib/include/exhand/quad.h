@@ -24,11 +24,11 @@
 extern "C" {
 #endif
 
-/* Metres per count, q42, for an initialiser: an encoder of so many pulses a turn, four counts each,
- * on a pulley whose radius to the middle of the string is radius_um, 1 .. 400000. Truncated;
+/* Metres per count, q42, truncated, for an initialiser. pulses: of the encoder in a turn, each four
+ * counts. radius_um: of the pulley, to the middle of the string, 1 .. 400000.
  * 2 pi radius / (4 pulses) must fit the range of step. 1000 pulses, 8 mm: EXH_QUAD_STEP(1000, 8000)
- * is 12.566 um. The factor is 2^42 pi/2 / 10^6, q10, within 5e-12 of it. Where only edges of A
- * count, give half of the pulses; behind a gear, pulses times its ratio. */
+ * is 12.566 um. The factor is 2^42 pi/2 / 10^6, q10, within 5e-12 of it. If only edges of A count,
+ * give half of the pulses. Behind a gear, give the pulses times its ratio. */
 #define EXH_QUAD_STEP(pulses, radius_um) \
     ((int32_t)((radius_um)*INT64_C(7074237752) / ((pulses)*INT64_C(1024))))
 

@@ -233,8 +233,8 @@ int exh_regs_validate(const struct exh_regs *r, uint16_t at, uint16_t n, const u
 int exh_regs_read_bits(
     const struct exh_regs *r, enum exh_regs_kind kind, uint16_t at, uint16_t n, uint8_t *to);
 
-/* Commands by coils, all or none. Executes DISCARD at once and queues the others. Exception 3: not
- * in may, or APPLY with DISCARD. Exception 6: DISCARD while APPLY is pending. */
+/* Commands by coils, all or none. Executes DISCARD here and queues the others. Exception 3: not in
+ * may, or APPLY with DISCARD. Exception 6: DISCARD while APPLY is pending. */
 int exh_regs_write_bits(struct exh_regs *r, uint16_t at, uint16_t n, const uint8_t *from);
 
 /* Commands since the last call, bit k: coil k. The caller executes them in the order APPLY, SAVE,

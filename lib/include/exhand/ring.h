@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Ring: the newest records in a fixed memory, for a black box.
  *
- * The content starts with a keyframe and continues without a gap to the last record put. Memory is
- * divided into parts that each start with a keyframe. When space is needed, the oldest part is
- * dropped: no loop over records, at most two parts per call. Put a keyframe after the records of a
- * tick whenever exh_ring_due() returns 1. The ring then keeps at least the last cap_B - cap_B /
- * EXH_RING_PARTS - (records of a tick and two keyframes) bytes. A record occupies 7 bytes and its
- * payload. Without keyframes in time, records that do not fit are lost and counted.
+ * The content starts with a keyframe and continues without a gap to the last record put. Each part
+ * of the memory starts with a keyframe. If space is needed, the oldest part is dropped: no loop
+ * over records, at most two parts per call. A record occupies 7 bytes and its payload.
  *
+ * If exh_ring_due() returns 1, put a keyframe after the records of the tick. Then the ring keeps at
+ * least the last cap_B - cap_B / EXH_RING_PARTS - (records of a tick and two keyframes) bytes.
+ * Without keyframes in time, records that do not fit are lost and counted.
  *   exh_ring_put(&ring, EXH_RECORD_FRAME, tick, buf, len_B);
  *   if (exh_ring_due(&ring)) { exh_ring_put(&ring, EXH_RECORD_KEYFRAME, tick, state, state_B); } */
 #ifndef EXHAND_RING_H

@@ -69,7 +69,7 @@ enum exh_fault {
 
 /* Use it in raised instead of exh_tracking_step() if the port has no current monitors, or if the
  * scene compares them. A D/A that fails to update is then not detected. It is a name in the source,
- * not a parameter: nobody can set it by mistake, over a link, or for a port with monitors. */
+ * not a parameter. So no user sets it by mistake, over a link, or for a port with monitors. */
 #define EXH_UNTRACKED 0u
 
 /* Steps of arming, in their order. */
@@ -204,11 +204,11 @@ static inline int exh_safety_pulls(const struct exh_safety *s)
 int exh_safety_is_open(const struct exh_safety *s);
 
 /* Last call of a tick (gate.c): converts the currents of fingers 0 .. n-1 to codes and completes
- * each ledger (gate, dac, coded). Fingers not in use get dac_zero and are disabled, and all fingers
- * while the gate is closed. No input gives a code beyond dac_zero +- dac_span. In RELEASE no code
- * moves away from dac_zero. Arrays cfg, i and limits have length n; 1 <= n <= the fingers of
- * exh_safety_step(). Adds EXH_LIMIT_DAC and EXH_LIMIT_GATE (current held back) to limits. The next
- * exh_safety_step() counts all limits. */
+ * each ledger (gate, dac, coded). A finger not in use gets dac_zero and is disabled; a closed gate
+ * does so to all. No input gives a code beyond dac_zero +- dac_span. In RELEASE no code moves away
+ * from dac_zero. Adds EXH_LIMIT_DAC and EXH_LIMIT_GATE (current held back) to limits, which the
+ * next exh_safety_step() counts.
+ * - cfg, i and limits have length n, from 1 to the fingers of exh_safety_step(). */
 void exh_gate_step(struct exh_safety *s, const struct exh_drive_cfg *cfg, unsigned n,
     struct exh_current_ledger *i, uint32_t *limits, struct exh_drive_out *out);
 

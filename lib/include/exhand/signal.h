@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Signals: one descriptor for every input, output and parameter.
  *
- * Each module defines the rows of its own parameter struct. All fields of that struct are int32_t,
- * in the order of the rows. A scene lists the rows of its modules, in the order of its own struct.
+ * A module defines the rows of its parameter struct. All fields of that struct are int32_t, in the
+ * order of the rows. A scene lists the rows of its modules, in the order of the scene's struct.
  * CSV headers, command-line options, --help, the parameter image and tables in docs/ come from it.
  *
  *   uint16_t finger;

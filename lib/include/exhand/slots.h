@@ -63,12 +63,12 @@ int exh_slot_decode(struct exh_slot *is, const void *slot, size_t slot_B);
  * 2^32 is valid, else slot 0. */
 int exh_slots_find(struct exh_slot *newest, const void *slot0, const void *slot1, size_t slot_B);
 
-/* Prepares the next save. The caller puts an image of image_B bytes at buf + EXH_SLOT_HEAD_B; this
- * function writes head and tail around it. Returns the number of bytes of buf to program from the
- * start of slot *to, which the caller erases before. 0: the valid slot *to already holds this
- * image; do not wear the flash. -EXH_E_SHORT: the result exceeds cap_B, slot_B or 2^31 - 1; nothing
- * changes. The new sequence follows that of the valid slot, and 1 follows 2^32 - 2. Without a valid
- * slot, it is slot 0 with sequence 1. */
+/* Prepares the next save. The caller puts an image of image_B bytes at buf + EXH_SLOT_HEAD_B. This
+ * function writes head and tail around it. The new sequence follows the valid slot's; 1 follows
+ * 2^32 - 2. Without a valid slot, it is slot 0 with sequence 1.
+ * - Returns the bytes of buf to program at the start of slot *to, which the caller erases before.
+ * - 0: the valid slot *to already holds this image. Do not wear the flash.
+ * - -EXH_E_SHORT: the result exceeds cap_B, slot_B or 2^31 - 1. Nothing changes. */
 int32_t exh_slots_encode(unsigned *to, const void *slot0, const void *slot1, size_t slot_B,
     void *buf, size_t cap_B, size_t image_B);
 

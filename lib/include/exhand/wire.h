@@ -172,9 +172,9 @@ struct exh_wire_tx {
 };
 
 /* Writes packet p to buf. The caller sets type and payload; this function sets seq and stamp_us.
- * Returns the bytes written, or the first of these errors: -EXH_E_UNKNOWN (type), -EXH_E_RANGE
- * (session 0, or a value that no receiver accepts), -EXH_E_SHORT (cap_B below EXH_WIRE_MAX_B may
- * not suffice). After an error, no sequence number is used, but buf may have changed. */
+ * Returns the bytes written, or the first error: -EXH_E_UNKNOWN (type), -EXH_E_RANGE (session 0, or
+ * a value that no receiver accepts), -EXH_E_SHORT. A cap_B of EXH_WIRE_MAX_B suffices. An error
+ * uses no sequence number, but buf may have changed. */
 int32_t exh_wire_encode(
     struct exh_wire_tx *tx, struct exh_wire_packet *p, uint32_t stamp_us, void *buf, size_t cap_B);
 
@@ -208,10 +208,10 @@ struct exh_wire_rx {
 int exh_wire_poll(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us);
 
 /* Decodes one datagram; reads at most len_B bytes. Returns its type, > 0, if it is accepted. Only
- * then *p is written, in p->u only the member of that type. Errors: -EXH_E_SHORT, -EXH_E_CRC (also
- * for an impossible value), -EXH_E_VERSION, -EXH_E_UNKNOWN, -EXH_E_STATE (stranger), -EXH_E_STALE
- * (duplicate, reordered, old), -EXH_E_RANGE (far). An error changes a counter only, and the record
- * of a reordered packet.
+ * then *p is written, in p->u only the member of that type. Errors: -EXH_E_SHORT, -EXH_E_VERSION,
+ * -EXH_E_UNKNOWN, -EXH_E_STATE (stranger), -EXH_E_RANGE (far), -EXH_E_STALE (duplicate, reordered,
+ * old), -EXH_E_CRC. The last includes impossible values. An error changes only a counter, and the
+ * record of a reordered packet.
  *
  * The first HELLO starts the session. While packets of it arrive, any other session is a stranger.
  * An open receiver accepts any HELLO except a copy of the newest packet, since the peer has

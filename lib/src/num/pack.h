@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Many fields at once through a cursor. One that writes and has room takes them without a call for
- * each; any other goes field by field. The bytes are the same. */
+/* Many fields in one call through a cursor. A cursor that writes and has room needs no call for
+ * each field. Any other takes field by field. The bytes are the same. */
 #ifndef NUM_PACK_H
 #define NUM_PACK_H
 

@@ -8,7 +8,7 @@
 
 #include "word.h"
 
-/* What comes next. Zeros: the first. */
+/* The next value to write. Zeros: the first. */
 struct params_place {
     uint16_t group, instance;
     uint32_t value;

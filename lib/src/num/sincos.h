@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Inline sine and cosine, for angle.c, and for hand.c, which needs three at once. */
+/* Inline sine and cosine, for angle.c, and for hand.c, which needs three in one call. */
 #ifndef EXHAND_SINCOS_H
 #define EXHAND_SINCOS_H
 
@@ -12,10 +12,10 @@
  *   cos = 1 - z (C1 + z (C2 + z (C3 + z C4)))   error at most 5.4e-11
  *
  * They have the least maximum error of these degrees, by the Remez exchange on 0 <= u <= 1 with 40
- * digits. The error is equal and alternating at 5 points; the sine is odd, the cosine even with 1
- * at 0. Coefficients are rounded. S0 is lowered by one to offset the floors of the products. A
- * product keeps its high word, so each step loses the two bits of z's q30; an addend has the format
- * of the result. The code computes -u, -sin and -cos, as these fit 32 bits at both ends. */
+ * digits. The error is equal and alternating at 5 points. sin is odd; cos is even, 1 at 0.
+ * Coefficients are rounded. S0 is lowered by one to offset the floors of the products. A product
+ * keeps its high word, so each step loses the two bits of z's q30. An addend has the result's
+ * format. The code computes -u, -sin and -cos: these fit 32 bits at both ends. */
 #define S0_Q31  1686629689   /*  0.785398152542748 */
 #define S1_Q33  (-693597423) /* -0.0807453672710303 */
 #define S2_Q35  85551349     /*  0.00248987196800914 */

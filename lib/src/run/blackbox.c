@@ -23,8 +23,8 @@ static uint32_t seen;      /* faults of the last tick */
 static uint32_t left;      /* ticks to the freeze */
 static uint32_t last_tick; /* last recorded tick */
 
-/* The parameters in the payload of the header. After a fault they are updated a few per tick, since
- * all at once cost as much as a dozen ticks. Layout as by exh_params_save(). */
+/* The parameters in the payload of the header. After a fault each tick updates a few of them: all
+ * in one tick would cost as much as a dozen ticks. Layout as by exh_params_save(). */
 static struct {
     uint32_t header_B; /* of the header's payload */
     uint32_t end_B;    /* to the end of the parameters; calibrations follow */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Headers and keyframes over several ticks: bytes, then their CRC, then out, then what has waited.
+/* Headers and keyframes over several ticks: bytes, CRC, output, then the records that waited.
  */
 #include "exhand/run/log_later.h"
 

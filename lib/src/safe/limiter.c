@@ -14,8 +14,8 @@
 struct step {
     int32_t asked;   /* effort or position, micro; never INT32_MIN */
     int32_t pos;     /* measured */
-    int32_t vel;     /* likewise */
-    uint32_t effort; /* likewise, its size */
+    int32_t vel;     /* measured */
+    uint32_t effort; /* measured, its size */
     uint32_t present;
 };
 
@@ -98,7 +98,7 @@ static int heat_up(struct exh_limiter *s, const struct exh_limiter_cfg *cfg, uin
     return over;
 }
 
-/* All causes present, but for FAR; and what is asked for. */
+/* Finds all causes present except FAR, and the command. */
 static void look(struct exh_limiter *s, const struct exh_limiter_cfg *cfg,
     const struct exh_limiter_in *in, struct step *t)
 {

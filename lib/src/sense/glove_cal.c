@@ -101,7 +101,7 @@ static int refuse(struct exh_glove_error *bad, unsigned what, unsigned at, int e
 
 /* --- checks --- */
 
-/* A cross term must refer to a present sensor without cross terms of its own. One pass suffices. */
+/* A cross term must refer to a present sensor that has no cross terms. So one pass suffices. */
 static int cross_ok(const struct exh_glove_cal *cal, unsigned at)
 {
     for (unsigned k = 0; k < 2; k++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Inline quantizer, for quantizer.c and for glove.c, which needs 22 at once. Not part of the
+/* Inline quantizer, for quantizer.c and for glove.c, which needs 22 in a tick. Not part of the
  * library's interface. */
 #ifndef EXH_QUANTIZER_TICK_H
 #define EXH_QUANTIZER_TICK_H

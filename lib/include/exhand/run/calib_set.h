@@ -37,10 +37,10 @@ struct exh_calib_tables {
 int exh_calib_set_load(struct exh_scene_calib *k, struct exh_params *params,
     const struct exh_calib_set_par *par, uint32_t fingers);
 
-/* Makes the tables of one finger. With an image: its tables, if its scales are those in use (else
- * -EXH_E_STALE with the reason in *k) and it is within half of kf (else -EXH_E_RANGE, unless
- * far_calibration). Without: straight lines by kf, N/A, to the peak current, confirmed only if
- * `uncalibrated` allows it. k may be NULL: no images. Returns 0 or -EXH_E_.... Divides. */
+/* Makes the tables of one finger, with an image from the image. -EXH_E_STALE, with the reason in
+ * *k: its scales are not those in use. -EXH_E_RANGE: it is not within half of kf, and
+ * far_calibration is not set. Without an image (k may be NULL), tables are straight lines by kf,
+ * N/A, to the peak current, confirmed only if `uncalibrated` is set. Returns 0 or an error. */
 struct exh_calib_finger {
     unsigned f;
     const struct exh_drive_par *drive;

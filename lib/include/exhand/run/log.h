@@ -31,8 +31,8 @@ struct exh_log_tap {
     int (*due)(void); /* 1: requests a keyframe after this tick */
 };
 void exh_log_tap(const struct exh_log_tap *tap, int alone);
-/* Who writes headers and keyframes in the ticks behind theirs, and whatever comes meanwhile in its
- * turn: exhand/run/log_later.h; NULL: nobody. */
+/* Writes headers and keyframes in later ticks, and the records that come meanwhile after them:
+ * exhand/run/log_later.h. NULL: each record is written in its tick. */
 struct exh_log_way {
     int (*put)(const void *rec, uint32_t len_B); /* 1: taken */
     /* 1: it will write this record, with this number. */

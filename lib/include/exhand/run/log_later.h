@@ -12,11 +12,11 @@
 /* Bytes that one tick makes of a keyframe, and more to the end of a part of it. */
 #define EXH_LOG_LATER_B 512u
 
-/* Memory of the caller; it stays in use. A scene whose copy does not fit writes at once. */
+/* Memory of the caller; it stays in use. A scene whose copy does not fit writes in its tick. */
 struct exh_log_later {
     uint8_t *record; /* EXH_LOG_RECORD_B */
     uint8_t *copy;   /* aligned to 8: the scene's memory, then both arrays of parameters */
-    uint8_t *held; /* records of the ticks in between; if they do not fit, the rest goes at once */
+    uint8_t *held;   /* records of the ticks in between; if full, one tick writes the rest */
     uint32_t copy_B, held_B;
 };
 

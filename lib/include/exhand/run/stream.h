@@ -2,9 +2,9 @@
 /* The log as datagrams that carry pieces of a byte stream. A listener detects lost pieces by their
  * position. Nothing is sent again, but the log repeats its header (log.h). Little-endian:
  *
- *   0  u32 "EXL2"    4  u32 session    8  u32 number of the piece, from 0
- * 12 u32 position of its first byte in the stream, modulo 2^32 16 u32 1: the last one 20 bytes,
- * then u32 CRC-32 of all bytes before
+ *    0  u32 "EXL2"    4  u32 session    8  u32 number of the piece, from 0
+ *   12  u32 position of its first byte in the stream, modulo 2^32
+ *   16  u32 1: the last piece    20  bytes, then u32 CRC-32 of all bytes before it
  *
  * With a key the first word is "EXL3", and a u64 tag of all bytes before (mac.h) follows the CRC.
  * There is no return path, so nothing proves that a packet is new. A log recorded under the same
