@@ -28,7 +28,7 @@ static void like_the_first(struct bilateral_cfg *cfg)
     }
 }
 
-/* Tells the world how the string bends each finger, so that it predicts a finger that has not moved
+/* Sends the world each finger's bend per string, so that it predicts a finger that has not moved
  * yet. */
 static void tell_pulls(struct bilateral_cfg *cfg)
 {

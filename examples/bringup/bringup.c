@@ -217,7 +217,7 @@ void bringup_tick(struct bringup *s, const struct bringup_cfg *cfg, const struct
     permit = exh_axis_permit(&s->safety, &cfg->safety, &now, 1, box);
     f.pullback_N_q20 = go_on(s, cfg, command, v);
     live = s->result == EXH_PROBE_BUSY && exh_safety_is_running(&s->safety) && needs_run(s, cfg);
-    if (!live) { permit.mode = EXH_PERMIT_CLOSED; } /* at once, whatever force was held */
+    if (!live) { permit.mode = EXH_PERMIT_CLOSED; } /* without a ramp, at any force */
     limits = now.limits | exh_axis_force(&axis, &permit, &f, &i);
     exh_axis_out(&axis, &s->safety, now.cnt, &i, &limits, out);
     s->coded_A_q26 = i.coded_A_q26;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Calibration of one finger as a scene: the first step of the paper, with a person who hangs on
- * masses. Each step starts when the person confirms that it is prepared (parameter `go`, set to a
- * new value while the step waits). Each step is limited in current and travel, each of its phases
+/* Calibration of one finger as a scene: the first step of the paper. A person hangs the masses on
+ * the string. Each step starts when the person confirms that it is prepared (parameter `go`, a new
+ * value while the step waits). Each step is limited in current and travel, each of its phases
  * in time. The first failed step ends the run, with no current from then on. The steps in order:
  *
  *   zero      no current: the monitor's zero
@@ -40,7 +40,7 @@ enum calibrate_ask {
 enum calibrate_result {
     CALIBRATE_OFF = EXH_PROBE_RESULTS, /* the device left RUN: see faults */
     CALIBRATE_LIMITED,                 /* a limit of the drive acts: the current is wrong */
-    CALIBRATE_NOBODY,                  /* nobody prepared the step */
+    CALIBRATE_NOBODY,                  /* no person prepared the step */
     CALIBRATE_RESULTS
 };
 
@@ -127,7 +127,7 @@ void calibrate_tick(struct calibrate *s, const struct calibrate_cfg *cfg,
 
 enum calibrate_ask calibrate_ask(unsigned step);
 
-/* Texts such as "polarity", "mass"; "went the wrong way", "nobody prepared the step". Never
+/* Texts such as "polarity" and "mass" of a step, and "went the wrong way" of a result. Never
  * NULL. */
 const char *calibrate_step_text(unsigned step);
 const char *calibrate_result_text(unsigned result);

@@ -7,7 +7,7 @@
 #include "../drop/drop.h"
 #include "slot.h"
 
-/* Inputs that a slot may name besides the scene's parameters. */
+/* Inputs that a slot may name in addition to the scene's parameters. */
 #define CUSTOM_INPUT_ROWS 5
 extern const struct exh_signal custom_input_rows[CUSTOM_INPUT_ROWS];
 

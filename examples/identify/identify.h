@@ -29,7 +29,7 @@ enum identify_stage { IDENTIFY_SLACK, IDENTIFY_MASS, IDENTIFY_STAGES };
 enum identify_result {
     IDENTIFY_OFF = EXH_PROBE_RESULTS, /* the device left RUN: see faults */
     IDENTIFY_LIMITED,                 /* a limit of the drive acts */
-    IDENTIFY_NOBODY,                  /* nobody prepared the stage */
+    IDENTIFY_NOBODY,                  /* no person prepared the stage */
     IDENTIFY_SPEED,
     IDENTIFY_NO_MASS, /* no mass on the string */
     IDENTIFY_RESULTS
@@ -139,7 +139,7 @@ uint8_t identify_step(struct identify_run *r, const struct identify_cfg *cfg, in
 const char *identify_part_text(unsigned part);
 unsigned identify_part_stage(unsigned part);
 
-/* Text such as "nothing hangs on the string"; never NULL. */
+/* Text such as "too fast"; never NULL. */
 const char *identify_result_text(unsigned result);
 
 extern const struct exh_scene exh_scene_identify;

@@ -73,9 +73,9 @@ static const struct unit_var own_var[OWN] = {
 };
 static int32_t command;
 
-/* With all defaults the run is that of `exhand drop --rate 2000 --falls 1 --runs 1`. These are its
- * raw values that differ from the scene's: the paper's gains at that rate, the wall's place that
- * seed 1 draws, and the scales of the simulated device, which has no calibration. */
+/* With all defaults the run is that of `exhand drop --rate 2000 --falls 1 --runs 1`. These raw
+ * values differ from the scene's: the paper's gains at that rate, the wall's place by seed 1, and
+ * the scales of the simulated device. That device has no calibration. */
 static const struct {
     const char *name;
     int32_t raw;

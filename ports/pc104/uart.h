@@ -19,8 +19,8 @@ enum {
 #define UART_STATUS_BAD    0x1Eu /* overrun, parity, frame, break */
 #define UART_STATUS_EMPTY  0x20u /* takes a character; the FIFO is empty */
 #define UART_STATUS_SILENT 0x40u /* and the last is out */
-/* FIFO on, what is in it dropped. 14 characters would interrupt, if any did: emulators hand over so
- * many at once. */
+/* FIFO on; its content is dropped. The threshold is 14 characters: no interrupt is used, but
+ * emulators deliver that many in one piece. */
 #define UART_FIFO_EMPTY 0xC7u
 #define UART_BASE_BAUD  115200u /* divisor 1 */
 #define UART_FIFO_B     16u

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Glove tty: a stock glove (cyberglove.h) on a serial line, 115200 baud, 8 bits, no parity.
  * Commands stop it, switch its filter off and its status on, and start the stream at a rate. Each
- * command waits for the answer to the one before, or a quarter of a second. After a second without
- * a frame all commands are repeated. After a second without the device, it is opened again: so a
- * glove that was switched off or unplugged returns. While it is open no other program may open it.
- * Never waits. Times come from the caller, in s, and rise. */
+ * command waits for the answer to the previous one, or 250 ms. After a second without a frame all
+ * commands are sent again. A second after the device is lost it is opened again, for a glove that
+ * was switched off or unplugged. While it is open, no other program may open it.
+ * - The calls never wait. Times come from the caller, in s, and rise. */
 #ifndef GLOVE_TTY_H
 #define GLOVE_TTY_H
 

@@ -39,15 +39,15 @@ struct posix_config {
     struct sim_exo_par exo;             /* fingers not 0: fingers in an exoskeleton instead of falls
                                          * and bench; when all their scripts have ended the
                                          * board says stop */
-    unsigned drives;          /* bit i: drive of finger i is there and ready, besides those
-                               * of fingers in use */
-    struct posix_cards cards; /* how: all codes go through drivers and emulated cards */
-    struct posix_line line;   /* on: the link leads somewhere */
-    int gpio;                 /* 1: contacts and outputs of gpio.h, which is open; with pace */
-    double let_go_s;          /* the dead-man switch opens then; 0: never */
-    double enc_jitter_cnt;    /* peak to peak, uniform: 1 makes a resting encoder change
-                               * between two counts */
-    int glove;                /* 1: there is a glove, and a hand in it */
+    unsigned drives;                    /* bit i: drive of finger i is present and ready; drives of
+                                         * fingers in use always are */
+    struct posix_cards cards;           /* how: all codes go through drivers and emulated cards */
+    struct posix_line line;             /* on: the link leads somewhere */
+    int gpio;              /* 1: contacts and outputs of gpio.h, which is open; with pace */
+    double let_go_s;       /* the dead-man switch opens then; 0: never */
+    double enc_jitter_cnt; /* peak to peak, uniform: 1 makes a resting encoder change
+                            * between two counts */
+    int glove;             /* 1: there is a glove, and a hand in it */
     struct sim_glove_par glove_par;
     int stock; /* 1: simulated as a stock glove's: samples of 8 bits, 1 .. 255 at -9 .. 9 V, a
                 * frame late */

@@ -14,7 +14,7 @@ void ends_begin(void);
 void ends_note(int sig);
 
 /* Last in main(): what a command's status becomes. 128 + the signal's number if one was noted. From
- * now on signals end the program at once, as after ends_begin(). */
+ * now on signals end the program immediately, as after ends_begin(). */
 int ends_status(int status);
 
 #endif

@@ -13,8 +13,8 @@ int outlog_has_frame(FILE *f);
  * line on stderr: it could not be written. */
 int outlog_close(FILE *f);
 
-/* A write of it failed. What came until then ends behind its last whole record, with the number of
- * records that are not there: of so many that were taken, and those that were not. 0, and
+/* Call it when a write failed. Cuts the file after its last whole record, and appends a record with
+ * the number of missing ones: of `taken` those that are not in the file, and `lost`. Returns 0, and
  * outlog_close() may follow; or -1: nothing can be kept. */
 int outlog_mend(FILE *f, uint32_t taken, uint32_t lost);
 

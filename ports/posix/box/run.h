@@ -70,7 +70,7 @@ struct run {
 
 /* Stages an image of parameters. 0, or -EXH_E… after a line on stderr; without an image nothing. */
 int run_image(const struct run_live *l, struct exh_params *p);
-/* Behind all settings: says what of it was left alone, as params_tell_left(). */
+/* Call it after all settings: prints the values that the image did not change. */
 void run_image_left(const struct run_live *l, const struct exh_params *p);
 
 /* Whether the scene takes these parameters at this period: 0, or -EXH_E… after a

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* What a device is, as a text: `exhand identify` writes it, `exhand advise gains --device` reads
- * it.
+/* A device's parameters as a text: `exhand identify` writes it, `exhand advise gains --device`
+ * reads it.
  *
  *   exhand identify 2
  *   # any remark
  *   rate = 2000 hz
  *   known_mass = 0.5 kg
  *   residual = 0.33
- *   monitor_lag = 0.00032 s               at least; 0: nobody knows
+ *   monitor_lag = 0.00032 s               at least; 0: unknown
  *   rotor = 0.0464 0.0461 0.0467 kg       value, low, high, unit: one line of each of model_row[],
  *   mu_both = 0.271 0.27 0.273            and of mu_motor + mu_mass
  */

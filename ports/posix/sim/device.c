@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Every parameter of the simulated device, with unit, range and how sure we are.
  *
- * paper   read in the ICRA 2013 paper
- * card    read in a data sheet or driver of the card
- * fit     found by random search (exhand-lab fit): the paper's six points come to rest and
- *         1.5x both gains does not, wherever the wall lies between two encoder counts; of
- *         such the one farthest inside. Its stiffness had no part in it. Plausible, but no
- *         data of the device exist in public. The tests use other cases and seeds
- * ours    a choice of the simulation
+ * - paper: read in the ICRA 2013 paper.
+ * - card: read in a data sheet or driver of the card.
+ * - fit: found by random search (exhand-lab fit). The paper's six points come to rest and 1.5x both
+ *   gains does not, for any place of the wall between two encoder counts. The point farthest inside
+ *   was taken. Stiffness was not fitted. The values are plausible, but no data of the device are
+ *   public. The tests use other cases and seeds.
+ * - ours: a choice of the simulation.
  */
 #include "device.h"
 

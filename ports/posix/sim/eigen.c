@@ -18,8 +18,8 @@ double sim_sqrt(double v)
 
 /* --- real: balance, Hessenberg form --- */
 
-/* A similar matrix with balanced rows and columns, by exact powers of 2. Forces stand beside
- * positions, and a factor of 10^5 between them would only cost digits. */
+/* A similar matrix with balanced rows and columns, by exact powers of 2. Forces and positions
+ * differ by a factor of 10^5, which would cost digits. */
 static void balance(struct matrix *M)
 {
     for (int sweep = 0, changed = 1; changed && sweep < 100; sweep++) {
@@ -176,7 +176,7 @@ double eigen_radius(const struct matrix *M)
             steps = -1;
         } else if (steps == STEPS_MAX) {
             return -1;
-        } else if (steps % 10 == 9) { /* a shift of another kind ends what goes in circles */
+        } else if (steps % 10 == 9) { /* a shift of another kind ends a cycle */
             const double off = size_of(h[e][e - 1].re) + size_of(h[e][e - 1].im);
             step(h, b, e, (struct z){h[e][e].re + 0.75 * off, h[e][e].im + 0.4375 * off});
         } else {

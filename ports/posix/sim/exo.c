@@ -120,8 +120,8 @@ void sim_exo_glove(struct sim_exo *e, struct sim_glove *g, const struct sim_glov
     }
 }
 
-/* The way from the oldest point to the next, into the glove; the oldest is then done with. All
- * knuckles that move began the last one at once, so they share what their low-pass has left. */
+/* Moves the glove from the oldest point to the next, and drops the oldest. All knuckles that move
+ * began the last movement in the same instant, so they share the rest of their low-pass. */
 static void feed(struct sim_exo *e, struct sim_glove *g)
 {
     const struct sim_exo_point *a = &e->point[e->first];

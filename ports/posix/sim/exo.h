@@ -18,7 +18,7 @@ struct sim_exo_par {
     struct sim_path_record record[SIM_FINGERS]; /* rows 0: approaches */
 };
 
-/* No finger; all of them alike when asked for. */
+/* No finger in use; all have the same parameters. */
 struct sim_exo_par sim_exo_default(void);
 
 struct sim_exo {
@@ -30,7 +30,7 @@ struct sim_exo {
     } point[SIM_EXO_POINTS]; /* where the fingers were, oldest first in the ring */
     unsigned first, points;
     struct sim_decay way; /* what the glove's low-pass leaves from point to point */
-    int torn;             /* points were overwritten before a glove had asked for them */
+    int torn;             /* points were overwritten before a glove had read them */
 };
 
 /* 0, or -1: more fingers than there are. gloved: the way is kept for a glove. */

@@ -12,7 +12,7 @@ enum fall_phase { FALL_HOLD, FALL_FREE, FALL_LIFT, FALL_DONE };
 struct fall {
     enum fall_phase phase;
     int number;       /* the fall being prepared or watched, from 1 */
-    int falls;        /* how many are asked for */
+    int falls;        /* how many are requested */
     double until_s;   /* end of the phase; FREE: known once contact is made */
     int waits;        /* 1: a hold goes on until fall_ready(); may be set at any time */
     double held_s;    /* start of the hold */

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Every parameter of a finger in the exoskeleton, with unit, range and how sure we are.
  *
- * unsure  no data of a hand in this device exist. The middle of the nine cases that a study of the
- *         bilateral contact tried: 0.05, 0.1, 0.2 kg; 150, 300, 600 N/m; 2, 5, 10 Ns/m. They fit a
- *         finger of 3e-5..1e-4 kg m^2 about its knuckle with 0.3..3 Nm/rad and 0.005..0.05 Nms/rad,
- *         at the 17 and 24 rad of knuckle and other joints per metre of string that the arms give.
- *         The range is for people: a child's relaxed finger to a clenched hand with the exoskeleton
- * ours    a choice of the simulation
- * lib     the library's default for the same quantity (hand.h), itself a guess
+ * - unsure: no data of a hand in this device exist. The middle of nine cases in a study of the
+ *   bilateral contact: 0.05, 0.1, 0.2 kg; 150, 300, 600 N/m; 2, 5, 10 Ns/m. They fit a finger of
+ *   3e-5..1e-4 kg m^2 about its knuckle with 0.3..3 Nm/rad and 0.005..0.05 Nms/rad. The arms turn
+ *   the knuckle by 17 and the other joints by 24 rad per metre of string. The range is from a
+ *   child's relaxed finger to a clenched hand with the exoskeleton.
+ * - ours: a choice of the simulation.
+ * - lib: the library's default for the same quantity (hand.h), which is a guess.
  */
 #include "finger.h"
 

@@ -59,7 +59,7 @@ void sim_finger_start(struct sim_finger *f, const struct sim_finger_par *par,
 /* The D/A output changes now. */
 void sim_finger_latch(struct sim_finger *f, double ref_A);
 
-/* The D/A is at zero and the drive disabled, at once. */
+/* Sets the D/A to zero and disables the drive, without a delay. */
 void sim_finger_safe(struct sim_finger *f);
 
 /* To until_s; servo samples, and what the path does, on their instants. */

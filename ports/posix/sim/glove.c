@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Every parameter of the simulated glove and its card, with unit, range and how sure we are.
  *
- * paper   read in the ICRA 2013 paper
- * card    read in a data sheet or driver of the card (Diamond DMM-32X-AT)
- * file    read in a published calibration file of a CyberGlove
- * ours    a choice of the simulation
+ * - paper: read in the ICRA 2013 paper.
+ * - card: read in a data sheet or driver of the card (Diamond DMM-32X-AT).
+ * - file: read in a published calibration file of a CyberGlove.
+ * - ours: a choice of the simulation.
  */
 #include "glove.h"
 

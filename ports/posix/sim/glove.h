@@ -66,7 +66,7 @@ struct sim_glove {
     struct sim_decay low_pass[SIM_GLOVE_SENSORS];
     double live, lo_rad[SIM_GLOVE_SENSORS], share_perrad[SIM_GLOVE_SENSORS]; /* of the sensors */
     double slot_left, code_perV, noise_V_perLSB, noise_V_most; /* multiplexer, A/D, noise */
-    /* An angle that is `share` of another's; an independent one is 1 of its own. */
+    /* Angle i is share[i] times angle of[i]. For an independent one, of[i] is i, share[i] is 1. */
     unsigned char of[SIM_GLOVE_SENSORS];
     double share[SIM_GLOVE_SENSORS];
 };

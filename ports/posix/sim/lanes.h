@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Lanes: plants side by side, each to the bit what it is alone, but for the monitor's current,
- * which they have not. A plant alone waits for its own last result in every line; a processor's
- * vector registers take some lanes at once, and the others fill the wait. */
+/* Lanes: plants side by side. Each has the bits of the same plant alone, except for the monitor's
+ * current, which lanes do not have. A plant alone waits in every line for its last result. With
+ * lanes, vector registers compute some plants in parallel, and the others fill the wait. */
 #ifndef SIM_LANES_H
 #define SIM_LANES_H
 

@@ -40,7 +40,7 @@ void sim_mass_advance(struct sim_mass *m, double until_s);
 /* The D/A output changes now. */
 void sim_mass_latch(struct sim_mass *m, double ref_A);
 
-/* The D/A is at zero and the drive disabled, at once. */
+/* Sets the D/A to zero and disables the drive, without a delay. */
 void sim_mass_safe(struct sim_mass *m);
 
 /* Codes of encoder (jitter_cnt peak to peak on it) and monitor. */

@@ -50,14 +50,14 @@ struct sim_operator {
     int to;                           /* the pose it goes to or rests in */
     double begin_s, end_s;            /* of the last movement or row */
     long step;                        /* movements or rows so far */
-    int asked;                        /* a pose sim_operator_go() asked for, -1: none */
+    int asked;                        /* the pose that sim_operator_go() requested, -1: none */
 };
 
 /* Puts the hand into the glove and starts both, at 0 s. */
 void sim_operator_start(struct sim_operator *o, const struct sim_operator_par *p,
     struct sim_glove *g, const struct sim_glove_par *gp, uint64_t seed);
 
-/* Everything it begins at or before t_s; to be called before the glove is asked for t_s. */
+/* Does all that begins at or before t_s. Call it before the glove is read at t_s. */
 void sim_operator_advance(struct sim_operator *o, struct sim_glove *g, double t_s);
 
 /* SIM_REST: go to this pose now; there once it is at rest. */

@@ -143,7 +143,7 @@ static void approach(struct sim_path *p, double start_s)
     }
 }
 
-/* What follows the phase that has just ended. */
+/* Starts the phase after the one that has just ended. */
 static void next_phase(struct sim_path *p)
 {
     const double t_s = p->end_s;

@@ -111,11 +111,11 @@ void plant_advance(struct plant *p, const struct sim_device *d, double dt_s, dou
     }
 }
 
-/* For the stretch s of a taut string, friction with its motion: s'' = -w2 s - c s'. With g = 1 - h
- * c / 2 a step has determinant 1 - g h c and trace 2 - g h c - g h^2 w2. It is stable where h c < 2
- * and g (h^2 w2 + 2 h c) < 4, so wherever h^2 w2 < 4 and h c < 2. Viscous friction and the hand's
- * damping are implicit and stable at any step. But where one would stop its part within a step, dry
- * friction beside it is underestimated. */
+/* Stretch s of a taut string, friction with its motion: s'' = -w2 s - c s'. With g = 1 - h c / 2, a
+ * step has determinant 1 - g h c and trace 2 - g h c - g h^2 w2. It is stable if h c < 2 and
+ * g (h^2 w2 + 2 h c) < 4, so if h^2 w2 < 4 and h c < 2.
+ * - Viscous friction and the hand's damping are implicit and stable at any step. But if one of them
+ *   would stop its part within a step, dry friction is underestimated. */
 static int step_ok(const struct sim_device *d, double hand_npm, double hand_nspm, double h_s)
 {
     const double per_kg = (1 + d->mu_mass) / d->mass_kg + (1 + d->mu_motor) / d->rotor_kg;

@@ -29,12 +29,12 @@ enum settle_end {
     SETTLE_ASTRAY /* no contact, or left the measured range */
 };
 
-/* The i-th case, i >= 0. Each block of 32 fills all five evenly (a Latin hypercube), and no two of
- * them go together: height and tick make the place of the first tick behind the wall. */
+/* The i-th case, i >= 0. Each block of 32 cases fills all five quantities evenly (a Latin
+ * hypercube). No two are coupled: height and tick make the place of the first tick in the wall. */
 struct settle_case settle_case_at(int i);
 
-/* observe_s of the device is how long it is watched from the first contact; what has stuck before
- * that is at rest at once. */
+/* Watches the device for its observe_s from the first contact. A device that sticks earlier is at
+ * rest then. */
 enum settle_end settle_run(
     const struct sim_device *d, const struct settle_wall *w, struct settle_case c);
 

@@ -21,8 +21,8 @@ struct mail_cfg {
     int remote;       /* RUN, CLEAR and OFF may be commanded */
 };
 
-/* mail.c. start, before and after: as hooks of the loop, before those that log. A tick never waits:
- * 0 of before and show means that the server has the registers, and the next tick does it. */
+/* mail.c. start, before and after: hooks of the loop, called earlier than those that log. A tick
+ * never waits. 0 of mail_before() and mail_show(): the server has the registers, try next tick. */
 void mail_open(const struct mail_cfg *cfg);
 int mail_start(const struct exh_scene *sc, struct exh_scene_board board); /* 0 or -EXH_E… */
 int mail_before(struct exh_scene_in *in);

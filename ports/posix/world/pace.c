@@ -73,7 +73,7 @@ static const struct pace_at *before(const struct pace *p, const struct pace_at *
     return from;
 }
 
-/* What none of the states told of is 0 in all of them. */
+/* Adds fingers to those that any state reported, and finds the range of their joints. */
 static void widen(struct pace *p, unsigned fingers)
 {
     if (p->n > 0 && (p->fingers | fingers) == p->fingers) { return; }

@@ -17,7 +17,7 @@ struct pace {
         int32_t joint_turn_q32[FINGERS][3];
     } at[PACE_STATES]; /* states, 10 ms apart, in a ring */
     unsigned n, last;
-    unsigned fingers;  /* that any of them told of, one bit each; joints of others stay 0 */
+    unsigned fingers;  /* that any of them reported, one bit each; joints of others stay 0 */
     unsigned from, to; /* joints from .. to - 1 are all of theirs */
     int32_t least_turn_q32[FINGERS * 3], most_turn_q32[FINGERS * 3]; /* of these states */
     double turn_q32ps[FINGERS][3];                                   /* of each joint, a second */
