@@ -9,10 +9,13 @@ does not have (by docs.py). A page may have as many faults as prose.tsv allows i
 allows none. Code and what a command generates (between <!-- COMMAND --> and <!-- end -->) is not
 judged. A cell of a table is a paragraph of up to 40 words a sentence.
 
+The comments of sources (C, Python, shell, make) are judged by their sentences and idioms. prose.tsv
+has a ceiling for the faults of a folder. A folder without a row may have none.
+
 --stats prints words and sentences of each page, and of the comments of each folder of C sources;
 --update lowers ceilings to today's number and gives new pages a row. --comments FILE... prints the
-faults of sentences and idioms in the comments of sources (C, Python, shell, make), and passes.
-Exit status: 0 all pages keep the rules, 1 not. Standard library only.
+faults in the comments of these sources, and passes.
+Exit status: 0 all pages and comments keep the rules, 1 not. Standard library only.
 """
 
 import ast
@@ -40,7 +43,7 @@ class Data:
     """prose.tsv: idioms, what is allowed by name, and what each page may have."""
 
     def __init__(self, text):
-        self.idioms, self.allowed, self.pages = [], set(), {}
+        self.idioms, self.allowed, self.pages, self.rooms = [], set(), {}, {}
         for line in text.splitlines():
             row = line.split("\t")
             if row[0] == "idiom":
@@ -49,6 +52,14 @@ class Data:
                 self.allowed.add((row[1], row[2]))
             elif row[0] == "page":
                 self.pages[row[1]] = (int(row[2]), int(row[3]))
+            elif row[0] == "comments":
+                self.rooms[row[1]] = int(row[2])
+        self.idiom = re.compile("|".join(i.pattern for i, _ in self.idioms) or "(?!)", re.I)
+
+    def room(self, path):
+        """The longest folder of the table that the source is in, or else the tree's."""
+        return max((r for r in self.rooms if path.startswith(r + "/")), key=len,
+                   default=path.split("/")[0])
 
 
 def blocks(text):
@@ -229,8 +240,9 @@ class Page:
                     if len(words) > CELL:
                         yield n, "a sentence of %d words in a table" % len(words)
             for n, line in block:
-                for idiom, instead in self.data.idioms:
-                    for m in idiom.finditer(plain(line)):
+                line = plain(line)
+                for idiom, instead in self.data.idioms if self.data.idiom.search(line) else ():
+                    for m in idiom.finditer(line):
                         if (self.path, m.group().lower()) not in self.data.allowed:
                             yield n, '"%s": %s' % (m.group(), instead)
 
@@ -242,6 +254,21 @@ class Page:
     def faults(self, program, world):
         return sorted([*self.style(), *headings(self.path, self.text), *self.budget(),
                        *names(self.path, self.text, program, world)])
+
+
+def sources():
+    """The sources of the tree whose comments are judged."""
+    return ["Makefile"] + sorted(p for top in docs.TOP for p in
+                                 glob.glob(top + "/**/*.*", recursive=True) if language(p))
+
+
+def judged(data, paths):
+    """Folder of the table -> faults of its comments, as lines to print."""
+    found = {room: [] for room in data.rooms}
+    for p in paths:
+        found.setdefault(data.room(p), []).extend(
+            "%s:%d: %s" % (p, n, what) for n, what in Page(p, docs.read(p), data).style())
+    return found
 
 
 def stats(pages):
@@ -262,12 +289,16 @@ def stats(pages):
                sum(n > SENTENCE for n in lengths), sum(len(list(p.style())) for p in parts)))
 
 
-def update(text, found):
+def update(text, found, rooms):
     """prose.tsv with the ceiling of each page lowered to the number of its faults. A new page gets
-    a row; one that is gone loses its. found: path to (words, faults)."""
+    a row; one that is gone loses its. The ceiling of the comments of a folder is lowered, too.
+    found: path to (words, faults); rooms: folder to faults."""
     rows = [line.split("\t") for line in text.splitlines()]
     old = {row[1]: (int(row[2]), int(row[3])) for row in rows if row[0] == "page"}
     rows = [row for row in rows if row[0] != "page"]
+    for row in rows:
+        if row[0] == "comments":
+            row[2] = str(min(int(row[2]), rooms.get(row[1], 0)))
     for path, (words, faults) in sorted(found.items()):
         most, ceiling = old.get(path, (-(-words // 50) * 50, faults - 1)) # less that of no row
         rows.append(["page", path, str(most), str(min(ceiling, faults))])
@@ -298,13 +329,22 @@ def main(args):
             bad += 1
             print("\n".join("%s:%d: %s" % (p.path, n, what) for n, what in faults))
             print("%s: %d faults, %d allowed" % (p.path, len(faults), most))
+    rooms, more = judged(data, sources()), 0
+    for room, faults in rooms.items():
+        if len(faults) > data.rooms.get(room, 0):
+            more += 1
+            print("\n".join(faults))
+            print("comments of %s: %d faults, %d allowed" %
+                  (room, len(faults), data.rooms.get(room, 0)))
     if "--update" in options:
         with open(DATA, "w", encoding="utf-8") as f:
-            f.write(update(rows, found))
+            f.write(update(rows, found, {room: len(faults) for room, faults in rooms.items()}))
     print("prose: %d pages, %d words, %d faults, %d allowed by ceilings: %d pages with more" %
           (len(pages), sum(p.words for p in pages), sum(n for _, n in found.values()),
            sum(most for _, most in data.pages.values()), bad))
-    return 1 if bad else 0
+    print("prose: comments: %d faults, %d allowed by ceilings: %d folders with more" %
+          (sum(len(faults) for faults in rooms.values()), sum(data.rooms.values()), more))
+    return 1 if bad or more else 0
 
 
 if __name__ == "__main__":

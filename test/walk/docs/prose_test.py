@@ -5,6 +5,7 @@ page without faults."""
 
 import os
 import sys
+import tempfile
 import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -147,11 +148,34 @@ echo "# hangs on" '# hangs on'
 
     def test_a_ceiling_only_falls(self):
         rows = "page\ta.md\t9\t5\npage\tb.md\t9\t5\npage\tc.md\t9\t5\n"
-        self.assertEqual(prose.update("# x\n" + rows, {"a.md": (1, 3), "b.md": (12, 8)}),
+        self.assertEqual(prose.update("# x\n" + rows, {"a.md": (1, 3), "b.md": (12, 8)}, {}),
                          "# x\npage\ta.md\t9\t3\npage\tb.md\t9\t5\n")
 
+    def test_a_ceiling_of_comments_only_falls(self):
+        rows = "comments\ta\t5\ncomments\ta/b\t5\ncomments\tgone\t5\n"
+        self.assertEqual(prose.update(rows, {}, {"a": 3, "a/b": 8}),
+                         "comments\ta\t3\ncomments\ta/b\t5\ncomments\tgone\t0\n")
+
+    def test_comments_by_folder(self):
+        with tempfile.TemporaryDirectory() as top:
+            paths = [os.path.join(top, *p) for p in (("a.c",), ("b", "a.c"), ("bc", "a.c"))]
+            for p in paths:
+                os.makedirs(os.path.dirname(p), exist_ok=True)
+                with open(p, "w", encoding="utf-8") as f:
+                    f.write("/* It hangs on a word. */\n")
+            data = prose.Data(DATA + "comments\t%s\t1\ncomments\t%s/b\t0\n" % (top, top))
+            found = prose.judged(data, paths)
+        self.assertEqual({room: len(faults) for room, faults in found.items()},
+                         {top: 2, top + "/b": 1})
+        self.assertTrue(found[top + "/b"][0].startswith(paths[1] + ":1: "))
+
+    def test_the_tree_has_comments_of_each_language(self):
+        found = prose.sources()
+        self.assertEqual({os.path.splitext(p)[1] or p for p in found}, set(prose.SOURCES))
+        self.assertIn("test/walk/docs/prose.py", found)
+
     def test_a_new_page_gets_a_row(self):
-        self.assertEqual(prose.update("# x\n", {"d.md": (51, 3)}), "# x\npage\td.md\t100\t2\n")
+        self.assertEqual(prose.update("# x\n", {"d.md": (51, 3)}, {}), "# x\npage\td.md\t100\t2\n")
 
 
 if __name__ == "__main__":
