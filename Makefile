@@ -123,9 +123,9 @@ include examples/custom/model.mk examples/frozen.mk
 image_of  := $(SCENE)$(if $(FROZEN),-frozen-$(subst /,_,$(FROZEN)))$(if $(filter \
              custom,$(SCENE)),$(filter-out -wall,-$(MODEL_NAME)))
 image     := $(out)/$(image_of)$(PORT_SUFFIX).elf
-# A scene that says SCENE_WHOLE is optimised as one program with library, loop and cards, where the
-# port says how (PORT_WHOLE). The port's own files are not: interrupts, faults and tests come in
-# there. Nor are records: a bound of the stack tells their indirect calls by file.
+# A scene with SCENE_WHOLE is optimised as one program with library, loop and cards, if the port has
+# flags for it (PORT_WHOLE). The port's files are not, as interrupts, faults and tests enter there.
+# Records are not, as the bound of the stack finds their indirect calls by file.
 one      := $(if $(FROZEN),,$(and $(PORT_WHOLE),$(SCENE_WHOLE)))
 one_at   := $(out)$(if $(one),/whole)
 one_lib  := $(if $(one),$(one_at)/libexhand.a,$(lib))

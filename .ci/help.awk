@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
-# Lists the targets of makefiles: "##@ GROUP", "## SENTENCE" or "##N SENTENCE" stands before
-# a target.
-# few: of those with a number alone, that number first.
+# Lists the targets of makefiles: "##@ GROUP", "## SENTENCE" or "##N SENTENCE" is before a target.
+# few: only targets with a number N, in the order of N.
 /^##@ / { group = substr($0, 5); next }
 text && /^## / { text = text substr($0, 3); next } # it goes on
 /^##[0-9]? / { number = substr($0, 3, 1); text = substr($0, 4 + (number != " ")); next }

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
-# The headers' plain comments as Doxygen wants them, line for line. A comment at the margin is of
-# all that follows it until an empty line, and of nothing if that comes at once; one behind code is
-# of that code, the first is the file's; those between "---" begin a section; those in the body of a
-# function are left alone.
+# The headers' plain comments as Doxygen wants them, line for line. The first comment is the file's.
+# One at the margin describes all lines until an empty line, if there are any. One behind code
+# describes that code. One between "---" begins a section. One in a function's body is not changed.
 
 # The comment that begins in line i, as one line.
 function text(i,   t, s) {
@@ -15,8 +14,8 @@ function text(i,   t, s) {
 function end(i) { while (line[i] !~ /\*\//) i++; return i }
 # Doxygen takes the first sentence for the short text, and any dot before a blank for its end.
 function plain(s) { gsub(/\.\. /, "..\\&nbsp;", s); gsub(/\(eq\. /, "(equation ", s); return s }
-# Prints it, with what opens it and what stands behind it. Lines set far in are shown as they are,
-# but for lists.
+# Prints it, with the text that opens it and the text behind it. Lines set far in are shown as they
+# are, except lists.
 function comment(open, behind,   s, last, list) {
     last = end(i); s = line[i]; sub(/\/\*/, open, s)
     while (i < last) {

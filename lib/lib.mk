@@ -6,8 +6,8 @@ LIBDIR     ?= $(PREFIX)/lib
 INCLUDEDIR ?= $(PREFIX)/include
 DESTDIR    ?=
 
-# The shared library exports what lib/exhand.map names. Until 1.0 each minor version is an interface
-# of its own.
+# The shared library exports the names in lib/exhand.map. Until 1.0 each minor version is another
+# interface.
 soname := libexhand.so.$(word 1,$(subst ., ,$(version))).$(word 2,$(subst ., ,$(version)))
 shared := $(out)/libexhand.so.$(version)
 pic    := $(lib_src:%.c=$(out)/pic/%.o)

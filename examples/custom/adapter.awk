@@ -14,7 +14,7 @@
 
 function fail(text) { print model ".h: " text > "/dev/stderr"; failed = 1; exit 2 }
 function trim(s) { gsub(/^ +| +$/, "", s); return s }
-# The last word of a declarator, and what stands before it.
+# The last word of a declarator, and the text before it.
 function name_of(s) { match(s, /[A-Za-z_0-9]+$/); return substr(s, RSTART) }
 function type_of(s) { return trim(substr(s, 1, length(s) - length(name_of(s)))) }
 function ours(port) { return port in other ? other[port] : port }

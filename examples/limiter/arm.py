@@ -6,10 +6,10 @@ The follower is one simulated joint with a drive of 5 Nm. The leader's messages 
 second, the loop runs 1000 times a second. "Before" is what is often written by hand: a clamp, and
 the last message until another comes. "After" sends the same messages through exhand.Limiter.
 
-    jump    the first position is 1 rad away, and after 1.5 s the leader is 2.5 rad elsewhere
-    stall   an object stops the joint, and the leader goes on
-    nan     torque from the leader; for 0.1 s it is not a number
-    silent  torque from the leader, who sends nothing any more after 1.5 s
+    jump    the first position is 1 rad away, and after 1.5 s the leader jumps by 2.5 rad.
+    stall   an object stops the joint, and the leader goes on.
+    nan     the leader sends torque; for 0.1 s it is not a number.
+    silent  the leader sends torque, and nothing after 1.5 s.
 
 Writes INCIDENT.csv and, where gnuplot is there, INCIDENT.png. Needs the package exhand. The arm is
 simulated: nothing here was run on hardware. Exit status: 0, 1 the limiter let too much through,

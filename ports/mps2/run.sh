@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Runs an image under QEMU: run.sh IMAGE
+# Runs an image under QEMU: run.sh IMAGE.
 # Exit status: 0 the image said "done", 1 it did not (or took too long), 2 bad usage, 3 no QEMU,
 # 5 processor exception.
 # Environment: QEMU_FLAGS (virtual time, 64 ns an instruction: 1.6 cycles of 25 MHz), TIMEOUT_s

@@ -1,17 +1,20 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Runs an image under QEMU: run.sh IMAGE [OPTION...], e.g. run.sh build/pc104/minimal-none.elf
-# ticks=5000
-# IMAGE: an ELF, or an .iso that GRUB on it boots (its options are inside). An ELF that is told no
-# ticks= runs 1000, so that it ends.
-# Exit status: 0 the image said "done", 1 it did not (or took too long), 2 bad usage or it refused
-# an option, 3 no QEMU, 4 cards absent or broken, 5 processor exception, 6 rate refused,
-# 7 overload, 8 timer absent or dead.
-# Environment: QEMU_CPU (n270), QEMU_FLAGS (virtual time, 8 ns an instruction), TIMEOUT_s (60),
-# RECORDS (a file for what log=debug puts out), REBOOT ("-action reboot=reset": a reset boots again
-# instead of ending QEMU), MODULES (files that a loader would bring, commas between: calibrations of
-# fingers). QEMU_FLAGS="-icount shift=0,sleep=off" counts instructions; QEMU_FLAGS= takes the host's
-# time, whose other work then shows as missed ticks.
+# Runs an image under QEMU: run.sh IMAGE [OPTION...], for example
+# run.sh build/pc104/minimal-none.elf ticks=5000.
+# IMAGE: an ELF, or an .iso that GRUB on it boots (its options are inside). An ELF without ticks=
+# runs 1000 ticks, so that it ends.
+#
+# Exit status: 0 the image said "done", 1 it did not (or took too long), 3 no QEMU.
+# 2: bad usage, or it refused an option. 4: cards absent or broken. 5: processor exception.
+# 6: rate refused. 7: overload. 8: timer absent or dead.
+#
+# Environment: QEMU_CPU (n270), TIMEOUT_s (60).
+# QEMU_FLAGS: virtual time, 8 ns an instruction. "-icount shift=0,sleep=off" counts instructions. An
+# empty value takes the host's time; the host's other work then shows as missed ticks.
+# RECORDS: a file for the output of log=debug.
+# REBOOT: with "-action reboot=reset" a reset boots again instead of ending QEMU.
+# MODULES: files that a loader would bring, separated by commas: calibrations of fingers.
 set -u
 
 qemu="qemu-system-i386"

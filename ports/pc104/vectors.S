@@ -4,7 +4,7 @@
     .set APIC_END, 0xFEE000B0
 
 /* One 16-byte stub per vector: makes the stack the same with and without the
- * error code that some exceptions push, adds the vector, and tells C. */
+ * error code that some exceptions push, adds the vector, and calls C. */
     .section .text.pc104_vectors, "ax"
     .globl pc104_vectors
     .set vector, 0
@@ -20,9 +20,9 @@ pc104_vectors:
     .set vector, vector + 1
     .endr
 
-/* A fault while one is reported: an NMI may come before that one has made the outputs safe, so
- * the second does it, too. A third came out of that: stand still rather than recurse until the
- * processor resets itself. */
+/* A fault while one is reported: an NMI may come before the first has made the outputs safe, so
+ * the second does it, too. A third is caused by that: halt, so that it does not recurse until the
+ * processor resets. */
 to_fault:
     cld
     incl fault_depth
@@ -66,8 +66,8 @@ pc104_irq0:
     hlt
     jmp 3b
 
-/* The 8259 answers 7 when a request vanishes before it is acknowledged; the line
- * is masked, so it is never a real one, and such a one must not be ended. */
+/* The 8259 answers 7 when a request vanishes before it is acknowledged. The line
+ * is masked, so it is never a real one. Such an interrupt must not be ended. */
     .section .text.pc104_irq7, "ax"
     .globl pc104_irq7
 pc104_irq7:

@@ -16,7 +16,7 @@ head=
 
 is_there() { kill -0 "$1" 2>/dev/null; }
 
-# Each is asked; whoever does not follow within five seconds is not asked.
+# Asks each program to end. One that does not end within five seconds is killed.
 end_all()
 {
     trap '' INT TERM HUP

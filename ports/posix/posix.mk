@@ -16,7 +16,7 @@ cli_src  := $(filter-out $(by_modbus) ports/posix/base/scene_custom.c,$(cli_src)
             $(foreach f,$(by_modbus),$(if $(findstring $(modbus),$f),$f))
 # The world's core answers in the same process, without pictures.
 exh_obj  := $(cli_src:%.c=$(B)/posix/%.o) $(world_core:%.c=$(B)/posix/%.o) $(world_mesh)
-# What proves and studies is a program of its own, which has all commands of the other, too.
+# Proofs and studies are in a separate program, which also has all commands of the other.
 lab_obj  := $(patsubst %.c,$(B)/posix/%.o,$(wildcard test/lab/*.c test/lab/*/*.c))
 cli_obj  := $(exh_obj) $(lab_obj)
 cli_libs := $(if $(world_tree),-ldl) $(if $(filter libmodbus,$(modbus)),-lmodbus) -pthread -lm

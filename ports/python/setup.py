@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Builds the library's C sources into one shared library that ctypes opens: no Python.h is needed.
 
-The sources stand beside this file in a source distribution, and two folders up in the repository.
+The sources are beside this file in a source distribution, and two folders up in the repository.
 """
 import re
 from pathlib import Path

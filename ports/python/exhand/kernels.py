@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The library's kernels on arrays: the same integers as in a firmware, bit for bit.
 
-What goes in is rounded to the nearest value of the library's format, what comes out is exact in
-float64. An object keeps its state: samples may come in one array or in pieces.
+Inputs are rounded to the nearest value of the library's format. Outputs are exact in float64. An
+object keeps its state: samples may come in one array or in pieces.
 """
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ def _counts(x: ArrayLike, what: str) -> NDArray[np.int32]:
 class LowPass:
     """Butterworth low-pass of order 1 or 2, gain 1 at 0 Hz, exact for a constant.
 
-    cutoff_Hz: 0.01 to 10000, below half the rate. rate_Hz: 1 to 20000. lsb: what one count of the
-    32-bit input stands for; of integers it is not used. Raises ValueError for what is outside.
+    cutoff_Hz: 0.01 to 10000, below half the rate. rate_Hz: 1 to 20000. lsb: the value of one count
+    of the 32-bit input; not used for integers. Raises ValueError for values outside.
     """
 
     def __init__(self, cutoff_Hz: float, rate_Hz: Rate, order: int = 2, lsb: float = 2.0 ** -24):
@@ -165,7 +165,7 @@ class Contact:
 
     def __call__(self, pos_m: ArrayLike, vel_mps: ArrayLike,
                  wall_m: ArrayLike) -> dict[str, NDArray[Any]]:
-        """One tick for each element, shape (n,); scalars stand for all. Returns arrays (n,):
+        """One tick for each element, shape (n,); a scalar is used for all. Returns arrays (n,):
         `spring`, `damper`, `pullback` in N, whose sum is the force before limits, and `touching`.
         """
         i = self._inputs(pos_m, vel_mps, wall_m)

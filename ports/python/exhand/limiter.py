@@ -108,12 +108,11 @@ class Limiter:
     """Limits, ramps, watches and latches a command. All values are SI.
 
     kind: "effort" (torque, force or current), "position", or "wall" (the command is its place).
-    uses: what every step gives, of "pos", "vel", "effort", "deadman"; else it is not read.
-    Further arguments are the fields of struct exh_limiter_par in SI, without _milli; times end in
-    _s: rate_Hz, effort_max, effort_up and effort_down (a second), ramp_s, release_s, pos_min,
-    pos_max, vel_max, acc_max, first_max, first, after, age_max_s, gap_max_s, speed_max,
-    stall_effort, ...; exhand.limiter.ARGUMENTS lists them, lib/include/exhand/limiter.h has ranges.
-    What is not given is 0; where 0 means "not watched", limiter.h says so.
+    uses: the inputs of each step, of "pos", "vel", "effort", "deadman"; others are not read.
+    Further arguments are the fields of struct exh_limiter_par in SI, without _milli. Times end in
+    _s: ramp_s, age_max_s. Other examples: rate_Hz, pos_max, effort_up (a second).
+    exhand.limiter.ARGUMENTS lists all. lib/include/exhand/limiter.h has ranges and says where 0
+    means "not watched". An argument that is not given is 0.
 
     Raises TypeError for an unknown argument, ValueError with the first that is out of its range.
     This is software: it is no safety function, and it does not replace an emergency stop.

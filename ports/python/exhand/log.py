@@ -33,7 +33,7 @@ class Damage:
     """What a file lacks. Nothing of it is an error: what is whole was read."""
     bytes: int = 0    # that are of no record
     missing: int = 0  # records, by their numbers
-    lost: int = 0     # of these, told by the writer
+    lost: int = 0     # of these, reported by the writer
     left_out: int = 0  # frames of another length, or whose tick does not rise
     ended: bool = False  # it has its end
 
@@ -58,10 +58,10 @@ def _ticks(tick: NDArray[np.uint64]) -> NDArray[np.int64]:
 class Log:
     """A log of `exhand drop --out`, `run --log`, or the dump of a black box.
 
-    Attributes: scene, board (str), library (int), period_s (float), fingers (int), tick (int64,
-    shape (n,)), t_s (float64, (n,)), raw (int32, (n, signals): the outputs), inputs (structured,
-    (n,): enc_raw, mon_raw, din, ..., dac_raw, enable), params (dict, SI), events (list of dict),
-    damage (Damage).
+    Attributes: scene, board (str), library (int), period_s (float), fingers (int).
+    Arrays of n ticks: tick (int64), t_s (float64), raw (int32, (n, signals): the outputs).
+    inputs (structured, (n,)): enc_raw, mon_raw, din, ..., dac_raw, enable.
+    Others: params (dict, SI), events (list of dict), damage (Damage).
 
     Raises FileNotFoundError, and ValueError for what is no log of this library.
     """

@@ -83,7 +83,7 @@ class Box:
         return got
 
     def request(self, pdu: bytes) -> bytes:
-        """Sends a request (function and data) and returns what follows the function's byte."""
+        """Sends a request (function and data) and returns the answer's data."""
         self._number = self._number + 1 & 0xFFFF
         self._socket.sendall(struct.pack(">HHHB", self._number, 0, len(pdu) + 1, 1) + pdu)
         number, protocol, length, _ = struct.unpack(">HHHB", self._receive(7))
@@ -127,5 +127,5 @@ class Box:
         self.request(struct.pack(">BHH", 5, COILS.index(name), 0xFF00))
 
     def apply(self) -> None:
-        """Takes what is staged, at once, between two ticks. `box["result"]` tells how it went."""
+        """Applies all staged values between two ticks. `box["result"]` has the result."""
         self.command("APPLY")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A world over UDP (docs/WIRE.md): it hears where fingers are, and tells which plane is near each.
+"""A world over UDP (docs/WIRE.md): it receives the fingers' places, and sends a plane near each.
 
 No packet of a world is a force: planes are where contacts may be, and the box decides.
 """
@@ -84,7 +84,7 @@ class World:
     """A world that listens at host:port (0: a free one, in `port`) for one box.
 
     `with World() as world: for state in world.states(): world.answer({1: Plane(n, p)})`.
-    Attributes: port (int), told (dict: what the box answered to ask(), by name).
+    Attributes: port (int), `told` (dict: the box's answers to ask(), by name).
     """
 
     def __init__(self, port: int = 0, host: str = "127.0.0.1"):
@@ -163,7 +163,7 @@ class World:
                 yield state
 
     def answer(self, planes: Mapping[int, Optional[Plane]]) -> None:
-        """Tells the plane of fingers 0 to 4 (None: there is none), in answer to the last STATE.
+        """Sends planes of fingers 0 to 4 (None: there is none), in answer to the last STATE.
         Raises ValueError for a normal of length 0 and a point farther than 2 m."""
         p = np.zeros((), _PLANES)
         p["echo"] = self._echo
@@ -184,9 +184,9 @@ class World:
         self._send(PLANES, p.tobytes())
 
     def ask(self, name: str, value: float, instance: int = 0) -> None:
-        """Asks the box for a material's mat_k (N/m), mat_b (Ns/m) or mat_f_max (N), again until it
-        answers; then told[name] has "taken", or why not. The box takes no more than its rules
-        allow (docs/WIRE.md)."""
+        """Requests mat_k (N/m), mat_b (Ns/m) or mat_f_max (N) of a material, again until the box
+        answers. Then `told[name]` is "taken", or the reason of a refusal. The box accepts only
+        what its rules allow (docs/WIRE.md)."""
         for s in SCENES["bilateral"].params:
             if s.name == name and s.instance == instance:
                 self._wanted[s.id, instance] = name, int(fixed(value, s.frac, name))
