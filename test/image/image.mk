@@ -151,9 +151,9 @@ $(B)/test/stm32f405/emulator: $(stm_objs) $(filter-out %/main.o,$(cli_obj)) $(si
 	    -Wl,-rpath,$(unicorn)/lib $(cli_libs)
 
 STM_TICKS ?= 10000
-STM_TIMES ?= 10010
+STM_TIMES ?= 10005
 
-## Run the stm32f405 image in closed loop under emulation (STM_TICKS=10000 STM_TIMES=10010
+## Run the stm32f405 image in closed loop under emulation (STM_TICKS=10000 STM_TIMES=10005
 ## ARGS="drop guarded box where spoil faults planted cuts jumps show").
 .PHONY: stm32f405 stm32f405-built stm32f405-run
 stm32f405: stm32f405-built

@@ -115,12 +115,14 @@ static void turn(struct board *b, struct stm *s, unsigned i, uint32_t enc)
 {
     const int wired = is_function(s, encoder[i].a, encoder[i].function) &&
                       is_function(s, encoder[i].b, encoder[i].function);
-    int32_t quarters = (int32_t)(enc - b->enc[i]) + b->jump[i];
+    const int32_t truth = (int32_t)(enc - b->enc[i]);
+    int32_t quarters = truth + b->jump[i];
     if (b->half >> i & 1) { quarters = line_a(enc) - line_a(b->enc[i]); }
     b->enc[i] = enc;
     b->jump[i] = 0;
     if (b->stuck >> i & 1) { quarters = 0; }
     if (b->miswired >> i & 1) { quarters = -quarters; }
+    b->misread += (uint32_t)(quarters > truth ? quarters - truth : truth - quarters);
     if (wired) { stm_tim_turn(s, encoder[i].timer, quarters); }
 }
 

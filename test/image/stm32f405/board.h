@@ -19,6 +19,7 @@ struct board {
     uint8_t half;              /* line B stays low */
     uint8_t welded;            /* bits of drives: the line that enables them is high for good */
     int32_t jump[EXH_FINGERS]; /* counts that come once, by themselves */
+    uint32_t misread;          /* counts by which encoders at fault have deviated, in all */
 };
 
 void board_open(struct board *b, struct stm *s);

@@ -3,11 +3,10 @@
 #ifndef FAULTS_H
 #define FAULTS_H
 
-#include "loop.h"
+#include "kinds.h"
 
-/* `times` of them in turn, or of encoders that are stuck alone, drawn with this seed. A table on
- * stdout. 0: each in time. */
-int stm_faults(struct machine *m, unsigned times, uint64_t seed, int stuck);
+/* `times` of a set in turn, drawn with this seed. A table on stdout. 0: each as its kind says. */
+int stm_faults(struct machine *m, unsigned times, uint64_t seed, enum kind_set set);
 
 /* The supply fails in so many operations of a save into flash, the first and the last among them. A
  * line on stdout. 0: each time the parameters of before or the new ones are there, as the image

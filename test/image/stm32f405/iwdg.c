@@ -8,14 +8,18 @@ enum { KR = 0, PR = 4, RLR = 8, SR = 12 };
 #define ACCESS 0x5555u
 #define START  0xCCCCu
 
-static uint64_t bites_at(const struct stm *s)
+uint64_t stm_iwdg_period(const struct stm *s)
 {
     const unsigned shift = s->iwdg.pr < 6 ? s->iwdg.pr + 2 : 8;
     const uint32_t Hz = s->wrong & 1u << STM_LSI_FAST   ? 47000
                         : s->wrong & 1u << STM_LSI_SLOW ? 17000
                                                         : 32000;
-    if (!s->iwdg.runs) { return STM_NEVER; }
-    return s->iwdg.fed + ((uint64_t)(s->iwdg.rlr + 1) << shift) * STM_HZ / Hz;
+    return ((uint64_t)(s->iwdg.rlr + 1) << shift) * STM_HZ / Hz;
+}
+
+static uint64_t bites_at(const struct stm *s)
+{
+    return s->iwdg.runs ? s->iwdg.fed + stm_iwdg_period(s) : STM_NEVER;
 }
 
 uint32_t stm_iwdg_read(struct stm *s, uint32_t off)

@@ -33,6 +33,31 @@ static void stuck(unsigned chance) { loop.board.stuck = (uint8_t)(1u << finger(c
 static void swapped(unsigned chance) { loop.board.miswired = (uint8_t)(1u << finger(chance)); }
 static void half(unsigned chance) { loop.board.half = (uint8_t)(1u << finger(chance)); }
 
+/* Of the finger that is pulled most. */
+static unsigned pressing(void)
+{
+    unsigned most = 0;
+    for (unsigned i = 1; i < loop.cfg.scene->fingers; i++) {
+        if (da_uV(&loop.board.da, i) > da_uV(&loop.board.da, most)) { most = i; }
+    }
+    return most;
+}
+static void stuck_pressing(unsigned chance)
+{
+    (void)chance;
+    stuck(pressing());
+}
+static void swapped_pressing(unsigned chance)
+{
+    (void)chance;
+    swapped(pressing());
+}
+static void half_pressing(unsigned chance)
+{
+    (void)chance;
+    half(pressing());
+}
+
 /* --- chip --- */
 
 static void adc_stops(unsigned chance)
@@ -114,29 +139,67 @@ static void jump_out(unsigned chance)
     machine_set_reg(m, UC_ARM_REG_PC, to[chance % (sizeof to / sizeof to[0])]);
 }
 
+/* The D/A alone starts anew. */
+static void da_reset(unsigned chance)
+{
+    (void)chance;
+    da_power_on(&loop.board.da);
+}
+
+static uint32_t misread(void) { return loop.board.misread; }
+static uint32_t bites(void) { return (uint32_t)stm_iwdg_period(&m->s); }
+
 const struct kind kinds[] = {
-    {"emergency stop", "estop", ENDS_OFF, estop, NULL},
-    {"a drive not ready", "drive", ENDS_OFF, drive, NULL},
-    {"dead-man let go", "deadman", ENDS_OFF, deadman, NULL},
-    {"encoder jumps", "encoder", ENDS_OFF, jumped, NULL},
-    {"encoder stuck", "", ENDS_BOUND, stuck, NULL},
-    {"encoder, A and B exchanged", "", ENDS_BOUND, swapped, NULL},
-    {"encoder, line B dead", "", ENDS_BOUND, half, NULL},
-    {"A/D transfers stop", "card", ENDS_OFF, adc_stops, NULL},
-    {"A/D transfer 3 us late", "card", ENDS_OFF, adc_stops, adc_goes_on},
-    {"D/A silent", "card", ENDS_OFF, da_silent, NULL},
-    {"SPI stuck", "card", ENDS_OFF, spi_stuck, NULL},
-    {"crystal stops", "crystal", ENDS_WORDS, clock_lost, NULL},
-    {"supply low", "card", ENDS_OFF, supply_low, NULL},
-    {"brown-out", "reset", ENDS_OFF, brown_out, NULL},
-    {"program astray", "reset", ENDS_OFF, astray, NULL},
-    {"the same, interrupts off", "reset", ENDS_OFF, masked, NULL},
-    {"the same, LSI at 47 kHz", "reset", ENDS_OFF, astray_fast, NULL},
-    {"the same, LSI at 17 kHz", "reset", ENDS_OFF, astray_slow, NULL},
-    {"program well, LSI at 47 kHz", "", ENDS_WELL, lsi_fast, NULL},
-    {"program well, LSI at 17 kHz", "", ENDS_WELL, lsi_slow, NULL},
-    {"stack overrun", "exception", ENDS_WORDS, overrun, NULL},
-    {"jump out of memory", "exception", ENDS_WORDS, jump_out, NULL},
-    {"encoder stuck, stuck_time 100 ms", "stuck", ENDS_STUCK, stuck, NULL},
+    {"emergency stop", "estop", ENDS_OFF, estop, NULL, NULL, SET_MANY},
+    {"a drive not ready", "drive", ENDS_OFF, drive, NULL, NULL, SET_MANY},
+    {"dead-man let go", "deadman", ENDS_OFF, deadman, NULL, NULL, SET_MANY},
+    {"encoder jumps", "encoder", ENDS_OFF, jumped, NULL, misread, SET_MANY},
+    {"encoder stuck", "", ENDS_BOUND, stuck, NULL, misread, SET_MANY},
+    {"encoder, A and B exchanged", "", ENDS_BOUND, swapped, NULL, misread, SET_MANY},
+    {"encoder, line B dead", "", ENDS_BOUND, half, NULL, misread, SET_MANY},
+    {"A/D transfers stop", "card", ENDS_OFF, adc_stops, NULL, NULL, SET_MANY},
+    {"A/D transfer 3 us late", "card", ENDS_OFF, adc_stops, adc_goes_on, NULL, SET_MANY},
+    {"D/A silent", "card", ENDS_OFF, da_silent, NULL, NULL, SET_MANY},
+    {"D/A reset", "card", ENDS_OFF, da_reset, NULL, NULL, SET_MANY},
+    {"SPI stuck", "card", ENDS_OFF, spi_stuck, NULL, NULL, SET_MANY},
+    {"crystal stops", "crystal", ENDS_WORDS, clock_lost, NULL, NULL, SET_MANY},
+    {"supply low", "card", ENDS_OFF, supply_low, NULL, NULL, SET_MANY},
+    {"brown-out", "reset", ENDS_OFF, brown_out, NULL, NULL, SET_MANY},
+    {"program astray", "reset", ENDS_OFF, astray, NULL, NULL, SET_MANY},
+    {"the same, interrupts off", "reset", ENDS_OFF, masked, NULL, NULL, SET_MANY},
+    {"the same, LSI at 47 kHz", "reset", ENDS_OFF, astray_fast, NULL, bites, SET_MANY},
+    {"the same, LSI at 17 kHz", "reset", ENDS_OFF, astray_slow, NULL, bites, SET_MANY},
+    {"program well, LSI at 47 kHz", "", ENDS_WELL, lsi_fast, NULL, bites, SET_MANY},
+    {"program well, LSI at 17 kHz", "", ENDS_WELL, lsi_slow, NULL, bites, SET_MANY},
+    {"stack overrun", "exception", ENDS_WORDS, overrun, NULL, NULL, SET_MANY},
+    {"jump out of memory", "exception", ENDS_WORDS, jump_out, NULL, NULL, SET_MANY},
+    {"stuck before arming, arm_pull", "polarity", ENDS_ARM, stuck, NULL, misread, SET_ARM},
+    {"A and B exchanged before arming, arm_pull", "polarity", ENDS_ARM, swapped, NULL, misread,
+        SET_ARM},
+    {"line B dead before arming, arm_pull", "polarity", ENDS_ARM, half, NULL, misread, SET_ARM},
+    {"encoder stuck in a contact, glove", "let go", ENDS_LETGO, stuck_pressing, NULL, misread,
+        SET_GLOVE},
+    {"A and B exchanged in a contact, glove", "let go", ENDS_LETGO, swapped_pressing, NULL, misread,
+        SET_GLOVE},
+    {"line B dead in a contact, glove", "let go", ENDS_LETGO, half_pressing, NULL, misread,
+        SET_GLOVE},
+    {"A and B exchanged for 4 s", "", ENDS_BOUND, swapped, NULL, misread, SET_LONG},
+    {"encoder stuck for 4 s", "", ENDS_BOUND, stuck, NULL, misread, SET_LONG},
+    {"line B dead for 4 s", "", ENDS_BOUND, half, NULL, misread, SET_LONG},
+    {"A and B exchanged for 4 s, person_i 1 A", "", ENDS_BOUND, swapped, NULL, misread, SET_PERSON},
 };
-const unsigned kind_count = sizeof kinds / sizeof kinds[0] - 1;
+const unsigned kind_count = sizeof kinds / sizeof kinds[0];
+
+static void set(const char *name, double value)
+{
+    loop.cfg.setting[loop.cfg.settings++] = (struct ref_setting){name, value};
+}
+
+void kinds_set(enum kind_set which)
+{
+    if (which == SET_ARM) {
+        set("arm_pull", KIND_ARM_N);
+        set("arm_pull_time", KIND_ARM_MS);
+    }
+    if (which == SET_PERSON) { set("person_i", KIND_PERSON_A); }
+}

@@ -8,9 +8,20 @@
 enum kind_end {
     ENDS_OFF,   /* drives off within 20 ms, and they stay off */
     ENDS_WORDS, /* the same, and words say why: behind a log of 82 ms */
-    ENDS_BOUND, /* no detector need see it; the current stays within its limit */
-    ENDS_STUCK, /* seen within 100 ms, or the current stays within its limit */
+    ENDS_BOUND, /* no detector need see it; the current stays within its limits */
+    ENDS_LETGO, /* the same, and a finger that the glove sees far before its wall is let go */
+    ENDS_ARM,   /* the box does not arm, and pulls no more than arm_pull */
     ENDS_WELL   /* nothing happens */
+};
+
+/* Kinds are drawn from one set at a time. */
+enum kind_set {
+    SET_MANY,   /* all, for 50 ms */
+    SET_GLOVE,  /* encoders of fingers that press against a wall, until they withdraw */
+    SET_ARM,    /* encoders, before a box arms that has an arm_pull */
+    SET_LONG,   /* encoders, for as long as I2t allows the peak current, and on */
+    SET_PERSON, /* the same, where person_i is low */
+    SETS
 };
 
 struct kind {
@@ -19,11 +30,20 @@ struct kind {
     enum kind_end ends;
     void (*begin)(unsigned chance); /* chance: which finger, or where to */
     void (*cease)(void);            /* 3 us later, or NULL */
+    uint32_t (*sign)(void); /* another value at the end than before: it took effect. NULL: told */
+    enum kind_set set;
 };
 extern const struct kind kinds[];
-/* The last one stands behind them: for a scene whose stuck_time is KIND_STUCK_MS. */
 extern const unsigned kind_count;
-#define KIND_STUCK_MS 100
+
+/* The parameters of a set, besides the scene's. */
+void kinds_set(enum kind_set set);
+#define KIND_ARM_N    0.3
+#define KIND_ARM_MS   400
+#define KIND_PERSON_A 1.0
+
+#define KIND_DOUBT_MS 100  /* doubt_max: what bilateral has */
+#define KIND_FAR_M    0.02 /* string of a finger far before its wall, which is at 30 mm */
 
 /* Puts into flash what programs that go astray find there. */
 void kinds_prepare(struct machine *m);

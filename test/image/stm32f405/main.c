@@ -80,7 +80,7 @@ static const struct {
     int takes; /* a number */
 } option[] = {{"--rate", 1}, {"--ticks", 1}, {"--seed", 1}, {"--spoil", 1}, {"--faults", 1},
     {"--cuts", 1}, {"--speed", 1}, {"--say", 0}, {"--where", 0}, {"--jumps", 0}, {"--welded", 0},
-    {"--show", 0}, {"--help", 0}, {"--stuck", 0}};
+    {"--show", 0}, {"--help", 0}, {"--set", 1}};
 enum {
     RATE,
     TICKS,
@@ -95,7 +95,7 @@ enum {
     WELDED,
     SHOW,
     HELP,
-    STUCK,
+    SET,
     OPTIONS
 };
 
@@ -115,7 +115,8 @@ static const char help[] =
     "Instead of a run:\n"
     "  --faults N     N faults, each from a random time; a table\n"
     "    --welded     and drive 0 stays enabled: it must be found\n"
-    "    --stuck      encoders stuck alone, with a stuck_time of 100 ms\n"
+    "    --set N      encoders alone: 1 in a contact, 2 before a box arms with arm_pull, 3 for\n"
+    "                 4 s, 4 the same with a low person_i\n"
     "  --cuts N       the supply fails in N operations of a save into flash\n"
     "  --jumps        a program leaves memory; no IMAGE\n"
     "Exit status: 0 all well, 1 not, 2 bad usage. Nothing here was ever run on hardware.\n";
@@ -150,13 +151,12 @@ int main(int argc, char **argv)
     machine.speed = value[SPEED] > 0 ? (uint32_t)value[SPEED] : 1;
     if (loop_open(&machine, argv[i], (uint64_t)value[SEED]) < 0) { return 2; }
     loop.board.welded = value[WELDED] != 0;
-    if (value[STUCK]) {
-        loop.cfg.setting[loop.cfg.settings++] = (struct ref_setting){"stuck_time", KIND_STUCK_MS};
-    }
+    if (value[SET] < 0 || value[SET] >= SETS) { return 2; }
+    kinds_set((enum kind_set)value[SET]);
     if (value[FAULTS] || value[CUTS]) {
         bad = value[CUTS] ? stm_cuts(&machine, argv[i], (unsigned)value[CUTS])
                           : stm_faults(&machine, (unsigned)value[FAULTS], (uint64_t)value[SEED],
-                                value[STUCK] != 0);
+                                (enum kind_set)value[SET]);
         machine_close(&machine);
         return bad;
     }

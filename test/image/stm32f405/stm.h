@@ -250,6 +250,8 @@ uint32_t stm_iwdg_read(struct stm *s, uint32_t off);
 void stm_iwdg_write(struct stm *s, uint32_t off, uint32_t v);
 void stm_iwdg_go_on(struct stm *s);
 uint64_t stm_iwdg_next(const struct stm *s);
+/* From a feed to the bite, in units of time. */
+uint64_t stm_iwdg_period(const struct stm *s);
 uint32_t stm_core_read(struct stm *s, uint32_t address, unsigned size);
 void stm_core_write(struct stm *s, uint32_t address, unsigned size, uint32_t v);
 void stm_core_go_on(struct stm *s);
