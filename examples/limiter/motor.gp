@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# What goes wrong with a motor, with the limiter and without: a row a case, position and torque.
+# Faults of a motor, with the limiter and without: a row a case, position and torque.
 #
 #   gnuplot -e "csv='motor.csv'; out='motor.png'" motor.gp
 

@@ -566,7 +566,7 @@ def main():
     seed = commits() if a.seed is None else a.seed
     wanted = [m for m in (dealt(a.some, seed) if a.some > 1 else MUTANTS) if not a.module or
               m[0] in a.module]
-    # Told at every run, as a deal has only some of them.
+    # Reported at every run, because --some has only some of them.
     lost = ["%s: %s" % (source, old) for _, source, old, _ in MUTANTS if not holds(source, old)]
     if lost:
         p.error("texts that no source has: change each as its source was\n  " + "\n  ".join(lost))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# Crispness over k and b: the steepest millisecond of the monitored force in the first three of
-# a contact, per speed at contact; where contacts do not come to rest, marked.
+# Crispness over k and b: the steepest millisecond of the monitored force in the first three of a
+# contact, per speed at contact. Pairs whose contacts do not come to rest are marked.
 #
 #   gnuplot -e "data='crisp.csv'; speed='0.2'" bilateral_crisp.gp
 #

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
-# One contact over time, a column per speed, as the paper's time plot of a contact:
-# force commanded and force by the current monitor above, velocity below, a line where
-# contact begins.
+# One contact over time, a column per speed, as the paper's time plot of a contact. Force commanded
+# and force by the current monitor are above, velocity is below. A line is where contact begins.
 #
 #   gnuplot -e "files='bilateral_natural_index'; names='natural'; contacts='0.547'; ..." contact.gp
 #

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# The k-b plane at each loop rate: how many falls come to rest, the border where half of them do
-# with its interval, the border of the exact linear test, the paper's point.
+# The k-b plane at each loop rate: how many falls come to rest, and the border where half of them
+# do, with its interval. Also the border of the exact linear test, and the paper's point.
 #
 #   gnuplot -e "cells='stability.csv'; border='border.csv'; rho='rho.csv'; ..." stability.gp
 #

@@ -59,7 +59,7 @@ const machine = new V86({
 });
 
 // The cards' time is the machine's, which is the host's; but where the host was busy with others,
-// the cards do not run ahead of the machine: no more than 10 ms pass at once.
+// the cards do not run ahead of the machine: no more than 10 ms pass in one step.
 let then = performance.now();
 function advance() {
     const now = performance.now();

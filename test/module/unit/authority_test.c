@@ -195,7 +195,7 @@ TEST(without_apply_nothing_is_written)
     begin(EXH_STATE_OFF, 1);
     g.r.may = 0;
     CHECK_EQ_I64(by_register(EXH_WHEN_ANY, 4), EXH_MODBUS_VALUE);
-    CHECK_EQ_I64(by_register(EXH_WHEN_ANY, 5), EXH_MODBUS_VALUE); /* the value does not change */
+    CHECK_EQ_I64(by_register(EXH_WHEN_ANY, 5), EXH_MODBUS_VALUE); /* even the present value */
     CHECK_EQ_I64(exh_modbus_answer(&g.r, coil, sizeof coil, answer, sizeof answer), 2);
     CHECK_EQ_I64(answer[1], EXH_MODBUS_VALUE);
     CHECK_EQ_I64(g.r.refused, 3);

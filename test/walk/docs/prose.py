@@ -9,8 +9,8 @@ does not have (by docs.py). A page may have as many faults as prose.tsv allows i
 allows none. Code and what a command generates (between <!-- COMMAND --> and <!-- end -->) is not
 judged. A cell of a table is a paragraph of up to 40 words a sentence.
 
-The comments of sources (C, Python, shell, make) are judged by their sentences and idioms. prose.tsv
-has a ceiling for the faults of a folder. A folder without a row may have none.
+The comments of sources (C, Python, shell, make and their like) are judged by their sentences and
+idioms. prose.tsv has a ceiling for the faults of a folder. A folder without a row may have none.
 
 --stats prints words and sentences of each page, and of the comments of each folder of C sources;
 --update lowers ceilings to today's number and gives new pages a row. --comments FILE... prints the
@@ -91,7 +91,7 @@ def blocks(text):
 
 
 def of_c(text):
-    """(line number, text) of each comment of a C source. No specification of ACSL."""
+    """(line number, text) of each comment with the marks of C. No specification of ACSL."""
     for m in COMMENT.finditer(text):
         body = m[1] or m[2] or ""
         if not body.startswith("@"):
@@ -111,7 +111,7 @@ def of_python(text):
 
 
 def of_shell(text):
-    """(line number, text) of each comment of a shell script or makefile."""
+    """(line number, text) of each comment with the mark of a shell script or makefile."""
     found = []
     for n, line in enumerate(text.split("\n"), 1):
         for m in re.finditer(r"(?:^|\s)#(?=\s|!|$)", line):
@@ -136,13 +136,14 @@ def joined(lines):
         yield start, "\n".join(body)
 
 
-SOURCES = {".c": of_c, ".h": of_c, ".inc": of_c, ".py": of_python, ".sh": of_shell, ".mk": of_shell,
-           "Makefile": of_shell}
+SOURCES = {**dict.fromkeys((".c", ".h", ".inc", ".S", ".ld", ".mjs", ".acsl"), of_c),
+           **dict.fromkeys((".sh", ".mk", "Makefile", ".awk", ".gp", ".plt", ".cmake",
+                            "CMakeLists.txt"), of_shell), ".py": of_python}
 
 
 def language(path):
     """The function of SOURCES for this path. None: it is a page."""
-    return SOURCES.get(os.path.splitext(path)[1] or os.path.basename(path))
+    return SOURCES.get(os.path.basename(path)) or SOURCES.get(os.path.splitext(path)[1])
 
 
 def comments(path, text):

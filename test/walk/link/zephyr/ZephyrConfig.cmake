@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# Stands in for Zephyr, whose tree no registry offers: the few functions that a module and an application call, with the
-# meaning that Zephyr's documentation gives them (build/modules, cmake-ref), on this machine's compiler.
+# A substitute for Zephyr, whose tree no registry offers. It has the few functions that a module and an application call, by
+# Zephyr's documentation (build/modules, cmake-ref), on this machine's compiler.
 project(Zephyr-Kernel LANGUAGES C)
 add_executable(app)
 

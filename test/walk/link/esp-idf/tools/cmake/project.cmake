@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-# Stands in for ESP-IDF, whose tree no registry offers: project() and idf_component_register() with the meaning that its
-# build-system guide gives them, on this machine's compiler. Like ESP-IDF it reads each component twice: first as a script,
-# where only idf_component_register() is known and ends the file, then as a folder of the project.
+# A substitute for ESP-IDF, whose tree no registry offers. It has project() and idf_component_register() by its build-system
+# guide, on this machine's compiler. Like ESP-IDF it reads each component twice: first as a script, where only
+# idf_component_register() is known and ends the file, then as a folder of the project.
 set(ESP_PLATFORM 1)
 set(idf_here ${CMAKE_CURRENT_LIST_DIR})
 
