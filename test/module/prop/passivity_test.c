@@ -118,7 +118,7 @@ static int32_t any_move(void)
     return check_i32_in(-rig.cfg.way_cnt, rig.cfg.way_cnt);
 }
 
-/* Energy given out, computed again from the forces held. In time, or late by `late` 16ths of a
+/* Energy that flowed, computed again from the forces held. In time, or late by `late` 16ths of a
  * tick, where any share of the string's way falls to either force. Both times 16. */
 struct flow {
     int64_t in_time, late;

@@ -173,7 +173,7 @@ struct account {
     uint32_t doubts; /* consecutive ticks in doubt */
     uint32_t frozen_n, born_n, refused_n, ignored_n, stale_n, let_go_n;
     int counted;
-    int near, met; /* 0: it counts as d_lim; a plane came while free */
+    int near, met; /* 0 replaces d_lim; a plane came while free */
     uint32_t late_n;
     int told;      /* consecutive planes of this object */
     int64_t ahead; /* q_lim - q at the freeze */

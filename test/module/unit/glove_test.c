@@ -262,8 +262,8 @@ TEST(faults_are_counted_up_to_65535)
     }
 }
 
-/* No frame was good before the first one, so a fault counts immediately. The angle is that of code
- * 0, or of the end of the span next to it. */
+/* No frame was good before the first one, so a fault counts immediately. The code is that of angle
+ * 0, or the end of the span next to it. */
 TEST(a_channel_may_start_faulty)
 {
     struct fixture f;
