@@ -19,6 +19,7 @@ Exit status: 0 all pages and comments keep the rules, 1 not. Standard library on
 """
 
 import ast
+import functools
 import glob
 import inspect
 import io
@@ -221,13 +222,21 @@ class Page:
         self.path, self.text, self.data = path, text, data
         self.end = COMMENT_END if language(path) else END
         self.blocks = list(comments(path, text) if language(path) else blocks(text))
-        self.lengths = [len(w) for kind, b in self.blocks if kind == "prose"
-                        for _, w in sentences(b, self.end)]
-        self.words = sum(len(WORD.findall(plain(line))) for _, b in self.blocks for _, line in b)
+
+    @functools.cached_property
+    def lengths(self):
+        return [len(w) for kind, b in self.blocks if kind == "prose"
+                for _, w in sentences(b, self.end)]
+
+    @functools.cached_property
+    def words(self):
+        return sum(len(WORD.findall(plain(line))) for _, b in self.blocks for _, line in b)
 
     def style(self):
         for kind, block in self.blocks:
-            if kind == "prose":
+            # Most comments are too short for a long sentence: words have two characters at least
+            # with the one between.
+            if kind == "prose" and sum(len(line) + 1 for _, line in block) >= 2 * SENTENCE:
                 found = list(sentences(block, self.end))
                 for n, words in found:
                     if len(words) > SENTENCE:
