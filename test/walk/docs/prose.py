@@ -12,7 +12,7 @@ judged. A cell of a table is a paragraph of up to 40 words a sentence.
 The comments of sources (C, Python, shell, make and their like) are judged by their sentences and
 idioms. prose.tsv has a ceiling for the faults of a folder. A folder without a row may have none.
 
---stats prints words and sentences of each page, and of the comments of each folder of C sources;
+--stats prints words and sentences of each page, and of the comments of each folder of sources;
 --update lowers ceilings to today's number and gives new pages a row. --comments FILE... prints the
 faults in the comments of these sources, and passes.
 Exit status: 0 all pages and comments keep the rules, 1 not. Standard library only.
@@ -328,8 +328,7 @@ def main(args):
                         for n, what in Page(p, docs.read(p), data).style()))
         return 0
     if "--stats" in options:
-        stats(pages + [Page(p, docs.read(p), data) for top in ("lib", "ports", "test")
-                       for p in sorted(glob.glob(top + "/**/*.[ch]", recursive=True))])
+        stats(pages + [Page(p, docs.read(p), data) for p in sources()])
         return 0
     found, bad = {}, 0
     for p in pages:
