@@ -166,5 +166,5 @@ stm32f405-built:
 	    do $(MAKE) --no-print-directory $(if $(V),,-s) PORT=stm32f405 SCENE=$$s all || exit 1; done
 # The short form: what is built, with few ticks.
 stm32f405-run: stm32f405-regs
-	@B=$(B) TICKS=600 TIMES=500 LIMIT=600 $(stm_dir)/stm32f405.sh \
+	@B=$(B) TICKS=600 TIMES=400 LIMIT=600 $(stm_dir)/stm32f405.sh \
 	    $(or $(ARGS),drop guarded box spoil faults planted cuts jumps show)

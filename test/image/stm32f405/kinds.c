@@ -186,7 +186,7 @@ const struct kind kinds[] = {
     {"A and B exchanged for 4 s", "", ENDS_BOUND, swapped, NULL, misread, SET_LONG},
     {"encoder stuck for 4 s", "", ENDS_BOUND, stuck, NULL, misread, SET_LONG},
     {"line B dead for 4 s", "", ENDS_BOUND, half, NULL, misread, SET_LONG},
-    {"A and B exchanged for 4 s, person_i 1 A", "", ENDS_BOUND, swapped, NULL, misread, SET_PERSON},
+    {"A and B exchanged for 1 s, person_i 1 A", "", ENDS_BOUND, swapped, NULL, misread, SET_PERSON},
 };
 const unsigned kind_count = sizeof kinds / sizeof kinds[0];
 

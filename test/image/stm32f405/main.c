@@ -116,7 +116,7 @@ static const char help[] =
     "  --faults N     N faults, each from a random time; a table\n"
     "    --welded     and drive 0 stays enabled: it must be found\n"
     "    --set N      encoders alone: 1 in a contact, 2 before a box arms with arm_pull, 3 for\n"
-    "                 4 s, 4 the same with a low person_i\n"
+    "                 4 s, 4 for 1 s with a low person_i\n"
     "  --cuts N       the supply fails in N operations of a save into flash\n"
     "  --jumps        a program leaves memory; no IMAGE\n"
     "Exit status: 0 all well, 1 not, 2 bad usage. Nothing here was ever run on hardware.\n";
