@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* ADC1 converts eight channels without end: 15 + 12 cycles of 21 MHz each, a round of eight in 10.3
- * us. DMA2 puts them into a circle of two halves of 20 rounds.
+/* ADC1 converts eight channels continuously: 15 + 12 cycles of 21 MHz each, a round of eight in
+ * 10.3 us. DMA2 writes them into a circle of two halves of 20 rounds.
  *
- * Monitors and supply: the sum of the newest four rounds, at most 51 us old.
- * Glove: 22 sensors on two 16:1 multiplexers. Each half is one address. Its first four rounds (41
- * us) are left to settle, 16 are summed: 12 bits of 3.3 V become 16 of the library's +-10 V. The
- * interrupt at the end of a half sets the next address; eleven make a frame. So a frame takes 2.26
- * ms, neighbours on a multiplexer are 206 us apart, sensors i and 11 + i 1.3 us, and the age is
- * that of the oldest. */
+ * - Monitors and supply: the sum of the newest four rounds, at most 51 us old.
+ * - Glove: 22 sensors on two 16:1 multiplexers. Each half has one address. Its first four rounds
+ *   (41 us) settle, the other 16 are summed: 12 bits of 3.3 V become 16 of the library's +-10 V.
+ *   The interrupt at the end of a half sets the next address; eleven make a frame of 2.26 ms.
+ * - Neighbours on a multiplexer are 206 us apart, sensors i and 11 + i 1.3 us. The age of a frame
+ *   is that of its oldest sensor. */
 #include "stm.h"
 
 #include "exhand/error.h"

@@ -132,11 +132,11 @@ static void report(void)
     stm_box_report();
 }
 
-/* Emulators without the chip end here: semihosting. A breakpoint that nobody answers would be a
- * fault. Others see the loop of stm_halted(). */
+/* Emulators without the chip end here: semihosting. Without a debugger a breakpoint is a fault, so
+ * others see the loop of stm_halted(). */
 static void end_emulation(uint32_t status)
 {
-    const uint32_t block[2] = {0x20026 /* the program ended by itself */, status};
+    const uint32_t block[2] = {0x20026 /* the application has ended */, status};
     register uint32_t operation __asm__("r0") = 0x20; /* SYS_EXIT_EXTENDED */
     register const uint32_t *argument __asm__("r1") = block;
     __asm__ volatile("bkpt 0xab" : "+r"(operation) : "r"(argument) : "memory");

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* BOX=none: a loop-back in the place of drives, for emulators that have no more than a UART and
- * timers. Each current that is asked for flows, no string moves, the glove is at rest; after a
- * while a hand takes hold of the dead-man switch. */
+/* BOX=none: a loop-back instead of drives, for emulators that have only a UART and timers. Each
+ * commanded current flows, no string moves, and the glove is at rest. After HELD_AFTER reads a hand
+ * holds the dead-man switch. */
 #include "stm.h"
 
 #define HELD_AFTER 200u

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Clock tree: crystal or HSI to 1 MHz, times 336, half of it: 168 MHz; APB1 42 MHz, APB2 84 MHz
- * (RM0090, RCC: the PLL's equations and limits; FLASH: five wait states at 168 MHz and 3.3 V). TIM5
- * counts freely. The clock security system makes an NMI of a crystal that stops. */
+/* Clock tree: crystal or HSI to 1 MHz, times 336, half of it: 168 MHz. APB1 has 42 MHz, APB2 84.
+ * Source: RM0090 (RCC: the PLL's equations and limits; FLASH: five wait states at 168 MHz, 3.3 V).
+ * TIM5 runs freely. If the crystal stops, the clock security system raises an NMI. */
 #include "stm.h"
 
 #ifndef STM_HSE_MHz

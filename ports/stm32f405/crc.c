@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The library's CRC-32 by the chip's unit, in the place of its table. The unit has the same
- * polynomial, but takes words with their first bit first: RBIT turns them (RM0090, CRC). It always
- * starts from ones. Any other start is the same as another first word. The loop alone calls it, no
+/* The library's CRC-32 by the chip's unit instead of a table. The unit has the same polynomial, but
+ * takes the highest bit of a word first. RBIT reverses the bits (RM0090, CRC). The unit always
+ * starts from ones; a changed first word gives any other start. Only the loop calls it, no
  * interrupt. */
 #include "stm.h"
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* The D/A: a DAC81408, eight channels of 16 bits and +-10 V, on SPI2. At power-on its channels are
- * off, and its registers hold -10 V of a bipolar range. Low on the pin CLR makes buffers and
- * outputs zero, whatever else is going on; a resistor holds it low over a reset (TI SLASER3A,
- * "Clear DAC Operation": a bipolar range is cleared to its middle). Frames of 24 bits, SPI mode 1,
- * the register map: as public drivers for this family have them. */
+ * off, and its registers hold -10 V of a bipolar range. A low pin CLR makes buffers and outputs
+ * zero at any time. A resistor holds it low over a reset. Source: TI SLASER3A, "Clear DAC
+ * Operation": a bipolar range is cleared to its middle. Frames of 24 bits, SPI mode 1 and the
+ * register map are those of public drivers for this family. */
 #include "da_code.h"
 #include "stm.h"
 
@@ -26,7 +26,7 @@ static void set_clock(uint32_t fraction)
                               SPI_CR1_SSI | SPI_CR1_SSM | SPI_CR1_SPE;
 }
 
-/* Until SPI says this of itself: 0 or -EXH_E_IO. */
+/* Waits until SPI has this status: 0 or -EXH_E_IO. */
 static int comes(uint32_t mask, uint32_t want)
 {
     uint32_t n = 0;
@@ -34,8 +34,8 @@ static int comes(uint32_t mask, uint32_t want)
     return n == POLLS ? -EXH_E_IO : 0;
 }
 
-/* Out only, a byte behind the other. What comes in meanwhile nobody reads: an interrupt may come
- * between the bytes. */
+/* Writes the bytes one after another. Incoming bytes are not read, because an interrupt may come
+ * between two of them. */
 static int write(uint32_t out)
 {
     int err = 0;
@@ -49,7 +49,7 @@ static int write(uint32_t out)
     return err;
 }
 
-/* Both ways; *back is what came. 0 or -EXH_E_IO. */
+/* Writes and reads; *back has the answer. 0 or -EXH_E_IO. */
 static int frame(uint32_t out, uint32_t *back)
 {
     uint32_t in = 0;
@@ -80,7 +80,7 @@ static void open_spi(void)
     (void)REG(BASE_RCC, RCC_APB1ENR);
     REG(BASE_SPI2, SPI_CR1) = 0;
     set_clock(QUARTER);
-    (void)REG(BASE_SPI2, SPI_DR); /* nothing of before is taken for an answer */
+    (void)REG(BASE_SPI2, SPI_DR); /* drops an older byte: it is no answer */
 }
 
 /* Zero is in every channel before one is on. CLR goes up for that, while all channels are off: it
@@ -118,8 +118,8 @@ int stm_da_open(void)
     return set_up();
 }
 
-/* What the last frame of the tick before asked for. A D/A that is gone, or was reset, has another
- * SPICONFIG. */
+/* Checks the answer to the previous tick's last frame. A D/A that is absent, or was reset, has
+ * another SPICONFIG. */
 static void compare(uint32_t back)
 {
     if (!asked) { return; }
@@ -150,7 +150,7 @@ int stm_da_write(const uint16_t raw[EXH_FINGERS])
     }
     err |= write(DA_TRIGGER << 16 | DA_LDAC);
     err |= write(DA_READ | DA_SPICONFIG << 16);
-    (void)REG(BASE_SPI2, SPI_DR); /* what nobody has read; */
+    (void)REG(BASE_SPI2, SPI_DR); /* drops unread bytes; */
     (void)REG(BASE_SPI2, SPI_SR); /* behind it, this ends the overrun, or the next byte is lost */
     set_clock(QUARTER);
     asked = 1;

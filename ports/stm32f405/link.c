@@ -15,7 +15,7 @@
 
 static uint8_t out_memory[OUT_B];
 static struct stm_fifo out = {out_memory, OUT_B, 0, 0, 0, STM_LINK};
-static uint8_t frame[FRAME_B]; /* what has come of one */
+static uint8_t frame[FRAME_B]; /* the bytes received of one */
 static uint32_t frame_B;       /* FRAME_B + 1: too long */
 static struct {
     uint32_t in, damaged, too_long, sent, unsent;
@@ -41,7 +41,7 @@ static uint32_t encode(uint8_t *to, const uint8_t *from, uint32_t n)
     return at;
 }
 
-/* In place, since what comes out is never longer than what was read. 0: damaged. */
+/* In place, since the result is never longer than the bytes read. 0: damaged. */
 static uint32_t decode(uint8_t *byte, uint32_t n)
 {
     uint32_t at = 0, i = 0;

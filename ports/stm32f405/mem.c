@@ -13,7 +13,7 @@ void *memmove(void *dst, const void *src, size_t len_B);
 void *memset(void *dst, int value, size_t len_B);
 int memcmp(const void *a, const void *b, size_t len_B);
 
-/* Whole words by four at once, which only lie at addresses of words: 15 cycles, not 23. */
+/* Four words an instruction, from aligned addresses: 15 cycles instead of 23. */
 static size_t copy_words(unsigned char *d, const unsigned char *s, size_t len_B)
 {
     const size_t left = len_B & 15u;

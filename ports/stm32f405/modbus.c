@@ -83,7 +83,7 @@ static int apply(void)
     return err;
 }
 
-/* Where nobody moves: a save starts the box anew. */
+/* Only in OFF, with fingers at rest: a save restarts the box. */
 static int may_save(void)
 {
     const uint8_t state = scene->safety ? scene->safety->state : (uint8_t)EXH_STATE_RUN;
@@ -126,7 +126,7 @@ void stm_modbus_poll(const struct exh_scene_in *in)
     }
     if (scene->safety) { exh_regs_update(&regs, scene->safety, in->drive.din); }
     regs.locked = scene->params->locked;
-    (void)exh_scene_signals(scene); /* for who reads them */
+    (void)exh_scene_signals(scene); /* for a reader */
     n = exh_modbus_rtu_answer(&line, &regs, answer, sizeof answer);
     if (n > 0) { (void)stm_uart_send(STM_MODBUS, answer, (uint32_t)n); }
     carry_out();

@@ -3,14 +3,14 @@
  * No other file has such a number; a test compares them with another source. Facts: ST's reference
  * manual RM0090 (names and chapters are its own) and the Armv7-M architecture manual.
  *
- * BASE_x is the address of a peripheral, PERIPHERAL_REGISTER the offset of a register in it,
- * PERIPHERAL_REGISTER_FIELD the mask of a field, FIELD(lowest bit, width),
- * RESET_PERIPHERAL_REGISTER what a reset leaves. TIM, GPIO, USART, SPI, ADC and DMA stand for each
- * of their kind.
+ * BASE_x is the address of a peripheral. PERIPHERAL_REGISTER is the offset of a register in it.
+ * PERIPHERAL_REGISTER_FIELD is the mask of a field, FIELD(lowest bit, width).
+ * RESET_PERIPHERAL_REGISTER is the value after a reset. TIM, GPIO, USART, SPI, ADC and DMA mean
+ * each peripheral of that kind.
  *
- * Who does what:
+ * Use of the peripherals:
  *   RCC, PWR, FLASH  clock: crystal to 168 MHz, else HSI to 168 MHz; CSS makes an NMI when the
- *                    crystal fails; PVD tells a low supply; slots in sectors 10 and 11
+ *                    crystal fails; PVD reports low supply; slots in sectors 10 and 11
  *   SysTick          the tick: its interrupt counts
  *   TIM5             free-running, 84 MHz, 32 bits: exh_board_cycles()
  *   TIM1 2 3 4 8     encoders of fingers 0 .. 4, x4; the low 16 bits are read
@@ -279,7 +279,7 @@
 #define DMA_FLAG_TC      0x20u
 #define IRQ_DMA2_STREAM0 56u
 
-/* --- CRC: 32 bits at once, first bit first --- */
+/* --- CRC: 32 bits a write, highest bit first --- */
 #define CRC_DR       0x00u
 #define CRC_CR       0x08u
 #define CRC_CR_RESET FIELD(0, 1)

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Parameters and calibrations in flash sectors 10 and 11, by slots.h.
  *
- * Erasing stops the processor for a second and more, so nothing is written while the loop runs: a
- * save puts the image into memory that no start clears, and resets the chip. The start that follows
- * writes it, before the watchdog runs, with D/A and drives held at zero by their resistors and by
- * us. A supply that fails at any word leaves the older slot.
+ * Erasing stops the processor for a second or more, so nothing is written while the loop runs. A
+ * save puts the image into memory that no start clears, and resets the chip. The next start writes
+ * it before the watchdog runs. Resistors and this port hold D/A and drives at zero. If the supply
+ * fails at any word, the older slot stays valid.
  *
- * Image: u32 length of the parameters' image, that image; then of each calibration u32 length and
- * its image. Where no slot has calibrations, those that were flashed to FIRST, 4 KiB apart, count:
- * so a new board gets its first, and the next save takes them along. */
+ * Image: u32 length of the parameters' image, that image; then for each calibration u32 length and
+ * its image. If no slot has calibrations, those flashed at FIRST, 4 KiB apart, are used. So a new
+ * board gets its first ones, and the next save includes them. */
 #include "stm.h"
 
 #include "exhand/board.h"
@@ -66,7 +66,7 @@ static int program(unsigned to, uint32_t len_B)
         good = ready();
     }
     REG(BASE_FLASH, FLASH_CR) = FLASH_CR_LOCK;
-    REG(BASE_FLASH, FLASH_ACR) &= ~FLASH_ACR_DCEN; /* what it holds is of before */
+    REG(BASE_FLASH, FLASH_ACR) &= ~FLASH_ACR_DCEN; /* its content is stale */
     REG(BASE_FLASH, FLASH_ACR) |= FLASH_ACR_DCRST;
     REG(BASE_FLASH, FLASH_ACR) &= ~FLASH_ACR_DCRST;
     REG(BASE_FLASH, FLASH_ACR) |= FLASH_ACR_DCEN;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Start: vectors, .data, .bss, clock, pins, lines, main(). What goes wrong leads to stm_fault(). */
+/* Start: vectors, .data, .bss, clock, pins, lines, main(). Any exception leads to stm_fault(). */
 #include "stm.h"
 
 #define PAINT      0xA5A5A5A5u /* stack that was never used */
@@ -7,7 +7,7 @@
 #define SIZE(log2) (((log2)-1u) << 1 | 1u)
 #define NO_ACCESS  (1u << 28)
 #define READ_ONLY  (6u << 24 | 1u << 17)
-#define ON         5u /* what no region names has the rights it has without */
+#define ON         5u /* outside all regions the default rights hold */
 
 /* ldscripts/stm32f405.ld */
 extern uint32_t __stack_guard[], __stack_bottom[], __stack_paint_end[], __stack_top[],
@@ -40,8 +40,8 @@ static void protect(void)
     stm_mpu(1);
 }
 
-/* Pins first: what drives hang on is held low from here on by us, too. The tick goes before the
- * A/D's interrupt, which waits for no more than it. */
+/* Pins first: from here on this port also holds the drives' lines low. The tick has priority over
+ * the A/D's interrupt, which waits only for the tick. */
 void stm_reset(void)
 {
     const uint32_t *from = __data_load;

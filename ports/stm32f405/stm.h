@@ -43,7 +43,7 @@ void stm_clock_open(void);
 void stm_clock_hsi(void); /* the crystal has stopped */
 enum stm_clock stm_clock(void);
 uint32_t stm_now(void);         /* TIM5: 84 MHz, modulo 2^32 */
-void stm_delay_us(uint32_t us); /* at most 1 s; ends where TIM5 stands still, too */
+void stm_delay_us(uint32_t us); /* at most 1 s; also ends if TIM5 stops */
 
 /* --- say.c: text over USART2, polled; a line that takes no character is given up --- */
 void stm_say(const char *text);
@@ -91,7 +91,7 @@ void stm_slot_save(const struct exh_scene *sc); /* at rest; resets, does not ret
 
 /* --- da.c: DAC81408 on SPI2 --- */
 int stm_da_open(void); /* outputs zero, cleared by the pin: 0, -EXH_E_ABSENT */
-/* Offset binary of the library (3249/V), all at once. 0, -EXH_E_IO: SPI stands still. */
+/* Offset binary of the library (3249/V), all together. 0, -EXH_E_IO: SPI does not answer. */
 int stm_da_write(const uint16_t raw[EXH_FINGERS]);
 void stm_da_clear(void); /* outputs zero by the pin: any context */
 int stm_da_silent(void); /* 1: three wrong answers in a row */

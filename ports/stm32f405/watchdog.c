@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Independent watchdog: 32 kHz of its own (17 .. 47 kHz over parts and temperature, data sheet), so
- * a nominal time is 0.68 to 1.9 of itself. Three periods, 8 ms at least: at 1 kHz it bites 5 to 15
- * ms after the last whole tick. What it resets it leaves as a reset does: pins float, and the
- * resistors of wiring.tsv hold D/A and drives at zero. */
+/* Independent watchdog: its own 32 kHz clock (17 .. 47 kHz over parts and temperature, data sheet),
+ * so a nominal time becomes 0.68 to 1.9 times as long. Three periods, at least 8 ms: at 1 kHz it
+ * bites 5 to 15 ms after the last whole tick. After its reset pins float, and the resistors of
+ * wiring.tsv hold D/A and drives at zero. */
 #include "stm.h"
 
 #include "exhand/fix.h"
@@ -28,5 +28,5 @@ void stm_watchdog_start(struct exh_period T)
 
 void stm_watchdog_feed(void) { REG(BASE_IWDG, IWDG_KR) = IWDG_KEY_FEED; }
 
-/* RCC keeps it until power goes, or RMVF is written: nobody here does. */
+/* RCC keeps it until power-off or a write to RMVF, which this port never does. */
 int stm_watchdog_bitten(void) { return (REG(BASE_RCC, RCC_CSR) & RCC_CSR_IWDGRSTF) != 0; }
