@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""ways.py DIR [--release NAME] [--only WORD] [--update]: each way of examples/link/README.md on a
-bare Debian.
+"""ways.py DIR [--release NAME] [--only WORD,...] [--update]: each way of examples/link/README.md
+on a bare Debian, or those with a WORD in their name.
 
 DIR gets one bare root and then a copy for each way. All lines are typed as printed, also those that
 install packages. `git clone` gives a clone of the last commit here. Prints a table, a row a way.
---update writes it into that file:
+--update writes these rows into that file:
 
     commands  all of them, with the three before any way
     packages  of Debian and, behind a plus, of PyPI
@@ -112,11 +112,16 @@ def line(row):
     return "| " + " | ".join(row) + " |"
 
 
-def update(text):
+def update(rows, names):
+    """Puts the rows, by their names, into the table. Rows of other ways stay as they are."""
     with open(link.README) as f:
         head, rest = f.read().split(BEGIN)
+    old, rest = rest.split(END, 1)
+    top, old = old.splitlines()[:2], {text.split(" | ")[0][2:]: text
+                                      for text in old.splitlines()[2:]}
+    table = top + [rows.get(n, old.get(n)) for n in names if n in rows or n in old]
     with open(link.README, "w") as f:
-        f.write(head + BEGIN + text + END + rest.split(END, 1)[1])
+        f.write(head + BEGIN + "\n".join(table) + "\n" + END + rest)
 
 
 def main():
@@ -128,25 +133,25 @@ def main():
     p.add_argument("--update", action="store_true")
     a = p.parse_args()
     first, want, ways = link.ways()
+    names = [name for name, _ in ways]
+    for word in a.only.split(","):
+        if not any(word in name for name in names):
+            p.error("--only %s: no way has it in its name" % word)
     ways = [(name, [c.replace("...", "file:///exhand.git") for c in first] + commands)
-            for name, commands in ways if a.only in name]
-    if not ways or a.update and a.only:
-        p.error("--only %s: %s" %
-                (a.only, "--update is for all ways" if ways else "no way of that name"))
+            for name, commands in ways if any(word in name for word in a.only.split(","))]
     base, here = os.path.join(a.dir, a.release), os.path.join(a.dir, "way")
     os.makedirs(a.dir, exist_ok=True)
     root("make", a.release, base)
-    table = [line(HEAD), line(["---"] + ["---:"] * (len(HEAD) - 1))]
-    print("\n".join(table))
-    failed = 0
+    print("\n".join([line(HEAD), line(["---"] + ["---:"] * (len(HEAD) - 1))]))
+    table, failed = {}, 0
     for name, commands in ways:
         row, wrong = take(name, commands, want, base, here)
         failed += bool(wrong)
-        table.append(line(row))
-        print(table[-1] + ("  FAILED\n" + wrong if wrong else ""), flush=True)
+        table[name] = line(row)
+        print(table[name] + ("  FAILED\n" + wrong if wrong else ""), flush=True)
     print("%d passed, %d failed" % (len(ways) - failed, failed))
     if a.update and not failed:
-        update("\n".join(table) + "\n")
+        update(table, names)
     return 1 if failed else 0
 
 
