@@ -106,11 +106,10 @@ class Counter:
 class Velocity:
     """Velocity of a counted position by one of four estimators; the first sample gives 0.
 
-    method  par                          extra
-    window  ticks: 1, 2, 4, 8 or 16      difference over them
-    pole    time constant, s, 0 to 1     difference through one pole
-    foaw    longest window, 1 to 16      adaptive window; tol_cnt: 1 to 255 counts
-    track   time constant, s, 0 to 1     critically damped observer
+    - window: difference over `par` ticks: 1, 2, 4, 8 or 16.
+    - pole: difference through one pole with time constant `par`, 0 to 1 s.
+    - foaw: adaptive window of at most `par` ticks, 1 to 16. tol_cnt: 1 to 255 counts.
+    - track: critically damped observer with time constant `par`, 0 to 1 s.
 
     step_m: m per count. rate_Hz: 1 to 20000. Raises ValueError for what is outside.
     """
