@@ -18,7 +18,8 @@
 #          to 1 (bilateral: 32 ns, to 2), by a timer of 25 MHz. The longest tick, nothing moving.
 #          minimal once more as minimal-frozen-1000 (make FROZEN=1000): scene and library set up and
 #          linked as one program.
-#   stm32f405  the image for drives: bytes and stack alone.
+#   stm32f405  the image for drives: bytes and stack alone. As on pc104, of a scene that is linked
+#          as one program the stack must fit, too.
 #
 # Environment: MAKE (make), B (build). A missing cross compiler, emulator or valgrind
 # leaves "-" in the table and says so.
@@ -238,13 +239,12 @@ posix_row()
     row "$1" posix $bytes "$(stack template "$1" objdump)" "$(callgrind "$1")"
 }
 
-# whole_fits SCENE: the stack of the pc104 image, where the linker makes one program of it
+# whole_fits PORT SCENE [VARIABLE...]: the stack of an image that the linker makes one program of
 whole_fits()
 {
-    grep -q '^SCENE_WHOLE' "examples/$1/scene.mk" || return 0
     parts=$b b=$b/whole
-    build pc104 "$1" "CROSS=$cross" "CC=${cross}gcc" CARDS=none PORT_SUFFIX=
-    stack_fits pc104 "$1" "$(stack pc104 "$1" "${cross}objdump")" "${cross}nm"
+    build "$@" "CROSS=$cross" "CC=${cross}gcc"
+    stack_fits "$1" "$2" "$(stack "$1" "$2" "${cross}objdump")" "${cross}nm"
     b=$parts
 }
 
@@ -261,7 +261,9 @@ pc104_row()
     bytes=$("${cross}size" "$b/pc104/$1.elf" | awk 'NR == 2 { print $1, $2, $3 }')
     stack=$(stack pc104 "$1" "${cross}objdump")
     stack_fits pc104 "$1" "$stack" "${cross}nm"
-    whole_fits "$1"
+    if grep -q '^SCENE_WHOLE' "examples/$1/scene.mk"; then
+        whole_fits pc104 "$1" CARDS=none PORT_SUFFIX=
+    fi
     # shellcheck disable=SC2086 # three numbers
     row "$1" pc104 $bytes "$stack" "$(counted "$1")"
 }
@@ -284,7 +286,7 @@ mps2_row()
     row "$1" mps2 $bytes "$stack" "$(counted_m "$1")"
 }
 
-# The image for drives, linked from its parts, so that the stack can be computed. It is not run
+# The image for drives, linked from its parts, so that its bytes can be counted. It is not run
 # here: no emulator of it is part of this. Its library symbols are those of mps2.
 stm32f405_row()
 {
@@ -295,6 +297,7 @@ stm32f405_row()
     bytes=$("${cross}size" "$b/stm32f405/$1.elf" | awk 'NR == 2 { print $1, $2, $3 }')
     stack=$(stack stm32f405 "$1" "${cross}objdump")
     stack_fits stm32f405 "$1" "$stack" "${cross}nm"
+    grep -Eq '^SCENE_(MAIN|ROM)' "examples/$1/scene.mk" || whole_fits stm32f405 "$1"
     # shellcheck disable=SC2086 # three numbers
     row "$1" stm32f405 $bytes "$stack" -
 }
