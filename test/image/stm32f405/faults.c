@@ -37,6 +37,9 @@
 #define HARDLY    0.05  /* A: the pull of a string without a contact is 0.1 N */
 #define CODES     0.002 /* A: a code of the library's, and half a step of the D/A's */
 #define FALLS_S   0.6   /* of a mass: else it hangs at rest, where no count can be wrong */
+#define GUARD_B   256u  /* from where RAM begins to the stack (ldscripts/stm32f405.ld), */
+#define STACK_B   8192u
+#define PAINT     0xA5A5A5A5u /* which start.c has painted */
 #define REPORTED  24
 
 static struct machine *m;
@@ -47,7 +50,8 @@ struct seen {
     uint8_t acted, above;            /* it took effect; a limit of the parameters was passed */
     uint64_t off_after, zero_after;  /* the last time that drives, and current, went off */
     uint64_t clung;                  /* the longest that a finger far before its wall was pulled */
-    double most_A, heat;             /* of what I2t allows: 1 */
+    uint32_t stack_B;
+    double most_A, heat; /* of what I2t allows: 1 */
     char told[REPORTED];
 };
 
@@ -171,6 +175,16 @@ static void note(struct seen *s, const char *what)
     if (s->told[0] == 0) { snprintf(s->told, sizeof s->told, "%.23s", what); }
 }
 
+/* Bytes of the stack that were used since the image painted it. */
+static uint32_t stack_B(void)
+{
+    uint32_t free_B = 0;
+    while (free_B < STACK_B && machine_word(m, STM_RAM + GUARD_B + free_B) == PAINT) {
+        free_B += 4;
+    }
+    return STACK_B - free_B;
+}
+
 static void run_to(struct seen *s, uint64_t end)
 {
     enum machine_end how = M_RUNS;
@@ -246,6 +260,7 @@ static void child(struct seen *s, unsigned chance)
     s->clung = now.clung;
     if (k->ends == ENDS_LETGO && now.let_go) { note(s, "let go"); }
     s->above = now.above;
+    s->stack_B = k->begin == kind_overruns ? 0 : stack_B();
     s->acted = k->sign && k->sign() != sign;
     s->done = m->end != M_BROKEN;
     if (!s->done) { note(s, m->why); }
@@ -293,7 +308,7 @@ static int is_wrong(const struct seen *s)
     const int told = strcmp(s->told, k->told) == 0;
     const int latched = s->state == EXH_STATE_FAULT || strcmp(k->told, "reset") == 0;
     const uint64_t patience = KIND_DOUBT_MS * (uint64_t)MS + LIMIT;
-    if (!s->done || s->above || s->heat > 1) { return 1; }
+    if (!s->done || s->above || s->heat > 1 || s->stack_B > STACK_B / 2) { return 1; }
     switch (k->ends) {
     case ENDS_BOUND: return s->told[0] && s->on;
     case ENDS_LETGO: return s->clung > patience || !told;
@@ -345,6 +360,7 @@ static unsigned table(const struct seen *seen, unsigned times, enum kind_set set
 {
     unsigned bad = 0, pulled = 0, ran = 0;
     double heat = 0, clung_ms = 0;
+    uint32_t most_B = 0;
     printf("| fault | times | while a current flowed | took effect | current zero, mean and most "
            "ms | drives off, most ms | most A | told as | wrong |\n"
            "|--|--|--|--|--|--|--|--|--|\n");
@@ -353,9 +369,11 @@ static unsigned table(const struct seen *seen, unsigned times, enum kind_set set
         pulled += seen[i].pulled;
         ran += seen[i].ran;
         heat = larger(heat, seen[i].heat);
+        most_B = seen[i].stack_B > most_B ? seen[i].stack_B : most_B;
         clung_ms = larger(clung_ms, (double)seen[i].clung / MS);
     }
-    printf("\nlimit %.3f A, %.0f %% of what I2t allows", now.finger[0].limit_A, 100 * heat);
+    printf("\nlimit %.3f A, %.0f %% of what I2t allows, %u bytes of stack", now.finger[0].limit_A,
+        100 * heat, (unsigned)most_B);
     if (set == SET_GLOVE) { printf(", let go at most %.1f ms late", clung_ms); }
     printf("\n");
     printf("%u faults, %u with the gate open, %u while a current flowed: %u wrong\n", times, ran,

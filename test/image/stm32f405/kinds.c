@@ -127,7 +127,7 @@ static void astray_slow(unsigned chance)
     astray(chance);
 }
 /* The next that uses the stack runs over its end. */
-static void overrun(unsigned chance)
+void kind_overruns(unsigned chance)
 {
     (void)chance;
     machine_set_reg(m, UC_ARM_REG_SP, STM_RAM + 256 + 16);
@@ -171,7 +171,7 @@ const struct kind kinds[] = {
     {"the same, LSI at 17 kHz", "reset", ENDS_OFF, astray_slow, NULL, bites, SET_MANY},
     {"program well, LSI at 47 kHz", "", ENDS_WELL, lsi_fast, NULL, bites, SET_MANY},
     {"program well, LSI at 17 kHz", "", ENDS_WELL, lsi_slow, NULL, bites, SET_MANY},
-    {"stack overrun", "exception", ENDS_WORDS, overrun, NULL, NULL, SET_MANY},
+    {"stack overrun", "exception", ENDS_WORDS, kind_overruns, NULL, NULL, SET_MANY},
     {"jump out of memory", "exception", ENDS_WORDS, jump_out, NULL, NULL, SET_MANY},
     {"stuck before arming, arm_pull", "polarity", ENDS_ARM, stuck, NULL, misread, SET_ARM},
     {"A and B exchanged before arming, arm_pull", "polarity", ENDS_ARM, swapped, NULL, misread,

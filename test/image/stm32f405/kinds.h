@@ -35,6 +35,7 @@ struct kind {
 };
 extern const struct kind kinds[];
 extern const unsigned kind_count;
+void kind_overruns(unsigned chance); /* the stack */
 
 /* The parameters of a set, besides the scene's. */
 void kinds_set(enum kind_set set);
