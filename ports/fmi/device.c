@@ -192,8 +192,7 @@ int unit_step(void)
     }
     end_s = (double)++u.tick * (double)u.T.num / (double)u.T.den;
     while (u.queued && u.queue[u.head].at_s <= end_s) {
-        sim_mass_advance(&u.mass, u.queue[u.head].at_s);
-        sim_mass_latch(&u.mass, u.queue[u.head].ref_A);
+        sim_mass_latch(&u.mass, u.queue[u.head].at_s, u.queue[u.head].ref_A);
         u.head = (u.head + 1) % OUTPUTS_MAX;
         u.queued--;
     }

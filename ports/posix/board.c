@@ -213,15 +213,11 @@ static double due_s(double now_s)
     return now_s + d->delay_tick * sim.T_s + d->delay_s;
 }
 
-/* Of the plant, between any two of tick, output and servo sample. */
+/* Of the plant. */
 static double longest_step_s(void)
 {
-    const struct sim_device *d = &sim.cfg.device;
-    const double T_s = sim.T_s;
-    const double behind_s = due_s(0) - (double)sim_floor(due_s(0) / T_s) * T_s;
-    double most_s = behind_s > T_s - behind_s ? behind_s : T_s - behind_s;
-    if (most_s > 1 / d->servo_hz) { most_s = 1 / d->servo_hz; }
-    return most_s < d->substep_s ? most_s : d->substep_s;
+    const double most_s = sim.cfg.device.substep_s;
+    return sim.T_s < most_s ? sim.T_s : most_s;
 }
 
 int posix_still(void)
@@ -285,11 +281,10 @@ static void advance_to(double end_s)
 {
     while (sim.queued && sim.queue[sim.head].at_s <= end_s) {
         const struct output *o = &sim.queue[sim.head];
-        advance_device(o->at_s);
         if (sim.exo.fingers) {
-            sim_exo_latch(&sim.exo, o->ref_A);
+            sim_exo_latch(&sim.exo, o->at_s, o->ref_A);
         } else {
-            sim_mass_latch(&sim.mass, o->ref_A[0]);
+            sim_mass_latch(&sim.mass, o->at_s, o->ref_A[0]);
         }
         sim.head = (sim.head + 1) % OUTPUTS_MAX;
         sim.queued--;

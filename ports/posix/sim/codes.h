@@ -54,6 +54,15 @@ static inline double sim_drive_A(const struct sim_device *d, uint16_t dac_raw, i
     return enabled ? ref_A : 0;
 }
 
+/* The servo's first sample behind at_s, from its first of all, less than a period behind at_s or
+ * before. By a product: a sum of periods drifts by its rounding. */
+static inline double sim_servo_s(double first_s, double hz, double at_s)
+{
+    const double n = (double)(int64_t)((at_s - first_s) * hz + 1);
+    const double sample_s = first_s + n / hz;
+    return sample_s > at_s ? sample_s : first_s + (n + 1) / hz;
+}
+
 /* The place of a wall `phase` (0..1) counts above an encoder count that is nearest to the height of
  * the fall, counted from where the string starts. */
 static inline double sim_wall_m(const struct sim_device *d, double phase)

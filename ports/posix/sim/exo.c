@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#define POINT_S 250e-6 /* between two points the fingers move on straight lines */
+#define POINT_S 600e-6 /* between two points the fingers move on straight lines */
 
 /* Sensors that bend: the knuckle's, and those of the joints beyond it; -1: none. */
 static const signed char bends[SIM_FINGERS][3] = {
@@ -91,10 +91,11 @@ int sim_exo_done(const struct sim_exo *e)
     return 1;
 }
 
-void sim_exo_latch(struct sim_exo *e, const double ref_A[SIM_FINGERS])
+void sim_exo_latch(struct sim_exo *e, double at_s, const double ref_A[SIM_FINGERS])
 {
+    if (e->gloved && newest_s(e) + POINT_S < at_s) { sim_exo_advance(e, at_s); } /* points first */
     for (unsigned i = 0; e->fingers >> i; i++) {
-        if (used(e, i)) { sim_finger_latch(&e->finger[i], ref_A[i]); }
+        if (used(e, i)) { sim_finger_latch(&e->finger[i], at_s, ref_A[i]); }
     }
 }
 

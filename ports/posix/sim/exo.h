@@ -43,8 +43,8 @@ void sim_exo_advance(struct sim_exo *e, double until_s);
 /* 1: all fingers in use are through with their scripts. */
 int sim_exo_done(const struct sim_exo *e);
 
-/* Every D/A output changes now. */
-void sim_exo_latch(struct sim_exo *e, const double ref_A[SIM_FINGERS]);
+/* Every D/A output changes at at_s, as sim_finger_latch() says. */
+void sim_exo_latch(struct sim_exo *e, double at_s, const double ref_A[SIM_FINGERS]);
 
 /* The glove on this hand: what does not bend with the fingers in use rests as in rest_rad. */
 void sim_exo_glove(struct sim_exo *e, struct sim_glove *g, const struct sim_glove_par *p,

@@ -42,11 +42,13 @@ static inline double fall_next_s(const struct fall *f)
     return f->phase == FALL_DONE || fall_waits(f) ? 1e30 : f->until_s;
 }
 
-/* fall_step() has something to do before the phase ends: to lift, or to look for the contact. */
-static inline int fall_busy(const struct fall *f)
+/* fall_step() has something to do before the phase ends: to look for the contact, or to lift. */
+static inline int fall_looks(const struct fall *f)
 {
-    return f->phase == FALL_LIFT || (f->phase == FALL_FREE && f->contact_s < 0);
+    return f->phase == FALL_FREE && f->contact_s < 0;
 }
+
+static inline int fall_busy(const struct fall *f) { return f->phase == FALL_LIFT || fall_looks(f); }
 
 /* Call it when the plant has reached time t: moves the hand, changes the phase when due. Returns 1
  * at the release of the mass. */

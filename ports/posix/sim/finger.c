@@ -14,7 +14,8 @@
 #include "codes.h"
 #include "grid.h"
 
-#define PIECE_S 250e-6 /* the target moves on a straight line for no longer */
+#define PIECE_S 600e-6 /* the target moves on a straight line for no longer */
+#define FAR_S   1e30
 
 const struct sim_device_row sim_finger_row[] = {
     {"mass", "kg", 0.1, 0.005, 1, "unsure", "finger and exoskeleton, reflected to the string"},
@@ -73,11 +74,21 @@ void sim_finger_start(struct sim_finger *f, const struct sim_finger_par *par,
     f->plant.x_m = f->plant.q_m = f->target_m = sim_path_at(&f->path, 0);
     f->grid = sim_random_unit(&f->rng);
     f->servo_s = sim_random_unit(&f->rng) / d->servo_hz;
+    f->sample_s = FAR_S;
 }
 
-void sim_finger_latch(struct sim_finger *f, double ref_A) { f->latched_A = ref_A; }
+void sim_finger_latch(struct sim_finger *f, double at_s, double ref_A)
+{
+    if (f->sample_s <= at_s) { sim_finger_advance(f, f->sample_s); }
+    f->latched_A = ref_A;
+    f->sample_s = ref_A != f->ref_A ? sim_servo_s(f->servo_s, f->device.servo_hz, at_s) : FAR_S;
+}
 
-void sim_finger_safe(struct sim_finger *f) { f->latched_A = f->ref_A = 0; }
+void sim_finger_safe(struct sim_finger *f)
+{
+    f->latched_A = f->ref_A = 0;
+    f->sample_s = FAR_S;
+}
 
 static double earlier(double a, double b) { return a < b ? a : b; }
 
@@ -100,7 +111,7 @@ void sim_finger_advance(struct sim_finger *f, double until_s)
     double grid_s = sim_grid(f->now_s), turn_s = sim_path_next_s(&f->path);
     while (f->now_s < until_s) {
         const double from_s = f->now_s;
-        double to_s = earlier(earlier(until_s, from_s + PIECE_S), f->servo_s);
+        double to_s = earlier(earlier(until_s, from_s + PIECE_S), f->sample_s);
         if (turn_s <= from_s) {
             sim_path_advance(&f->path, from_s);
             turn_s = sim_path_next_s(&f->path);
@@ -112,9 +123,9 @@ void sim_finger_advance(struct sim_finger *f, double until_s)
             advance_plant(f, to_s, to_grid_s - grid_s);
             grid_s = to_grid_s;
         }
-        if (f->servo_s <= f->now_s) {
+        if (f->sample_s <= f->now_s) {
             f->ref_A = f->latched_A;
-            f->servo_s += 1 / f->device.servo_hz;
+            f->sample_s = FAR_S;
         }
     }
 }

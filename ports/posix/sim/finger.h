@@ -46,7 +46,8 @@ struct sim_finger {
     double now_s;
     double latched_A;     /* D/A output */
     double ref_A;         /* what the servo last sampled */
-    double servo_s;       /* its next sample */
+    double servo_s;       /* its first sample */
+    double sample_s;      /* its next that changes ref_A; the others change nothing */
     double grid;          /* encoder phase, counts */
     double bend_radpm[2]; /* knuckle, joints beyond */
 };
@@ -56,13 +57,13 @@ void sim_finger_start(struct sim_finger *f, const struct sim_finger_par *par,
     const struct sim_path_par *path, const struct sim_path_record *record,
     const struct sim_device *d, uint64_t seed);
 
-/* The D/A output changes now. */
-void sim_finger_latch(struct sim_finger *f, double ref_A);
+/* The D/A output changes at at_s, now or later, but before it changes again. */
+void sim_finger_latch(struct sim_finger *f, double at_s, double ref_A);
 
 /* Sets the D/A to zero and disables the drive, without a delay. */
 void sim_finger_safe(struct sim_finger *f);
 
-/* To until_s; servo samples, and what the path does, on their instants. */
+/* To until_s; changes of the reference, and what the path does, on their instants. */
 void sim_finger_advance(struct sim_finger *f, double until_s);
 
 /* Codes of encoder (jitter_cnt peak to peak on it) and monitor. */

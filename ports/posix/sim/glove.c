@@ -97,24 +97,23 @@ static double amplified(const struct sim_glove_par *p, double share)
     return limit(p->gain * p->excite_V * share + p->offset_V, p->rail_V);
 }
 
-/* As the sensor sees it, behind the low-pass. before: of this channel; NULL: nothing is kept. */
-static double angle_rad(const struct sim_glove *g, unsigned i, double t_s, struct sim_decay *before)
-{
-    const struct sim_lag *l = &g->angle_rad[g->of[i]];
-    const double s = before ? sim_grid_s(l->x.start_s, t_s) : 0;
-    if (before == NULL || sim_lag_settled(l) || s > FORGOTTEN * l->tau_s) {
-        return g->share[i] * sim_lag_at(l, t_s);
-    }
-    return g->share[i] * sim_lag_left(l, t_s, sim_decay_at(before, l->tau_s, s));
-}
+/* Of angles that began a line at from_s: what the low-pass has left of what was before. */
+struct left {
+    double from_s, left;
+};
 
-/* With what it has of its neighbours. */
-static double bent_rad(const struct sim_glove *g, unsigned i, double t_s, struct sim_decay *before)
+/* As the sensor sees it, behind the low-pass, with what it has of its neighbours. *rests: 0, it may
+ * move. */
+static double bent_rad(
+    const struct sim_glove *g, unsigned i, double t_s, const struct left *now, int *rests)
 {
-    const struct sim_glove_sensor *n = &sim_glove_sensor[i];
-    double rad = angle_rad(g, i, t_s, before);
-    for (int k = 0; k < 2 && n->bend[k] >= 0 && g->par.couple != 0; k++) {
-        rad += g->par.couple / 2 * angle_rad(g, (unsigned)n->bend[k], t_s, before);
+    const struct sim_glove_sees *sees = &g->sees[i];
+    double rad = 0;
+    for (unsigned k = 0; k < sees->n; k++) {
+        const struct sim_lag *l = &g->angle_rad[sees->of[k]];
+        const int known = now && l->x.start_s == now->from_s;
+        *rests &= sim_lag_rests(l);
+        rad += sees->share[k] * (known ? sim_lag_left(l, t_s, now->left) : sim_lag_at(l, t_s));
     }
     return rad;
 }
@@ -122,34 +121,58 @@ static double bent_rad(const struct sim_glove *g, unsigned i, double t_s, struct
 static double shown_V(const struct sim_glove *g, unsigned i, double rad)
 {
     const struct sim_glove_par *p = &g->par;
-    if (g->fault[i] == SIM_GLOVE_RAIL_HIGH) { return p->rail_V; }
-    if (g->fault[i] == SIM_GLOVE_RAIL_LOW) { return -p->rail_V; }
-    if (g->fault[i] == SIM_GLOVE_OPEN) { return amplified(p, 1); }
-    if (g->fault[i] == SIM_GLOVE_SHORT) { return amplified(p, 0); }
-    return amplified(p,
-        p->dead + g->live * (sim_glove_sensor[i].lo + (rad - g->lo_rad[i]) * g->share_perrad[i]));
+    switch (g->fault[i]) {
+    case SIM_GLOVE_RAIL_HIGH: return p->rail_V;
+    case SIM_GLOVE_RAIL_LOW: return -p->rail_V;
+    case SIM_GLOVE_OPEN: return amplified(p, 1);
+    case SIM_GLOVE_SHORT: return amplified(p, 0);
+    default: return limit(g->at_0_V[i] + rad * g->V_perrad[i], p->rail_V);
+    }
 }
 
 double sim_glove_volt(const struct sim_glove *g, unsigned i, double t_s)
 {
-    return shown_V(g, i, bent_rad(g, i, t_s, NULL));
-}
-
-static int rests(const struct sim_glove *g, int i)
-{
-    return i < 0 || sim_lag_rests(&g->angle_rad[g->of[i]]);
+    int rests;
+    return shown_V(g, i, bent_rad(g, i, t_s, NULL, &rests));
 }
 
 /* The same, of a channel without a fault kept. */
-static double moved_V(struct sim_glove *g, unsigned i, double t_s)
+static double moved_V(struct sim_glove *g, unsigned i, double t_s, const struct left *now)
 {
-    const int *bend = sim_glove_sensor[i].bend;
+    int rests = 1;
     if (g->fault[i] != SIM_GLOVE_WELL) { return sim_glove_volt(g, i, t_s); }
-    g->volt_V[i] = shown_V(g, i, bent_rad(g, i, t_s, &g->low_pass[i]));
-    if (rests(g, (int)i) && rests(g, bend[0]) && rests(g, bend[1])) {
-        g->moves &= ~(UINT32_C(1) << i);
-    }
+    g->volt_V[i] =
+        limit(g->at_0_V[i] + bent_rad(g, i, t_s, now, &rests) * g->V_perrad[i], g->par.rail_V);
+    if (rests) { g->moves &= ~(UINT32_C(1) << i); }
     return g->volt_V[i];
+}
+
+/* The same, where all angles stay or began a straight line so long ago. */
+static inline double line_V(const struct sim_glove *g, unsigned i, double s, double left)
+{
+    const struct sim_glove_sees *sees = &g->sees[i];
+    double rad = 0;
+    for (unsigned k = 0; k < sees->n; k++) {
+        const struct sim_lag *l = &g->angle_rad[sees->of[k]];
+        rad += sees->share[k] * (l->p[0] + l->p[1] * s + l->off * left);
+    }
+    return limit(g->at_0_V[i] + rad * g->V_perrad[i], g->par.rail_V);
+}
+
+/* Which angles bend this sensor. */
+static void look(struct sim_glove *g, unsigned i)
+{
+    struct sim_glove_sees *sees = &g->sees[i];
+    const int *bend = sim_glove_sensor[i].bend;
+    sees->n = 1;
+    sees->of[0] = g->of[i];
+    sees->share[0] = g->share[i];
+    for (int k = 0; k < 2 && bend[k] >= 0 && g->par.couple != 0; k++) {
+        sees->of[sees->n] = g->of[bend[k]];
+        sees->share[sees->n++] = g->par.couple / 2 * g->share[bend[k]];
+    }
+    sees->mask = 0;
+    for (unsigned k = 0; k < sees->n; k++) { sees->mask |= UINT32_C(1) << sees->of[k]; }
 }
 
 void sim_glove_start(struct sim_glove *g, const struct sim_glove_par *p, uint64_t seed,
@@ -158,11 +181,13 @@ void sim_glove_start(struct sim_glove *g, const struct sim_glove_par *p, uint64_
     memset(g, 0, sizeof *g);
     g->par = *p;
     g->rng.state = seed;
-    g->live = 1 - 2 * p->dead;
     for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
         const struct sim_glove_sensor *n = &sim_glove_sensor[i];
-        g->lo_rad[i] = n->lo_deg * DEG;
-        g->share_perrad[i] = (n->hi - n->lo) / ((n->hi_deg - n->lo_deg) * DEG);
+        const double perrad = (n->hi - n->lo) / ((n->hi_deg - n->lo_deg) * DEG);
+        const double live_V = p->gain * p->excite_V * (1 - 2 * p->dead);
+        g->V_perrad[i] = live_V * perrad;
+        g->at_0_V[i] = p->gain * p->excite_V * p->dead + p->offset_V +
+                       live_V * (n->lo - n->lo_deg * DEG * perrad);
         sim_lag_start(&g->angle_rad[i], 1 / (TWO_PI * p->cutoff_Hz), angle_rad[i]);
         g->of[i] = (unsigned char)i;
         g->share[i] = 1;
@@ -171,7 +196,10 @@ void sim_glove_start(struct sim_glove *g, const struct sim_glove_par *p, uint64_
             g->seen[sim_glove_sensor[i].bend[k]] |= UINT32_C(1) << i;
         }
     }
-    g->moves = g->reads = (UINT32_C(1) << SIM_GLOVE_SENSORS) - 1;
+    for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) { look(g, i); }
+    g->moves = g->reads = g->holds = g->stays = (UINT32_C(1) << SIM_GLOVE_SENSORS) - 1;
+    g->tau_s = 1 / (TWO_PI * p->cutoff_Hz);
+    g->line_left = sim_exp_neg(p->interval_s / g->tau_s);
     g->slot_left = p->settle_s > 0 ? sim_exp_neg(p->interval_s / p->settle_s) : 0;
     g->code_perV = CODES / p->span_V;
     g->noise_V_perLSB = p->noise_V / 6;
@@ -180,16 +208,27 @@ void sim_glove_start(struct sim_glove *g, const struct sim_glove_par *p, uint64_
     g->held_s = -1;
 }
 
+static void begin(struct sim_glove *g, unsigned i, double start_s)
+{
+    const uint32_t angle = UINT32_C(1) << i;
+    if (start_s != g->line_s) { g->lines = 0; }
+    g->line_s = start_s;
+    g->lines |= angle;
+    g->stays &= ~angle;
+    g->moves |= g->seen[i];
+}
+
 void sim_glove_move(struct sim_glove *g, unsigned i, const struct sim_curve *x)
 {
     sim_lag_follow(&g->angle_rad[i], x);
-    g->moves |= g->seen[i];
+    begin(g, i, x->start_s);
+    g->lines &= ~(UINT32_C(1) << i);
 }
 
 void sim_glove_line(struct sim_glove *g, unsigned i, const struct sim_line *x, double left)
 {
     sim_lag_line(&g->angle_rad[i], x, left);
-    g->moves |= g->seen[i];
+    begin(g, i, x->start_s);
 }
 
 void sim_glove_follow(struct sim_glove *g, unsigned i, unsigned of, double share)
@@ -198,13 +237,14 @@ void sim_glove_follow(struct sim_glove *g, unsigned i, unsigned of, double share
     g->share[i] = share;
     g->seen[of] |= g->seen[i];
     g->moves |= g->seen[i];
+    for (unsigned k = 0; k < SIM_GLOVE_SENSORS; k++) { look(g, k); }
 }
 
 /* What is known by its peak-to-peak value is clipped there. 3 deviations: a thousand samples have
  * reached it about once on either side, so that a second at any usual rate measures all of it. */
 static inline double noise_V(const struct sim_glove *g, struct sim_random *r)
 {
-    return limit(sim_random_normal(r) * g->noise_V_perLSB, g->noise_V_most);
+    return limit(sim_random_bytes(r) * g->noise_V_perLSB, g->noise_V_most);
 }
 
 /* Of a voltage in codes. */
@@ -214,47 +254,65 @@ static inline int16_t code_of(double v)
     return (int16_t)(v < 0 ? -32768 : v >= 65536 ? 32767 : (int32_t)v - 32768);
 }
 
+/* What the low-pass has left when channel `first` is held at t_s. Most angles that move began their
+ * lines at once. */
+static struct left left_of_line(struct sim_glove *g, unsigned first, double t_s)
+{
+    struct left now = {g->line_s, 0};
+    const double s = sim_grid_s(g->line_s, t_s), tau_s = g->tau_s;
+    if (s >= 0 && s < FORGOTTEN * tau_s) { now.left = sim_decay_at(&g->low_pass[first], tau_s, s); }
+    return now;
+}
+
 /* Channels first to end - 1 behind the multiplexer, the first held at t_s. It goes on as soon as a
  * channel is held: what is left of the one before has the whole slot to decay; left: of that before
- * the first. */
-static void hold(struct sim_glove *g, unsigned first, unsigned end, double t_s, double tick_s,
-    double left, double *held_V)
+ * the first. A channel that is not read keeps its code; no other gets its random number. */
+static void convert(
+    struct sim_glove *g, unsigned first, unsigned end, double t_s, double tick_s, double left)
 {
-    const double slot_left = g->slot_left;
-    double before_V = g->held_V;
-    uint32_t moves = g->moves >> first;
-    for (unsigned i = first; i < end; i++, moves >>= 1) {
+    const double slot_left = g->slot_left, line_left = g->line_left, code_perV = g->code_perV;
+    const int noisy = g->noise_V_most > 0;
+    const uint32_t moves = g->moves, reads = g->reads, plain = g->lines | g->stays;
+    struct sim_random rng = g->rng;
+    struct left now = left_of_line(g, first, t_s);
+    double before_V = g->held_V, line_s = t_s - g->line_s;
+    uint32_t holds = g->holds >> first & ((UINT32_C(1) << (end - first)) - 1);
+    for (unsigned i = first; holds; i++, holds >>= 1) {
         double v = g->volt_V[i];
-        if (g->fault[i] != SIM_GLOVE_WELL || moves & 1) {
-            v = moved_V(g, i, i > first ? sim_glove_held_s(&g->par, i, tick_s) : t_s);
+        if (holds & 1) {
+            if (g->fault[i] == SIM_GLOVE_WELL && !(g->sees[i].mask & ~plain)) {
+                v = line_V(g, i, line_s, now.left);
+            } else if (g->fault[i] != SIM_GLOVE_WELL || moves >> i & 1) {
+                v = moved_V(g, i, i > first ? sim_glove_held_s(&g->par, i, tick_s) : t_s, &now);
+            }
+            before_V = v += (before_V - v) * left;
+            if (reads >> i & 1) {
+                struct sim_random own = rng;
+                if (noisy) { v += noise_V(g, &own); }
+                if (g->fault[i] != SIM_GLOVE_STUCK) { g->code[i] = code_of(v * code_perV); }
+            }
         }
-        held_V[i] = before_V = v + (before_V - v) * left;
+        sim_random_skip(&rng, 1);
+        now.left *= line_left;
+        line_s += g->par.interval_s;
         left = slot_left;
     }
     g->held_V = before_V;
     g->held_s = end > first + 1 ? sim_glove_held_s(&g->par, end - 1, tick_s) : t_s;
+    if (noisy) { sim_random_skip(&g->rng, end - first); }
 }
 
-/* A channel that is not read keeps its code; no other gets its random numbers. */
-static void convert(
-    struct sim_glove *g, unsigned first, unsigned end, double t_s, double tick_s, double left)
+/* The channels that are read, and before each those that it has 1e-12 of. */
+static uint32_t held(const struct sim_glove *g)
 {
-    const double code_perV = g->code_perV;
-    const unsigned numbers = g->noise_V_most > 0 ? SIM_RANDOM_NORMAL : 0;
-    struct sim_random rng = g->rng;
-    uint32_t reads = g->reads >> first;
-    double held_V[SIM_GLOVE_SENSORS];
-    hold(g, first, end, t_s, tick_s, left, held_V);
-    for (unsigned i = first; i < end; i++, reads >>= 1) {
-        double v = held_V[i];
-        if (!(reads & 1)) {
-            sim_random_skip(&rng, numbers);
-            continue;
-        }
-        if (numbers) { v += noise_V(g, &rng); }
-        if (g->fault[i] != SIM_GLOVE_STUCK) { g->code[i] = code_of(v * code_perV); }
+    uint32_t mask = g->reads;
+    for (double left = g->slot_left; left > 1e-12; left *= g->slot_left) {
+        const uint32_t all = (UINT32_C(1) << SIM_GLOVE_SENSORS) - 1;
+        const uint32_t more = (mask >> 1 | mask << (SIM_GLOVE_SENSORS - 1)) & all & ~mask;
+        if (!more) { break; }
+        mask |= more;
     }
-    g->rng = rng;
+    return mask;
 }
 
 void sim_glove_reads(struct sim_glove *g, uint32_t channels)
@@ -263,6 +321,7 @@ void sim_glove_reads(struct sim_glove *g, uint32_t channels)
         if (!(channels >> i & 1)) { g->code[i] = code_of(sim_glove_volt(g, i, 0) * g->code_perV); }
     }
     g->reads = channels;
+    g->holds = held(g);
 }
 
 /* Of the channel before, behind a slot of any length. */

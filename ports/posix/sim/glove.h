@@ -60,15 +60,23 @@ struct sim_glove {
     int16_t code[SIM_GLOVE_SENSORS];        /* the last */
     double held_V, held_s;                  /* on the multiplexer, and since when */
     /* What most channels need not work out again. */
-    uint32_t reads;                          /* channels that are read */
+    uint32_t reads, holds;                   /* channels that are read, and that those depend on */
     uint32_t moves, seen[SIM_GLOVE_SENSORS]; /* channels that may change; those that see angle i */
     double volt_V[SIM_GLOVE_SENSORS];        /* of those that do not */
+    double line_s;                           /* when an angle last began another movement */
+    uint32_t lines, stays;   /* angles that then began a straight line; that never moved */
+    double tau_s, line_left; /* of the low-pass, and what it leaves from channel to channel */
     struct sim_decay low_pass[SIM_GLOVE_SENSORS];
-    double live, lo_rad[SIM_GLOVE_SENSORS], share_perrad[SIM_GLOVE_SENSORS]; /* of the sensors */
-    double slot_left, code_perV, noise_V_perLSB, noise_V_most; /* multiplexer, A/D, noise */
+    double at_0_V[SIM_GLOVE_SENSORS], V_perrad[SIM_GLOVE_SENSORS]; /* behind the amplifier */
+    double slot_left, code_perV, noise_V_perLSB, noise_V_most;     /* multiplexer, A/D, noise */
     /* Angle i is share[i] times angle of[i]. For an independent one, of[i] is i, share[i] is 1. */
     unsigned char of[SIM_GLOVE_SENSORS];
     double share[SIM_GLOVE_SENSORS];
+    struct sim_glove_sees {
+        uint32_t mask;
+        unsigned char n, of[3];
+        double share[3];
+    } sees[SIM_GLOVE_SENSORS]; /* the angles that bend a sensor, and how much */
 };
 
 /* Settled at these angles; the multiplexer at rest on channel 0. */

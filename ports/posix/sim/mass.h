@@ -20,7 +20,8 @@ struct sim_mass {
     double now_s;
     double latched_A; /* D/A output */
     double ref_A;     /* what the servo last sampled */
-    double servo_s;   /* its next sample */
+    double servo_s;   /* its first sample; on a bench its next */
+    double sample_s;  /* its next that changes ref_A; the others change nothing */
     double grid;      /* encoder phase, counts */
 };
 
@@ -37,8 +38,8 @@ void sim_mass_put(struct sim_mass *m, double x_m, double q_m);
 /* Everything that happens up to and at until_s. */
 void sim_mass_advance(struct sim_mass *m, double until_s);
 
-/* The D/A output changes now. */
-void sim_mass_latch(struct sim_mass *m, double ref_A);
+/* The D/A output changes at at_s, now or later, but before it changes again. */
+void sim_mass_latch(struct sim_mass *m, double at_s, double ref_A);
 
 /* Sets the D/A to zero and disables the drive, without a delay. */
 void sim_mass_safe(struct sim_mass *m);

@@ -12,11 +12,12 @@ double sim_exp_neg(double x)
     /* e^-x = e^-k (e^-f/4)^4, k whole, f < 1; Pade (5,5) on f/4. */
     const int k = x < 700 ? (int)x : 700;
     const double f = (x - k) / 4;
-    const double even = 30240 + f * f * (3360 + 30 * f * f);
-    const double odd = f * (15120 + f * f * (420 + f * f));
-    double e = (even - odd) / (even + odd);
+    double even, odd, e;
     double power = 0.36787944117144233; /* e^-1 */
     if (x > 700) { return 0; }
+    even = 30240 + f * f * (3360 + 30 * f * f);
+    odd = f * (15120 + f * f * (420 + f * f));
+    e = (even - odd) / (even + odd);
     e *= e;
     e *= e;
     for (int n = k; n > 0; n /= 2) {
@@ -90,7 +91,7 @@ void plant_advance_piece(
 
 void plant_hold_piece(struct plant *p, const struct plant_piece *s, double ref_A)
 {
-    step_current(p, s, ref_A);
+    for (int i = 0; i < s->n; i++) { step_current(p, s, ref_A); }
 }
 
 const struct plant_piece *plant_pieces_put(

@@ -46,7 +46,7 @@ struct plant_piece plant_piece_of(const struct sim_device *d, double dt_s);
 void plant_advance_piece(
     struct plant *p, const struct sim_device *d, const struct plant_piece *s, double ref_A);
 
-/* The currents alone, over a piece of one sub-step: mass and string are held. */
+/* The currents alone: mass and string are held. */
 void plant_hold_piece(struct plant *p, const struct plant_piece *s, double ref_A);
 
 /* Those that were last in use; all 0: none yet. Of one device, and one hand (0: none). */

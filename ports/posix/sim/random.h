@@ -45,12 +45,20 @@ static inline int32_t sim_random_sum(uint64_t fours)
     return (int32_t)((fours >> 32) + (fours & UINT32_MAX));
 }
 
-/* Twelve uniforms: a normal of deviation 1 within +-6. It asks for so many numbers. */
-#define SIM_RANDOM_NORMAL 3
+/* Twelve uniforms: a normal of deviation 1 within +-6. */
 static inline double sim_random_normal(struct sim_random *r)
 {
     const uint64_t a = sim_random_four(r), b = sim_random_four(r), c = sim_random_four(r);
     return (sim_random_sum(a + b + c) - 6 * 65535) * (1.0 / 65536);
+}
+
+/* Eight uniforms of 8 bits, of one number: a normal of deviation 1 within +-4.9, in steps of 1/209
+ * of it. */
+static inline double sim_random_bytes(struct sim_random *r)
+{
+    const uint64_t bytes = UINT64_C(0x00FF00FF00FF00FF), u = sim_random_u64(r);
+    const uint64_t sum = ((u & bytes) + (u >> 8 & bytes)) * UINT64_C(0x0001000100010001) >> 48;
+    return ((int32_t)sum - 4 * 255) * 0.0047841924;
 }
 
 /* A bell over -1/2..1/2: the mean of four 16-bit uniforms, peak to peak 1, standard

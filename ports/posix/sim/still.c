@@ -40,7 +40,6 @@ int sim_mass_still(const struct sim_mass *m, double longest_s)
 int sim_mass_pass(struct sim_mass *m, double until_s)
 {
     if (fall_next_s(&m->fall) <= until_s) { return 0; }
-    while (m->servo_s <= until_s) { m->servo_s += 1 / m->device.servo_hz; }
     m->now_s = until_s;
     return 1;
 }

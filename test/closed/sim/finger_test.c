@@ -138,7 +138,7 @@ TEST(the_straight_finger_is_the_end)
     struct sim_finger f;
     path.first_s = 100;
     sim_finger_start(&f, &par, &path, NULL, &d, 1);
-    sim_finger_latch(&f, 6);
+    sim_finger_latch(&f, 0, 6);
     for (int n = 1; n <= 5000; n++) {
         sim_finger_advance(&f, n * 1e-4);
         CHECK(
@@ -147,7 +147,7 @@ TEST(the_straight_finger_is_the_end)
     CHECK(f.plant.q_m == 0, "string %.6f m", f.plant.q_m); /* the hand stretches it a little */
     CHECK(
         fabs(f.plant.x_m - 0.005 * 300 / (300 + d.cable_npm)) < 5e-5, "finger %.6f m", f.plant.x_m);
-    sim_finger_latch(&f, 0);
+    sim_finger_latch(&f, f.now_s, 0);
     sim_finger_advance(&f, 2);
     CHECK(fabs(f.plant.x_m - path.start_m) < 0.5e-3, "%.6f m", f.plant.x_m);
 }
@@ -406,8 +406,8 @@ TEST(a_finger_does_what_it_does_alone)
         for (int n = 1; n < 4000; n++) {
             sim_exo_advance(&all, n * 0.0005);
             sim_exo_advance(&one, n * 0.0005);
-            sim_exo_latch(&all, amp);
-            sim_exo_latch(&one, amp);
+            sim_exo_latch(&all, n * 0.0005, amp);
+            sim_exo_latch(&one, n * 0.0005, amp);
             /* The glove cuts its time finer, so the last digits differ, no more. */
             CHECK(fabs(all.finger[i].plant.x_m - one.finger[i].plant.x_m) < 1e-4, "finger %u, %d",
                 i, n);
