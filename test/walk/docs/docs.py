@@ -61,7 +61,8 @@ def documents():
 
 def makefile():
     """Names of targets and of variables."""
-    text = read("Makefile") + "".join(read(p) for p in glob.glob("**/*.mk", recursive=True))
+    text = read("Makefile") + "".join(read(p) for t in TOP # not build/: it may hold a Debian's root
+                                      for p in glob.glob(t + "/**/*.mk", recursive=True))
     heads = re.findall(r"^([^\t#=\n][^=#\n]*?):(?!=)", text, re.M)
     return {t for h in heads for t in h.split()}, set(re.findall(r"\b[A-Z][A-Z0-9_]*\b", text))
 
