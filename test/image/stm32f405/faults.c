@@ -318,7 +318,7 @@ static int is_wrong(const struct seen *s)
     case ENDS_WELL: return !told || !s->acted || (s->ran && !s->on);
     case ENDS_WORDS: return !soon || !told;
     case ENDS_OFF:
-    default: return !soon || (s->ran && !(told && latched));
+    default: return !soon || (s->ran && !(told && latched)) || (k->sign && !s->acted);
     }
 }
 
