@@ -110,9 +110,8 @@ static void see_truth(unsigned f, struct bilateral_sample *s, int touches)
 }
 
 /* 1 while the finger has something to do. */
-static int one_finger(unsigned f)
+static int one_finger(unsigned f, const struct bilateral_signals *sig)
 {
-    const struct bilateral_signals *sig = (const void *)exh_scene_signals(&exh_scene_bilateral);
     struct bilateral_track *t = &run.r->finger[f];
     const struct sim_finger *plant = posix_finger(f);
     const enum sim_path_phase phase = plant->path.phase;
@@ -125,7 +124,7 @@ static int one_finger(unsigned f)
                     : 0,
         phase == SIM_PATH_HOLD, plant->plant.x_m, (double)NAN, (double)NAN};
     if (run.cfg->keep && run.sees) { see_truth(f, &s, s.raw.c && !t->c); }
-    widen(&t->range, &s, sig->more[f].joint_turn_q32, run.r->ticks == 1);
+    if (!run.cfg->bare) { widen(&t->range, &s, sig->more[f].joint_turn_q32, run.r->ticks == 1); }
     if (s.bits & EXH_PRECONTACT_FREEZE) {
         t->freezes++;
         t->scale = ((double)s.raw.q_lim_m_q30 - s.raw.q_m_q30) / -(double)s.raw.d_m_q30;
@@ -134,17 +133,15 @@ static int one_finger(unsigned f)
     t->contacts += s.raw.c && !t->c;
     t->unfrozen += s.raw.c && !(s.bits & EXH_PRECONTACT_STANDS);
     t->c = s.raw.c;
-    t->refused = sig->more[f].refused;
-    if (t->frozen_yet) { t->digest = digest_of(t->digest, &s.raw); }
+    if (t->frozen_yet && !run.cfg->bare) { t->digest = digest_of(t->digest, &s.raw); }
     if (run.cfg->keep) { keep(t, &s); }
     return phase != SIM_PATH_DONE;
 }
 
 /* A device that does not reach RUN makes the experiment invalid, unless another client commands
  * it. */
-static void watch_arming(void)
+static void watch_arming(const struct bilateral_signals *sig)
 {
-    const struct bilateral_signals *sig = (const void *)exh_scene_signals(&exh_scene_bilateral);
     const enum arming is = arming_is(sig->box.state);
     if (run.ran || is == ARMING_GOES_ON || (run.cfg->more && is != ARMING_RUNS)) { return; }
     run.ran = is == ARMING_RUNS;
@@ -157,17 +154,25 @@ static void watch_arming(void)
     }
 }
 
+/* A bare run needs none of those that are made only to be shown. */
+static const struct bilateral_signals *signals(void)
+{
+    const struct exh_scene *sc = &exh_scene_bilateral;
+    const int32_t *values = run.cfg->bare && run.ran ? sc->values : exh_scene_signals(sc);
+    return (const void *)values;
+}
+
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
-    const struct bilateral_signals *sig = (const void *)exh_scene_signals(&exh_scene_bilateral);
+    const struct bilateral_signals *sig = signals();
     int busy = 0;
     dumpfile_after(tick, in, out);
     run.last_tick = tick;
     run.r->ticks++;
-    watch_arming();
+    watch_arming(sig);
     if (!run.sees) { world_line_after(&sig->box); }
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
-        if (run.cfg->board.exo.fingers >> f & 1) { busy |= one_finger(f); }
+        if (run.cfg->board.exo.fingers >> f & 1) { busy |= one_finger(f, sig); }
     }
     if (run.cfg->more) { run.cfg->more->after(tick, in, out); }
     if (!busy && run.done_s < 0) { run.done_s = posix_time_s(); }
@@ -363,9 +368,11 @@ int bilateral_run(const struct bilateral_run_cfg *c, struct bilateral_run *r)
     }
     if (run.logged && r->T.num != 0) { r->lost = exh_log_end(run.last_tick + 1); }
     if (err == 0) {
-        r->box = ((const struct bilateral_signals *)(const void *)exh_scene_signals(
-                      &exh_scene_bilateral))
-                     ->box;
+        const struct bilateral_signals *sig = (const void *)exh_scene_signals(&exh_scene_bilateral);
+        r->box = sig->box;
+        for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
+            r->finger[f].refused = sig->more[f].refused;
+        }
         r->faults = (uint32_t)r->box.faults;
         for (int w = 0; w < SIM_LINK_WAYS; w++) { r->way[w] = posix_link()->way[w].counts; }
         r->frames = run.peer.frames;

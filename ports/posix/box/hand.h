@@ -31,6 +31,7 @@ struct bilateral_run_cfg {
     int32_t session; /* of the controller; 0: of the seed, over UDP of the clock */
     int trial;       /* an experiment with gains: no rule of gains, no fault for chatter */
     int keep;        /* keep samples */
+    int bare;        /* 1: contacts and faults alone, without digests and ranges */
     const struct exh_glove_cal *glove_cal; /* of board.glove_tty; NULL: default */
     const struct images *images;       /* calibrations of fingers; NULL, or none: uncalibrated */
     const char *blackbox;              /* dumps go there (dumpfile.h); NULL: no black box */

@@ -87,7 +87,7 @@ static void take(struct peer *p, const void *buf, size_t len_B)
     if (type == EXH_WIRE_TRACE) { take_trace(p, &in.u.trace); }
     if (type == EXH_WIRE_STATE) {
         p->state = in.u.state;
-        pace_take(&p->pace, &p->state, in.stamp_us);
+        if (p->cfg.world->scene) { pace_take(&p->pace, &p->state, in.stamp_us); } /* its reader */
         p->echo_seq = in.seq;
         p->echo_stamp_us = in.stamp_us;
         p->told = 1;

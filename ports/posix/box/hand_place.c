@@ -14,7 +14,10 @@
 #define SENSORS EXH_GLOVE_SENSORS
 
 /* Nearest. */
-static int32_t fixed(double v, int frac) { return (int32_t)floor(ldexp(v, frac) + 0.5); }
+static int32_t fixed(double v, int frac)
+{
+    return (int32_t)floor(v * (double)(INT64_C(1) << frac) + 0.5);
+}
 
 /* --- the glove --- */
 
@@ -52,23 +55,42 @@ void bilateral_cal_of(struct exh_glove_cal *cal, const struct sim_glove_par *p)
 static const signed char bends[BILATERAL_FINGERS][3] = {
     {1, 2, -1}, {4, 5, 6}, {7, 8, 9}, {11, 12, 13}, {15, 16, 17}};
 
+/* What each call of drawn_out() would find anew. */
+static struct {
+    struct exh_hand_finger hand[BILATERAL_FINGERS];
+    int32_t turn_q32[SENSORS];
+    int pose, set;
+} known;
+
+static void know(int pose)
+{
+    const struct exh_hand_par par = {
+        exh_hand_rows[0].dflt, exh_hand_rows[1].dflt, exh_hand_rows[2].dflt, exh_hand_rows[3].dflt};
+    if (known.set && known.pose == pose) { return; }
+    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
+        (void)exh_hand_setup(&known.hand[f], &exh_hit2_bones[f], &par); /* the defaults are good */
+    }
+    for (int i = 0; i < SENSORS; i++) {
+        known.turn_q32[i] = fixed(sim_pose[pose].deg[i] / 360, 32);
+    }
+    known.pose = pose;
+    known.set = 1;
+}
+
 /* Joints and tip when it has drawn so much string out. */
 static void drawn_out(const struct bilateral_finger_is *w, double x_m,
     int32_t joint_turn_q32[EXH_HAND_JOINTS], struct exh_vec3 *tip_m_q30)
 {
     const double rest = w->arm_m[1] + w->arm_m[2], square = w->arm_m[0] * w->arm_m[0] + rest * rest;
     int32_t turn_q32[SENSORS];
-    const struct exh_hand_par par = {
-        exh_hand_rows[0].dflt, exh_hand_rows[1].dflt, exh_hand_rows[2].dflt, exh_hand_rows[3].dflt};
-    struct exh_hand_finger hand;
-    for (int i = 0; i < SENSORS; i++) { turn_q32[i] = fixed(sim_pose[w->pose].deg[i] / 360, 32); }
+    know(w->pose);
+    memcpy(turn_q32, known.turn_q32, sizeof turn_q32);
     for (int j = 0; j < 3; j++) {
         const double rad = x_m * (j ? rest : w->arm_m[0]) / square;
         if (bends[w->f][j] >= 0) { turn_q32[bends[w->f][j]] = fixed(rad / TWO_PI, 32); }
     }
     exh_hand_joints(&exh_hit2_map, w->f, turn_q32, joint_turn_q32);
-    (void)exh_hand_setup(&hand, &exh_hit2_bones[w->f], &par); /* the defaults are good */
-    exh_hand_tip(&hand, joint_turn_q32, tip_m_q30);
+    exh_hand_tip(&known.hand[w->f], joint_turn_q32, tip_m_q30);
 }
 
 /* The fingertip's way from here to there, as n and how far; m, q30. */

@@ -20,7 +20,8 @@ speed_whole := $(B)/whole/bench/speed
 .PHONY: speed-whole
 speed-whole:
 	@$(MAKE) --no-print-directory B=$(B)/whole O=3 \
-	    CFLAGS="$(CFLAGS) -flto=auto -Wno-maybe-uninitialized" $(speed_whole)
+	    CFLAGS="$(CFLAGS) -fno-pie -no-pie -fno-stack-protector -flto=auto -Wno-maybe-uninitialized" \
+	    $(speed_whole)
 $(bench_bin): $(B)/posix/libexhand.a
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(cli_libs) \

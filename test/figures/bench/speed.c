@@ -55,6 +55,7 @@ static double hand(unsigned fingers, uint32_t max_ticks)
     int err = 0;
     bilateral_defaults(&o);
     o.run.rate_Hz = RATE_HZ;
+    o.run.bare = 1;
     o.run.k_Npm = 20000;
     o.run.b_Nspm = 60;
     o.run.board.exo.fingers = fingers;
