@@ -136,15 +136,21 @@ double sim_glove_volt(const struct sim_glove *g, unsigned i, double t_s)
     return shown_V(g, i, bent_rad(g, i, t_s, NULL, &rests));
 }
 
-/* The same, of a channel without a fault kept. */
+static void keep(struct sim_glove *g, unsigned i, double v)
+{
+    g->volt_V[i] = v;
+    g->moves &= ~(UINT32_C(1) << i);
+}
+
+/* The same; that of a channel at rest and without a fault is kept. */
 static double moved_V(struct sim_glove *g, unsigned i, double t_s, const struct left *now)
 {
+    double v;
     int rests = 1;
     if (g->fault[i] != SIM_GLOVE_WELL) { return sim_glove_volt(g, i, t_s); }
-    g->volt_V[i] =
-        limit(g->at_0_V[i] + bent_rad(g, i, t_s, now, &rests) * g->V_perrad[i], g->par.rail_V);
-    if (rests) { g->moves &= ~(UINT32_C(1) << i); }
-    return g->volt_V[i];
+    v = limit(g->at_0_V[i] + bent_rad(g, i, t_s, now, &rests) * g->V_perrad[i], g->par.rail_V);
+    if (rests) { keep(g, i, v); }
+    return v;
 }
 
 /* The same, where all angles stay or began a straight line so long ago. */
@@ -280,10 +286,11 @@ static void convert(
     for (unsigned i = first; holds; i++, holds >>= 1) {
         double v = g->volt_V[i];
         if (holds & 1) {
-            if (g->fault[i] == SIM_GLOVE_WELL && !(g->sees[i].mask & ~plain)) {
-                v = line_V(g, i, line_s, now.left);
-            } else if (g->fault[i] != SIM_GLOVE_WELL || moves >> i & 1) {
+            if (g->fault[i] != SIM_GLOVE_WELL || (moves >> i & 1 && g->sees[i].mask & ~plain)) {
                 v = moved_V(g, i, i > first ? sim_glove_held_s(&g->par, i, tick_s) : t_s, &now);
+            } else if (moves >> i & 1) {
+                v = line_V(g, i, line_s, now.left);
+                if (!(g->sees[i].mask & ~g->stays)) { keep(g, i, v); }
             }
             before_V = v += (before_V - v) * left;
             if (reads >> i & 1) {
