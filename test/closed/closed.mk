@@ -127,7 +127,7 @@ stress-short:
 	    { grep FAIL $(B)/stress.txt; exit 1; }
 	@echo "stress, short: $$(grep -c '| ok$$' $(B)/stress.txt) cases ok"
 
-# Host programs by other compilers, optimisations and for 32 bits. Nobody debugs them: -g0.
+# Host programs by other compilers, optimisations and for 32 bits. -g0: no debugger needs them.
 v_gcc-O0   := CC=gcc O=0 CFLAGS=-g0
 v_gcc-O3   := CC=gcc O=3 CFLAGS=-g0
 v_clang-O0 := CC=clang O=0 CFLAGS=-g0

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# valgrind.sh EXHAND: short runs of the host program under valgrind, which sees what no sanitizer
-# does: values that nobody set, in every library that is linked. Each run must end with status 0
-# and no report, in its children, too. Exit status: 0 all do, 1 not, 3 there is no valgrind.
+# valgrind.sh EXHAND: short runs of the host program under valgrind. It detects uninitialised values
+# in every linked library, which no sanitizer does. Each run must end with status 0 and no report,
+# in its children, too. Exit status: 0 all do, 1 not, 3 there is no valgrind.
 [ $# = 1 ] || { echo "usage: $0 EXHAND" >&2; exit 2; }
 exhand=$(realpath "$1")
 command -v valgrind >/dev/null || { echo "valgrind: missing: nothing was run" >&2; exit 3; }

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 """kill.py [options] EXHAND LAB WORLD: no file is lost.
 
-Runs every writer of the host programs and ends it at random moments by KILL, INT and TERM in
-turn, then with too little room: by a limit of a file's size, and on a full disk where a small one
-may be mounted. Files of an earlier run stand there every other time. After each end:
+Runs every writer of the host programs and ends it at random moments by KILL, INT and TERM in turn.
+Then it runs them with too little room: by a limit of a file's size, and on a full disk if a small
+one may be mounted. Files of an earlier run are there every other time. After each end:
 - what is at a final name is absent, the old file, or whole by the program's own reader;
 - an old file is not lost; beside the final names KILL alone leaves anything, and .part at most;
 - the exit status is 130 after INT and 143 after TERM, at whatever moment.
@@ -133,7 +133,7 @@ def save(given, _, process):
 
 
 def send(given, folder, process):
-    """A box that sends its log, once somebody listens."""
+    """A box that sends its log as soon as the listener is ready."""
     with open(given["short"], "rb") as f:
         log = f.read()
     while process.poll() is None and "l.exh.part" not in os.listdir(folder):
@@ -221,7 +221,7 @@ class Writer:
                 self.name == "run-turns" and name.startswith("a.exh.") and name[6:].isdigit())
 
     def judge(self, old, killed, how):
-        """What stands at the names, and beside them."""
+        """Checks the files at the names, and beside them."""
         held = files(self.dir)
         for name, data in held.items():
             if self.is_final(name):
@@ -273,12 +273,13 @@ class Writer:
         how = f"files of at most {limit_B} bytes"
         short = {len(d) < limit_B for d in files(self.dir).values() if d not in old.values()}
         fitted = self.name in BY_CLOCK and short == {True}
-        if status not in (1, 2) and not fitted and self.name != "run-save":  # its client is told
+        if status not in (1, 2) and not fitted and self.name != "run-save":  # its client gets it
             fault(self.name, f"{how}: status {status}: {said[-200:]}")
         self.judge(old, False, how)
 
     def on_a_full_disk(self, rng, n):
-        """A disk with too little room, of its own. How many trials; 0: none may be mounted."""
+        """A separate disk with too little room. Returns the number of trials, 0 if none may be
+        mounted."""
         room_B = sum(len(d) for d in self.reference.values())
         done = 0
         for i in range(n):

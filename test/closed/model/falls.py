@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a run of falls gives, by the paper's steps: an analysis of its own.
+"""Results of a run of falls, by the paper's steps: a separate analysis.
 
 A fall is a list of ticks (t, position, monitored force, touching). Standard library only.
 """

@@ -11,7 +11,7 @@
         falls    of these runs impact speed, depth, rest position, contacts of a fall, A, B, r2:
                  each mean beside the model's, two-sided
 
-Work goes to a directory of its own that is removed. Standard library only.
+Work goes to a separate directory that is removed. Standard library only.
 """
 
 import argparse
@@ -38,7 +38,7 @@ SCENE = ("f0", "f0_band", "f_max", "slew_up", "vel_p")
 QUANTITIES = ("impact_m_per_s", "depth_m", "rest_m", "contacts", "ln_a", "ln_b", "r2")
 SEED, RUNS = 1001, 20
 SURE = 4.5  # standard errors
-# What two integrators may differ by: a share of the quantity; ln and r2: as it stands.
+# Allowed difference of two integrators: a share of the quantity. For ln and r2 it is absolute.
 ROOM = {"impact_m_per_s": 0.003, "depth_m": 0.005, "rest_m": 0.005, "contacts": 0.02,
         "ln_a": 0.005, "ln_b": 0.005, "r2": 0.002}
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Small errors of simulator and analysis, planted one at a time: each must be told by its check.
+"""Small errors of simulator and analysis, planted one at a time: its check must detect each.
 
     mutants.py DIR [NUMBER...]    in a copy of the tree in DIR; all, or these
     mutants.py --texts            can each still be planted? (`make gate`)
 
 None of the checks is a digest, and none compares printed digits with a document. Exit status: 0 all
-told, 1 not, or one that cannot be planted. Standard library only; `make gate-mutants`.
+detected, 1 not, or one that cannot be planted. Standard library only; `make gate-mutants`.
 """
 
 import os
@@ -22,7 +22,7 @@ def test(name):
     return ["build/test/sim/%s_test" % name]
 
 
-# source, text in it, what stands there instead, the check, what the check must say
+# source, text in it, its replacement, the check, required text in the check's output
 MUTANTS = [
     ("ports/posix/falls/pairs.c", "FALL_WINDOW / 2]", "FALL_WINDOW / 2 - 1]", GATE,
      "FAIL analysis", "the fifth force of ten"),
@@ -77,7 +77,7 @@ def run(tree, check):
 
 
 def try_one(tree, mutant):
-    """1 unless it is told."""
+    """1 unless it is detected."""
     source, old, new, check, says, what = mutant
     was = planted(tree, source, old, new)
     if was is None:
@@ -121,7 +121,7 @@ def main():
         os.makedirs(os.path.dirname(to), exist_ok=True)
         shutil.copy2(os.path.join(ROOT, name), to)
     failed = 0
-    for check in {tuple(m[3]) for m in some}:  # none fails by itself
+    for check in {tuple(m[3]) for m in some}:  # each passes without an error
         ok = built(tree, list(check)) and run(tree, list(check))[0] == 0
         failed += not ok
         if not ok:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The falling mass, string, motor and loop of docs/DESIGN.md in doubles: a model of its own.
+"""The falling mass, string, motor and loop of docs/DESIGN.md in doubles: a separate model.
 
     T    = max(0, kc (x - q) + bc (v - w)), 0 when x < q
     m v' = m g - T - friction(mu_mass T)

@@ -6,7 +6,7 @@
 
 #define LEN(a) (sizeof(a) / sizeof((a)[0]))
 
-/* A fingertip that is as fast as the string, and known at once and exactly. */
+/* A fingertip as fast as the string, whose position is known exactly and without delay. */
 #define PLAIN "--scale", "1", "--lag", "0", "--noise", "0", "--fps", "100"
 
 static struct said s;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Arming's small pull in the full box: it arms with a hand that is free, and what was exchanged
- * since the calibration refuses it at polarity, at little force, whichever finger it is. */
+/* Arming's small pull in the full box. It arms with a free hand. Anything exchanged since the
+ * calibration makes it refuse at polarity, at a small force, for any finger. */
 #include "check.h"
 
 #include "box/hand.h"
@@ -147,7 +147,7 @@ TEST(what_is_exchanged_refuses_at_polarity)
     }
 }
 
-/* What it is for: without it a box with exchanged leads runs. Both exchanged is not told. */
+/* Without the pull, a box with exchanged leads runs. The pull does not detect two exchanges. */
 TEST(without_it_nothing_is_seen)
 {
     const struct bilateral_box box = arm(MOTOR, EXH_INDEX, 500, 0);

@@ -126,7 +126,7 @@ TEST(a_trace_over_the_link_is_felt_by_nobody)
     bilateral_run_free(&perfect);
 }
 
-/* The other way round: were a plane told later, or another, the trace would differ. */
+/* The reverse: another plane gives another trace. */
 TEST(another_plane_makes_another_force)
 {
     struct bilateral_run_cfg c = plain(1u << EXH_INDEX, 0.87, 1);
@@ -297,8 +297,8 @@ static double slack_mm(const struct bilateral_track *t, size_t i)
                      t->at[0].x_m);
 }
 
-/* A finger that met no wall goes back faster than F0 can follow, and then moves no string in: it
- * must not stay slack, or the next wall is as far too far out. */
+/* A finger that met no wall goes back faster than F0 can follow. Then it moves no string in, and
+ * the string is slack. It must not stay so, or the next wall is as far too far out. */
 TEST(a_slack_string_is_wound_in)
 {
     struct bilateral_run_cfg c = plain(1u << EXH_INDEX, 0.87, 2);

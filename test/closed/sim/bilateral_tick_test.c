@@ -71,7 +71,7 @@ static void planes(void)
     post(&p);
 }
 
-/* Packets of a kind in what goes out. */
+/* Runs a tick. Returns the number of packets of a kind that it sends. */
 static int tick(int glove_new, int type)
 {
     const int codes = tick_n ? drive.dac_raw[F] - par.drive[F].dac_zero_raw : 0;
@@ -197,8 +197,8 @@ static void press(int32_t by_m_q30)
         sig.paper[F].f_des_N_q20);
 }
 
-/* The string's zero has slipped, or the hand has let go of the glove: it pulls, whatever the finger
- * does, until the glove has said for long enough that there is nothing. */
+/* The string's zero has slipped, or the hand has let go of the glove. The string pulls for any
+ * movement of the finger, until the glove has shown for long enough that there is no contact. */
 TEST(a_wall_that_the_glove_denies_does_not_pull_for_ever)
 {
     int n = 0;
@@ -206,7 +206,7 @@ TEST(a_wall_that_the_glove_denies_does_not_pull_for_ever)
     press(EXH_Q(1, 1000, EXH_Q_POS));
     (void)tick(1, 0);
     CHECK(!(sig.more[F].bits & EXH_PRECONTACT_DOUBT), "within the margin");
-    par.precontact[F].d_lim_m_q30 = -EXH_Q(1, 100, EXH_Q_POS); /* now 50 mm are far from it */
+    par.precontact[F].d_lim_m_q30 = -EXH_Q(1, 100, EXH_Q_POS); /* now 50 mm are outside */
     before = sig.paper[F].f_des_N_q20;
     while (sig.paper[F].f_des_N_q20 > EXH_Q(1, 10, EXH_Q_FORCE) && n < 1000) {
         const int64_t most = (int64_t)par.drive[F].slew_down_Nps * (1 << 20) / RATE_HZ;
@@ -258,7 +258,7 @@ TEST(missed_ticks_make_planes_older)
     from_board.missed = 5000;
     tick_n += 5000;
     in.packets = 0;
-    planes(); /* told after the gap: it is new */
+    planes(); /* sent after the gap: it is new */
     (void)tick(1, 0);
     CHECK(phase() == EXH_PRECONTACT_TRACK && sig.box.age == 0, "new");
     from_board.missed = (uint32_t)par.precontact[F].age_max_ms;
@@ -577,7 +577,7 @@ TEST(a_trace_asked_for_again_goes_on_and_ends_as_asked)
     ask_trace(3, 0);
     (void)traced(&t);
     (void)exh_wire_poll(&box.wire.rx, UINT32_MAX, 1);
-    world = (struct exh_wire_tx){4, 0}; /* another world has asked for nothing */
+    world = (struct exh_wire_tx){4, 0}; /* another world has requested nothing */
     hello();
     for (int k = 0; k < 300; k++) { CHECK_EQ_I64(traced(&t), 0); }
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The full box and a world in another process, over UDP. Time is virtual: the controller's ticks
- * lead, the world does a frame when it is told to and is waited for. So a slow machine makes the
- * test slow, and nothing else. */
+/* The full box and a world in another process, over UDP. Time is virtual. The controller's ticks
+ * lead, and the world does a frame on command while the controller waits. So a slow machine makes
+ * the test slow, and nothing else. */
 #include "felt.h"
 
 #include "udp.h"
@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 #define TICKS_A_FRAME 5     /* 400 frames a second at 2 kHz */
-#define PATIENCE_MS   60000 /* for one frame: who needs more hangs */
+#define PATIENCE_MS   60000 /* for one frame; a longer one hangs */
 
 /* ---- The world's process -------------------------------------------------------------------- */
 
@@ -59,7 +59,7 @@ static void one_frame(struct udp *udp, struct peer *peer, struct sim_link *link,
     }
 }
 
-/* A frame for each time that is told, until it is killed or whoever tells has gone. */
+/* A frame for each time that is read, until it is killed or the writer has gone. */
 static void be_world(const struct world_cfg *w, uint32_t session, int told)
 {
     static struct sim_link link;
@@ -204,8 +204,8 @@ TEST(two_processes_survive_each_others_restart)
     bilateral_run_free(&alone);
 }
 
-/* After 0.75 s comes what makes a receiver deaf that only counts on: it is deaf for `quiet` and a
- * HELLO's time, and what is felt later is as ever. */
+/* After 0.75 s come packets that would make a simple receiver deaf for good. This one is deaf for
+ * `quiet` and a HELLO's time, and later contacts are felt as usual. */
 TEST(two_processes_are_not_deaf_for_good)
 {
     struct bilateral_run_cfg c = plain(1u << EXH_INDEX, 0.1, 2);

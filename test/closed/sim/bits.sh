@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# bits.sh DIR LOGS EXHAND...: every EXHAND (other compilers, optimisations, CPUs) must
-# make the same tables and logs as those in LOGS, and replay these bit for bit from
-# the start and from keyframes. Works in DIR; ends with `N passed, N failed`.
-# Environment: JOBS (1), of them at a time; TABLE2, the table of `exhand drop --runs 3`; FAULTS,
-# what `exhand-lab faults --rate 100` says, when it is to be compared, too.
+# bits.sh DIR LOGS EXHAND...: every EXHAND must make the same tables and logs as those in LOGS, and
+# replay these bit for bit from the start and from keyframes. EXHAND are builds by other compilers,
+# optimisations or CPUs. Works in DIR. Ends with `N passed, N failed`.
+# Environment: JOBS (1), of them at a time. TABLE2, the table of `exhand drop --runs 3`. FAULTS, the
+# output of `exhand-lab faults --rate 100`, if it is to be compared, too.
 
 # one EXHAND: what it says, and its `N of N` at the end
 one()

@@ -192,8 +192,8 @@ static size_t one_dump(const char *path)
     return slurp(path, dump, sizeof dump);
 }
 
-/* Any byte but the last words': told, exit status 1 or 2, never 0; the timeline is told all the
- * same. */
+/* A change of any byte but the last record's is reported: exit status 1 or 2, never 0. The timeline
+ * is still printed. */
 TEST(a_damaged_dump_is_told)
 {
     const char *path = log_path(), *dir = said_dir();
@@ -218,7 +218,7 @@ TEST(a_damaged_dump_is_told)
     said_clean(dir);
 }
 
-/* Records with a sound CRC whose payloads are anything: refused or told, nothing worse. */
+/* Records with a valid CRC and random payloads are refused or reported, nothing worse. */
 TEST(forged_records_are_harmless)
 {
     const char *path = log_path(), *dir = said_dir();
@@ -275,7 +275,7 @@ TEST(words_before_and_behind_a_dump_are_no_damage)
     remove(path);
 }
 
-/* The fault that it froze for has to come again, in that tick: a dump that says another is told. */
+/* The fault that froze it must come again, in that tick. A dump with another fault is reported. */
 TEST(another_fault_than_told_is_told)
 {
     const char *path = log_path(), *dir = said_dir();
@@ -420,8 +420,7 @@ TEST(the_header_has_the_parameters_of_the_fault)
     remove(path);
 }
 
-/* A box that ends for another reason: what it held is there all the same; a run that ends well has
- * none. */
+/* A box that ends for another reason still leaves its dump. A run that ends well leaves none. */
 TEST(a_halted_box_can_be_read)
 {
     const char *path = log_path();

@@ -61,7 +61,7 @@ static double taken_s(const struct sim_device *d, double ref_A, double at_s, dou
     return at_s - lo;
 }
 
-/* a step of the D/A code in a run of its own */
+/* a step of the D/A code in a separate run */
 struct step {
     uint32_t rate_Hz, tick; /* when it is written */
     double delay_tick, delay_s;

@@ -26,7 +26,7 @@ static int split(char *line, const char *word[17])
     return n;
 }
 
-/* more: an option besides, or NULL. */
+/* more: one more option, or NULL. */
 static void run(const char *line, size_t len, const char *more)
 {
     static const char program[] = "$ exhand ";

@@ -351,7 +351,7 @@ TEST(a_known_mass_gives_kf)
     }
     {
         struct bringup_run_cfg c = config(2);
-        c.wrong = BRINGUP_SLIPPED; /* nothing hangs on it: it runs in */
+        c.wrong = BRINGUP_SLIPPED; /* without a mass: it runs in */
         CHECK_EQ_I64(run_stage(c, 4, 0, shown_before(4, 0), mass[0]), 0);
         CHECK(r.result == EXH_PROBE_TRAVEL && r.unsafe == 0 && r.most_A < 0.4492, "%s",
             bringup_result_text(r.result));

@@ -273,7 +273,7 @@ TEST(the_full_box_needs_one_for_every_finger_in_use)
     }
 }
 
-/* A finger's own is told by its place in the list; one damaged, and none is used. */
+/* A bad finger is named by its place in the list. If one is damaged, none is used. */
 TEST(one_of_five_that_is_refused_refuses_all)
 {
     const struct exh_scene *sc = &exh_scene_bilateral;
@@ -407,7 +407,7 @@ static uint32_t slurp(const char *path, uint8_t *to, size_t cap_B)
     return (uint32_t)n;
 }
 
-/* The file that was 22 N where a person had asked for 0.67 N. */
+/* The file that gave 22 N for a limit of 0.67 N. */
 TEST(a_forged_file_is_refused_by_every_command)
 {
     static const struct {

@@ -142,8 +142,8 @@ TEST(what_is_refused_is_named)
     said_clean(dir);
 }
 
-/* A mass that is typed wrong, at each place of the list, too light and too heavy: it is named, by
- * its step or by its residual, and nothing is written. */
+/* A mistyped mass at each place of the list, too light and too heavy. It is named, by its step or
+ * by its residual, and nothing is written. */
 TEST(a_mistyped_mass_is_named)
 {
     static const struct {
@@ -174,8 +174,7 @@ TEST(a_mistyped_mass_is_named)
     said_clean(dir);
 }
 
-/* A motor's constant does not change by half: what is there is not replaced by what is far from it.
- */
+/* A motor's constant does not change by half: an image is not replaced by a very different one. */
 TEST(the_last_image_is_asked)
 {
     char *dir = said_dir();

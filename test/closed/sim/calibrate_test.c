@@ -2,8 +2,8 @@
 /* The calibration on the simulated bench: what it finds is the device's, within bounds on
  * both sides, and whatever is wrong at the bench stops it before it is dangerous.
  *
- * A mass lifts at kf i = fc + (1 + a) m g / (1 - b) and sinks at (1 - a) m g / (1 + b) - fc
- * (a: mu_motor, b: mu_mass, fc: coulomb). The middle is m g (1 + a b) / (1 - b^2): kf is
+ * A mass lifts at kf i = fc + (1 + a) m g / (1 - b) and sinks at (1 - a) m g / (1 + b) - fc. Here a
+ * is mu_motor, b is mu_mass and fc is coulomb. The middle is m g (1 + a b) / (1 - b^2). So kf is
  * found as kf (1 - b^2) / (1 + a b), 2.4 % low with the committed device. */
 #include "said.h"
 
@@ -265,7 +265,7 @@ TEST(ended_before_its_end_is_no_calibration)
         "after %" PRIu32 " ticks", last);
 }
 
-/* The person hangs on other masses than said: the table does not rise there. */
+/* The masses are exchanged: the table does not rise there. */
 TEST(exchanged_masses_are_refused_by_table_and_point)
 {
     static const double said_kg[] = {0.1, 0.2, 0.22, 0.5}, hung_kg[] = {0.1, 0.22, 0.2, 0.5};

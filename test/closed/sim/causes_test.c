@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Causes of faults that are the box's: supply, glove, link; each told when it should be, not
- * before, and not at all where nobody asked. Of one finger's scenes: supply, and memory that
- * changed. */
+/* Causes of faults of the box: supply, glove, link. Each is reported in time, not earlier, and not
+ * at all if it is off. With one finger's scenes: supply, and memory that changed. */
 #include "check.h"
 
 #include "box/hand.h"
@@ -33,7 +32,7 @@ static void begin(const struct exh_scene *sc, struct exh_scene_board board)
     (void)board;
 }
 
-/* Until it runs: before the first planes the link is a cause, where it is asked for. */
+/* Until it runs: before the first planes the link is a cause, if link_time is set. */
 static void before(uint32_t tick, struct exh_scene_in *in)
 {
     const struct bilateral_signals *sig = (const void *)exh_scene_signals(&exh_scene_bilateral);
@@ -116,7 +115,7 @@ TEST(a_sensor_that_is_not_believed_is_a_fault_after_its_time)
     wrong.dead_s = 1.2;
     CHECK_EQ_I64(faults("glove_time", 0.5 * 1000, "link_time", 0, 1e30), EXH_FAULT_GLOVE);
     told_at(8, 1.7015, 1.7025); /* its frame comes a tick later, and then 501 ticks */
-    CHECK_EQ_I64(faults("glove_time", 0, "link_time", 0, 1e30), 0);    /* nobody asked */
+    CHECK_EQ_I64(faults("glove_time", 0, "link_time", 0, 1e30), 0);    /* off */
     CHECK_EQ_I64(faults("glove_time", 5000, "link_time", 0, 1e30), 0); /* not yet */
 }
 
@@ -146,7 +145,7 @@ TEST(a_glove_that_is_silent_for_longer_than_an_age_can_tell)
     CHECK_EQ_I64(s.unsure_ticks, 3);
 }
 
-/* A silent world is no fault: contacts are local. Who wants one says so. */
+/* A silent world is no fault, because contacts are local. link_time makes it one. */
 TEST(a_silent_link_is_a_fault_where_it_is_asked_for)
 {
     all_is_well();

@@ -135,7 +135,7 @@ TEST(the_default_is_softened)
     }
 }
 
-/* From the command line or an image; staged by a register; asked for over the link. */
+/* From the command line or an image, staged by a register, or requested over the link. */
 TEST(a_material_outside_is_refused_by_name)
 {
     static const struct approach outside[] = {{2000, 24001, 60, 0.87, 2, 1},

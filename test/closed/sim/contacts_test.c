@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A slice of `make contacts`: every scene by every finger at natural speed over a bad link; and
- * that the command tells when something is missed. */
+/* A slice of `make contacts`: every scene by every finger at natural speed over a bad link. The
+ * command must report a missed contact. */
 #include "check.h"
 
 #include "said.h"

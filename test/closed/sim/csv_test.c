@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What is made of a log, csv and replay: nothing is lost by a slip of the hand, nothing
- * damaged passes unsaid, and Table II can be made again from the CSVs alone. */
+/* Logs through csv and replay: a wrong command loses nothing, damage is always reported, and Table
+ * II can be made again from the CSVs alone. */
 #include "said.h"
 
 #include "falls/analysis.h"
@@ -25,7 +25,7 @@ static struct {
     size_t falls;
 } csv;
 
-/* A gap in time is all that tells two falls apart. */
+/* Only a gap in time separates two falls. */
 static void read_csv(const char *path, double T_s)
 {
     char line[256];

@@ -67,7 +67,7 @@ TEST(the_state_says_which)
         (void)ticks(0, 60, &at);
         CHECK(ticks(HELD, 200, &at) == row[i].want, "state %u", row[i].state);
     }
-    start(&blind, 1000, EXH_STATE_FAULT); /* nobody knows */
+    start(&blind, 1000, EXH_STATE_FAULT); /* the state is unknown */
     CHECK_EQ_I64(ticks(0, 60, &(unsigned){0}), EXH_CMD_NONE);
     CHECK_EQ_I64(ticks(HELD, 200, &(unsigned){0}), EXH_CMD_RUN);
 }

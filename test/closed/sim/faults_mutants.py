@@ -1,17 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Mutants of the library's safety that `exhand-lab faults` must tell: errors planted one at a time.
+"""Mutants of the library's safety that `exhand-lab faults` must detect: errors planted one at a
+time.
 
-Each row: source, a text in it, what stands there instead, what is asked of exhand-lab faults
-(TABLE: the table at one rate; TIMES: so many random times), the promise that it breaks. The changed
-source is linked before the library, and exhand-lab faults must end with status 1 and a WRONG, which
-is printed with V=1.
+Each row: source, a text in it, its replacement, the arguments of exhand-lab faults, the promise
+that it breaks. The arguments are TABLE: the table at one rate, or TIMES: so many random times. The
+changed source is linked before the library. exhand-lab faults must end with status 1 and a WRONG,
+which is printed with V=1.
 
     faults_mutants.py [--some N] [--seed S] OBJECTS... LIBRARIES...
 
-CC: the compiler (cc); --some N: every Nth, as the seed deals them
+CC: the compiler (cc). --some N: every Nth, as the seed chooses them.
 
-Exit status: 0 all told, 1 not, or one that cannot be planted; 2 bad usage.
+Exit status: 0 all detected, 1 not, or one that cannot be planted; 2 bad usage.
 """
 
 import argparse
@@ -102,7 +103,7 @@ def plant(where, source, old, new):
 
 
 def told(mutant, link):
-    """The WRONG that tells it, '' for none, or raises ValueError."""
+    """The WRONG of this mutant, '' for none, or raises ValueError."""
     source, old, new, asked, _ = mutant
     with tempfile.TemporaryDirectory() as where:
         exe, obj = os.path.join(where, "exhand"), os.path.join(where, source + ".o")

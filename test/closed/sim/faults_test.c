@@ -106,8 +106,8 @@ static void judge_zero(uint32_t rate_Hz, uint32_t told_by)
     CHECK(z.seen.zero_s > 0.008 && z.seen.zero_s < 0.030, "%g s", z.seen.zero_s);
 }
 
-/* Nothing is asked for, and the motor pulls by a zero that is none, until tracking tells or the
- * guard comes by, whichever is earlier. Nothing else is wrong. */
+/* No force is commanded, and the motor pulls by the damaged zero. It ends when tracking or the
+ * guard reports it, whichever is earlier. Nothing else is wrong. */
 TEST(a_damaged_zero_of_the_da_pulls_until_it_is_told)
 {
     judge_zero(200, EXH_FAULT_TRACKING);
@@ -131,8 +131,8 @@ static void damage_idle(void *ctx, uint32_t tick, const struct faults_view *v)
     posix_stop();
 }
 
-/* Its code is no zero, its drive stays disabled: no motor but the index's has a current. The guard
- * tells it; on cards the driver does, at once, and the run has ended safe. */
+/* Its code is no zero, but its drive stays disabled: only the index's motor has a current. The
+ * guard reports it. On cards the driver does so immediately, and the run has ended safe. */
 TEST(a_damaged_zero_of_an_idle_finger_pulls_nothing)
 {
     for (int cards = 0; cards < 2; cards++) {

@@ -83,7 +83,7 @@ TEST(a_fifo_that_has_its_other_end_is_a_file)
     said_clean(dir);
 }
 
-/* No log, for it can't be read twice: told at once. */
+/* A FIFO is no log, because it can't be read twice. This is reported immediately. */
 TEST(a_fifo_is_no_log)
 {
     const char *dir = said_dir(), *fifo = said_path(dir, "fifo");

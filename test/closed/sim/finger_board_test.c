@@ -273,7 +273,7 @@ static void follow_glove(unsigned mask, double interval_s)
                 lag_by(&l[b], rad, h);
             }
         }
-        if (n < 400 || n % every || n % 4000 < 1000) { continue; } /* now and then nobody asks */
+        if (n < 400 || n % every || n % 4000 < 1000) { continue; } /* now and then no read */
         CHECK_EQ_I64(exh_board_read_glove(&in), 0);
         CHECK_EQ_I64(in.age_ticks, 0);
         for (unsigned b = 0; b < BENDS; b++) {
@@ -341,8 +341,8 @@ static int32_t law(const struct sim_device *d, uint32_t enc, uint32_t before, do
     return (int32_t)(F / d->kf_npa * d->dac_perA);
 }
 
-/* Five at once, at each of the three speeds: they stop at the wall, press as hand and wall
- * share the way, and nobody is pulled before it. */
+/* Five fingers together, at each of the three speeds. They stop at the wall, press as hand and wall
+ * share the way, and none is pulled before it. */
 TEST(a_wall_stops_five_fingers_at_once)
 {
     static const char *const name[] = {"slow", "natural", "fast"};

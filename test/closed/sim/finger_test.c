@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Finger and path against closed form and against what was asked for. References in long
- * double, by series. */
+/* Finger and path against closed form and against the commands. References in long double, by
+ * series. */
 #include "check.h"
 
 #include "sim/exo.h"

@@ -29,8 +29,8 @@ static int rests(const struct sim_device *d, double rate_Hz, double k, double b,
     return n;
 }
 
-/* The device was fitted so that 95 % of falls come to rest at the paper's points; twice their gains
- * do not, nor do they without friction where the linear test says so. */
+/* The device was fitted so that 95 % of falls come to rest at the paper's points. At twice the
+ * gains they do not. Without friction they do not either, as the linear test predicts. */
 TEST(the_papers_points)
 {
     static const double row[][3] = {{90, 1500, 0}, {100, 2000, 0}, {200, 2000, 15}, {500, 6000, 20},
@@ -498,7 +498,8 @@ TEST(bad_usage_is_named)
     said_clean(dir);
 }
 
-/* A map of two rays with one unstable node inside: by area, which is gain squared, and told. */
+/* A map of two rays with one unstable node inside: shares by area, which is gain squared, and the
+ * node is reported. */
 TEST(a_map_is_judged)
 {
     char *dir = said_dir(), path[300];

@@ -77,7 +77,7 @@ TEST(a_board_without_a_glove_stops_the_loop)
     c.glove = 0;
     posix_configure(&c);
     CHECK_EQ_I64(exh_loop(&s, 0, NULL), -EXH_E_ABSENT);
-    CHECK_EQ_I64(seen.ticks, 1); /* the last one, which is told of the failure */
+    CHECK_EQ_I64(seen.ticks, 1); /* the last one, which gets the failure */
 }
 
 TEST(a_scene_that_names_no_glove_gets_none)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand calibrate --glove: what is true of the simulated glove is found back, what is wrong
- * is told by name, and files come in and go out. */
+/* exhand calibrate --glove finds the simulated glove's parameters again, names what is wrong, and
+ * reads and writes files. */
 #include "said.h"
 
 #include "glove/poses.h"

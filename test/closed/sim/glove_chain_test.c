@@ -539,8 +539,8 @@ TEST(codes_hang_on_the_seed_alone)
     CHECK(other > 90, "%d", other);
 }
 
-/* What is kept of a channel that stands still is what would be worked out anew: behind movements,
- * for neighbours that see them, for joints that follow others, and behind a fault. */
+/* The values kept for a channel at rest equal those of a new computation. After movements, for
+ * neighbours that see them, for joints that follow others, and after a fault. */
 TEST(what_is_kept_is_what_is_so)
 {
     struct sim_glove_par p = clean();

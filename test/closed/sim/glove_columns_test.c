@@ -25,7 +25,7 @@ static void end(void)
     said_clean(dir);
 }
 
-/* What the two plain rows give, for all that is read otherwise to compare with. */
+/* The output of the two plain rows, to compare with other ways of reading them. */
 static const char *plain(void)
 {
     static char text[SAID_B];
@@ -116,8 +116,8 @@ TEST(no_row_is_lost_or_shifted)
     end();
 }
 
-/* No number is the fault of its own channel, not of one that it pulls along: of four frames three
- * make it one. */
+/* A text that is no number is a fault of its channel, not of one that depends on it. Three of four
+ * frames make it one. */
 TEST(no_number_is_no_fault_of_a_neighbour)
 {
     static struct exh_glove_cal cal;

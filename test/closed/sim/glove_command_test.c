@@ -132,7 +132,7 @@ TEST(units_are_guessed_or_told)
     CHECK(s.status == 2 && strstr(s.err, "--unit: radians: give codes, rad, deg or turn"), "%s",
         s.err);
     said(&s, dir, lab_glove, WORDS("glove", "--csv", csv, "--rate", "200", "--deg"));
-    CHECK(s.status == 0, "as codes: %d: %s", s.status, s.err); /* through nobody's calibration */
+    CHECK(s.status == 0, "as codes: %d: %s", s.status, s.err); /* through no user's calibration */
     CHECK(number_after(s.out, "\n0", 4) > 28 && number_after(s.out, "\n0", 4) < 29.5, "%s", s.out);
     said_clean(dir);
 }
@@ -176,7 +176,7 @@ TEST(angles_pass_a_calibration_and_back)
     said_clean(dir);
 }
 
-/* What comes out goes in again and comes out the same: a fixed point of the quantizer. */
+/* The output is also an input, and comes out the same: a fixed point of the quantizer. */
 TEST(its_own_output_is_an_input)
 {
     static char first[SAID_B], text[SAID_B];
@@ -247,7 +247,7 @@ TEST(a_real_recording_comes_through)
     said_clean(dir);
 }
 
-/* 30 Hz of low-pass do not fit 60 Hz: it goes down and says so; asked for, it is refused. */
+/* 30 Hz of low-pass do not fit 60 Hz: it goes down and says so. As an option, 30 Hz is refused. */
 TEST(the_low_pass_fits_the_rate)
 {
     const char *dir = said_dir();

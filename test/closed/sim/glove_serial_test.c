@@ -33,7 +33,7 @@ static struct {
     char link[64]; /* the device's name: goes on when the terminal behind it does not */
     struct emu_cyber glove;
     int open;
-    unsigned told, rounds; /* bytes of commands it has had; what the other end had told before it */
+    unsigned told, rounds; /* bytes of commands it has had; what the other end had read before it */
     void (*at)(uint64_t tick); /* what happens; NULL: nothing */
     int fixed;                 /* its samples stay as they are */
     uint64_t from_ns;          /* its clock's 0, where it has this machine's */
@@ -366,7 +366,7 @@ TEST(the_box_takes_its_silence_for_a_lost_glove)
 /* ---- The command --------------------------------------------------------------------------------
  */
 
-/* In a process of its own, this one being the glove until it ends. */
+/* In a separate process. This one is the glove until it ends. */
 static void command_of(
     struct said *s, const char *dir, int (*run_it)(int, char **), const char *const *word)
 {
@@ -386,7 +386,7 @@ static void command_of(
         }
         if (n > 0 && write(far.tty.master, byte, (size_t)n) != n) {
             break;
-        } /* nobody reads it any more */
+        } /* no reader any more */
     }
     said_end(s, dir, pid);
 }
@@ -428,7 +428,7 @@ TEST(the_command_writes_rows_or_a_log)
     said_clean(dir);
 }
 
-/* The glove is the box's; that no frame comes is the box's fault, and told. */
+/* The box has the glove. If no frame comes, that is the box's fault, and is reported. */
 TEST(a_box_that_goes_on_has_it_for_its_glove)
 {
     static struct said s;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* --gpio on the command line: what is refused before any line is asked for. Tests are linked
- * without libgpiod, whatever the machine has. */
+/* --gpio on the command line: errors that are refused before any line is requested. Tests are
+ * linked without libgpiod on any machine. */
 #include "said.h"
 #include "lab/lab.h"
 

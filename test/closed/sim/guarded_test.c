@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Scene guarded in closed loop with the simulated device: what no contact may give out, at gains
- * far beyond the stable border; what is taken away at gains that are stable; its log replays. */
+/* Scene guarded in closed loop with the simulated device. No contact may give out energy at gains
+ * far beyond the stable border. Little is taken away at gains that are stable. Its log replays. */
 #include "logs.h"
 
 #include "box/table2.h"

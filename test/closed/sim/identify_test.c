@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand identify: what is found is the device, what does not fit is told, its file is read back
- * and damaged ones are refused by line, and the advisor takes it. */
+/* exhand identify finds the device and reports data that does not fit. Its file is read back, and
+ * damaged ones are refused by line. The advisor takes it. */
 #include "advise/gains.h"
 #include "base/assign.h"
 #include "file_of.h"
@@ -96,9 +96,9 @@ TEST(a_stiff_string_on_a_light_rotor_is_told_apart)
     is_found(&e, &truth);
 }
 
-/* A square wave through the resonance of a string that hardly brakes: it slackens and strikes, and
- * its motion then depends on the instant at which the drive took each command. The stiff string
- * also fits with another number of whole cycles. */
+/* A square wave through the resonance of a string that hardly brakes: it slackens and strikes. Then
+ * its motion depends on the instant at which the drive took each command. The stiff string also
+ * fits with another number of whole cycles. */
 TEST(a_string_that_slackens_is_told_apart)
 {
     static const double value[2][LEN(row_name)] = {
@@ -126,8 +126,8 @@ TEST(a_string_that_slackens_is_told_apart)
     }
 }
 
-/* Of the known mass come newton and kilogram: what hangs there is less, and all that has one of
- * these in it comes out more; metre and second do not, and no residual tells. */
+/* Newton and kilogram come from the known mass. If the true mass is less, all values with one of
+ * these units come out larger. Metre and second do not change, and no residual shows it. */
 TEST(a_wrong_mass_scales_what_has_a_newton_in_it)
 {
     static const int newton[MODEL_PARS] = {1, 1, 1, 0, 1, 0, 1, 1, 0, 0, 0};

@@ -136,8 +136,7 @@ TEST(what_is_not_run_is_what_running_gives)
         stable, unstable, marginal, 100.0 * (double)known / (double)all);
 }
 
-/* A mass that stands while something goes on behind it, or a controller in which more than usual
- * does. */
+/* A mass at rest while a hidden process goes on, or a controller that does more than usual. */
 TEST(what_still_happens_at_rest_is_run)
 {
     static const struct {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* No order of packets makes a step of force. One finger of the scene, moved at random, is told at
- * random: early, late, not at all, of two objects, of what cannot be, by peers that start anew,
- * with faults between. Its force may rise by what the finger itself does to a wall that stands, and
- * by no more than late_slew where a plane came too late. */
+/* No order of packets makes a step of force. One finger of the scene moves at random and gets
+ * planes at random: early, late, none, of two objects, invalid, from peers that start anew. Faults
+ * come between. Its force may rise as the finger's movement into a fixed wall makes it rise. It may
+ * rise by no more than late_slew if a plane came too late. */
 #include "check.h"
 
 #include "bilateral/bilateral.h"
@@ -27,7 +27,7 @@ static struct bilateral_cfg cfg;
 static struct bilateral_par par;
 
 static struct {
-    double z_m, v_mps; /* of the fingertip; the string runs out as it goes down */
+    double z_m, v_mps; /* of the fingertip; the string runs out on the way down */
     double force_N;
     int told_free; /* since the box pulls and the peer is the one it is */
     int late;      /* the contact there is was late, and its force has not come to the law's */
@@ -59,8 +59,7 @@ static void set_up(void)
     is.z_m = WALL_M + real_in(-0.01, 0.03);
 }
 
-/* What the world says in this tick, if anything; a plane may be of a moment long ago, or of an
- * object that stands elsewhere. */
+/* The world's plane of this tick, if any. It may be old, or of an object in another place. */
 static void tell(void)
 {
     struct exh_plane p = {EXH_PLANE_HIT, 0, 1, {0, 0, 1 << 30}, {0, 0, 0}};
@@ -118,7 +117,7 @@ static void feel(const struct exh_permit *permit)
         CHECK(is.told_free && is.v_mps < -0.0099 && permit->mode == EXH_PERMIT_OPEN,
             "late, but it never must: told free %d, %g m/s", is.told_free, is.v_mps);
     }
-    /* What a wall that stands does to a finger that comes: k v T, and the damper's share. F0 where
+    /* The rise at a fixed wall for an approaching finger: k v T, and the damper's share. F0 where
      * it begins to act. */
     may_N = is.late ? (double)par.precontact[F].late_slew_Nps / RATE_HZ
                     : K_NPM * down_mps / RATE_HZ + B_NSPM * (2 * SPEED) + 0.2;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The board's link functions: a peer in this process in virtual time, and one in another
- * process over UDP, either of which may come, go and come again in any order. */
+/* The board's link functions. One peer is in this process in virtual time, one in another process
+ * over UDP. Either may come, go and come again in any order. */
 #include "check.h"
 
 #include "posix.h"
@@ -100,8 +100,8 @@ TEST(a_link_that_is_off_takes_nothing)
     CHECK_EQ_I64(exh_board_link_recv(buf, sizeof buf), 0);
 }
 
-/* The answer is there after both ways, on the next tick; a peer with frames answers the newest of
- * what has arrived, so they cost no age but that to the frame. */
+/* The answer comes after both ways, on the next tick. A peer with frames answers the newest packet
+ * that arrived, so old packets add no age but that to the frame. */
 TEST(a_peer_in_this_process_answers_in_virtual_time)
 {
     static const struct {

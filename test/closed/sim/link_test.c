@@ -32,7 +32,7 @@ static double root_of(double v)
     return r;
 }
 
-/* Takes what has arrived by t_s, checks that it had not by a moment before. */
+/* Takes the packets that arrived by t_s, and checks that they had not a moment before. */
 static void take(struct sim_link_way *w, double t_s)
 {
     for (double next_s; (next_s = sim_link_next_s(w)) <= t_s;) {

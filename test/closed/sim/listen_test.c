@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand listen: pieces of a log that come late, twice, never, or from who is not the box. */
+/* exhand listen: pieces of a log that come late, twice, never, or from another sender. */
 #include "check.h"
 
 #include "base/cli.h"
@@ -215,7 +215,7 @@ TEST(silence_ends_it_and_is_told)
     CHECK(got_B == 5 * PIECE, "%zu bytes", got_B);
 }
 
-/* The end was told, but a log ends with a record. */
+/* The end was announced, but a log ends with a record. */
 TEST(an_end_is_a_record)
 {
     start(0);
@@ -350,7 +350,7 @@ TEST(bad_usage)
     CHECK_EQ_I64(call(4, who), 2);
 }
 
-/* What a piece is to who has this key, or none. */
+/* The meaning of a piece for a reader with this key, or with none. */
 static enum stream_is is_to(const uint8_t *piece, size_t len_B, const struct exh_mac_key *key)
 {
     struct stream_piece p;

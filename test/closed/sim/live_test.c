@@ -133,7 +133,7 @@ static long number_before(const char *text, const char *words)
     return strtol(at, NULL, 10);
 }
 
-/* Runs for a time, stands still for a time, runs to its end. */
+/* Runs for a time, is stopped for a time, runs to its end. */
 static void stopped_for(pid_t pid, struct timespec runs, struct timespec stands)
 {
     nanosleep(&runs, NULL);

@@ -334,7 +334,7 @@ static void put_long(int fd, const struct sockaddr_in *to)
     }
 }
 
-/* What came from the right place and is no world's, and what came from elsewhere. */
+/* Packets from the right place that no world sends, and packets from elsewhere. */
 TEST(packets_that_are_no_worlds_are_said_and_counted)
 {
     char *dir = said_dir();
@@ -390,7 +390,7 @@ TEST(bad_addresses_and_other_scenes_are_refused)
     said_clean(dir);
 }
 
-/* 0.04 m of string and back, at a wall that stands at 0.03 m. */
+/* 0.04 m of string and back, at a fixed wall at 0.03 m. */
 TEST(a_recording_is_played_again_and_again)
 {
     const char *const file = file_of("0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A log of whole runs: reads, replays bit for bit, and tells damage, loss and forgery. */
+/* A log of whole runs: reads, replays bit for bit, and shows damage, loss and forgery. */
 #include "logs.h"
 
 #include "base/logfile.h"
@@ -109,8 +109,8 @@ TEST(a_whole_log_reads_and_replays)
     remove(path);
 }
 
-/* With room for all, with so little for what waits that the rest of a keyframe goes at once, and
- * with none for the copy. */
+/* With room for all. With so little room that the rest of a keyframe is written immediately. With
+ * no room for the copy. */
 TEST(a_log_that_is_spread_over_ticks_has_the_same_bytes)
 {
     static uint8_t record[EXH_LOG_RECORD_B], held[8192];
@@ -250,8 +250,8 @@ TEST(a_cut_log_is_reported)
     remove(path);
 }
 
-/* A keyframe with a sound CRC and wrong content: wrong parameters are refused, a wrong
- * state is brought into its ranges and told by what comes out. */
+/* A keyframe with a valid CRC and wrong content. Wrong parameters are refused. A wrong state is
+ * brought into its ranges, and the outputs show it. */
 static void forge_keyframe(size_t sound_B)
 {
     const char *path = log_path();

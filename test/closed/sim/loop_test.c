@@ -176,7 +176,7 @@ static void run_until(
     CHECK_EQ_I64(exh_params_stage(exh_scene_drop.params, ID_ARM, 0, 1), 0);
     CHECK_EQ_I64(exh_params_stage(exh_scene_drop.params, ID_RAMP, 0, 1), 0);
     CHECK_EQ_I64(exh_params_stage(exh_scene_drop.params, ID_UNCALIBRATED, 0, 1), 0);
-    CHECK_EQ_I64(exh_params_stage(exh_scene_drop.params, ID_TUNE, 0, 0), 0); /* all at once */
+    CHECK_EQ_I64(exh_params_stage(exh_scene_drop.params, ID_TUNE, 0, 0), 0); /* no slew */
     CHECK_EQ_I64(late_loop(&exh_scene_drop, 1000, &hooks), want);
     CHECK_EQ_I64(exh_log_end(script.ticks), 0);
     CHECK_EQ_I64(fclose(c.log), 0);
@@ -362,7 +362,7 @@ static void cause(struct act what, int32_t fault)
         {64, COMMAND, 0, EXH_CMD_RUN, 0},
         {70, STAGE, ID_Q_LIM, -EXH_Q(20, 1000, EXH_Q_POS), 0},
     };
-    /* A lost position stays a cause; the others are gone at once. */
+    /* A lost position stays a cause. The others end with their cause. */
     const int lost = fault == EXH_FAULT_ENCODER;
     const uint32_t gone = fault & (int32_t)EXH_FAULT_CUT ? 30 : 30 + RELEASED - 1;
     const char *path = log_path();
@@ -444,8 +444,8 @@ static void last_frames(const char *path, struct exh_drive_in in[2])
     logfile_close(&l);
 }
 
-/* A board that fails ends the run, by a tick more: the scene and its log have the cause, the
- * outputs are safe before, and nothing of that tick goes out. */
+/* A board that fails ends the run after one more tick. The scene and its log have the cause, the
+ * outputs are safe before, and nothing of that tick is written. */
 TEST(a_card_that_fails_is_seen_by_one_last_tick)
 {
     static const struct act row[] = {{30, NO_READ, 0, 0, 0}, {30, NO_WRITE, 0, 0, 0}};

@@ -28,7 +28,7 @@ static void ask_and_never_read(modbus_t *bad)
     }
 }
 
-/* Others are answered on, and the program ends when told. */
+/* Other clients still get answers, and the program ends on command. */
 TEST(a_client_that_fetches_no_answer)
 {
     struct rig r;

@@ -50,7 +50,7 @@ static int open_server(void)
     const int on = 1;
     struct sockaddr_in at = {.sin_family = AF_INET};
     int port, s = -1;
-    /* A port of its own choice is only told on standard output: try some. */
+    /* The server prints a free port on standard output only: try some ports. */
     for (port = 20000 + (int)(getpid() % 20000); s != 0 && port < 65536; port += 7) {
         char where[64];
         snprintf(where, sizeof where, "tcp:127.0.0.1:%d", port);
@@ -125,7 +125,7 @@ static void put16(uint8_t *p, uint32_t v)
     p[1] = (uint8_t)(v & 0xFF);
 }
 
-/* Registers to be written: what stands there, mostly, some bits of it changed; or anything. */
+/* Registers to write: mostly their present values, with some bits changed, or anything. */
 static void some_registers(uint8_t *to, uint32_t at, uint32_t n)
 {
     const int as_it_is = below(4) != 0 && exh_regs_read(&ours.r, EXH_REGS_HOLDING, (uint16_t)at,

@@ -10,7 +10,7 @@
 
 #define SIGNALS 62 /* of bilateral: what one request can have */
 
-/* Reads as fast as it goes, until it is killed. */
+/* Reads as fast as possible, until it is killed. */
 static pid_t hammer(int port)
 {
     const pid_t pid = fork();

@@ -186,7 +186,7 @@ TEST(every_register_there_and_back)
         uint8_t bit[192];
         struct rig r;
         close(mkstemp(log));
-        /* let go as soon as it was gripped: it stays OFF, and values stand */
+        /* let go as soon as it was gripped: it stays OFF, and values are constant */
         rig_start(&r, WORDS("run", "--scene", sc->name, "--pace", "--rate", "500", "--let-go",
                           "0.001", "--log", log, "--modbus", "tcp:127.0.0.1:0", "--modbus-write"));
         rig_sleep(0.2);

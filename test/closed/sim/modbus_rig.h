@@ -97,7 +97,7 @@ static inline void rig_start(struct rig *r, const char *const *word)
     r->c = rig_client(r->port);
 }
 
-/* As by Ctrl-C, unless it has ended by itself. */
+/* Ends it as by Ctrl-C, unless it has already ended. */
 static inline void rig_end(struct rig *r, int status)
 {
     modbus_close(r->c);

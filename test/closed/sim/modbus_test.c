@@ -55,7 +55,7 @@ TEST(over_a_serial_line)
     CHECK(modbus_read_input_registers(c, 0, 6, word) == -1 && errno == ETIMEDOUT,
         "answered for another");
     rig_sleep(
-        0.6); /* libmodbus waits so long for the other's answer, and takes what comes for that */
+        0.6); /* libmodbus waits so long for the other's answer, and takes any answer for it */
     modbus_set_slave(c, 0); /* all: done, not answered */
     CHECK(modbus_write_bit(c, EXH_COIL_OFF, 1) == -1 && errno == ETIMEDOUT, "answered to all");
     modbus_set_slave(c, 1);

@@ -116,7 +116,7 @@ TEST(a_trace_has_every_frame_or_says_what_it_lost)
     said_lost = strstr(s.err, "exhand watch: ");
     lost = said_lost ? atoi(said_lost + 14) : 0;
     CHECK(s.status == 0 && strstr(s.err, "frames were lost"), "%d %s", s.status, s.err);
-    /* told as lost are those before the first that was read, too: of half a second */
+    /* Frames before the first one that was read count as lost, too: those of half a second. */
     CHECK(lost >= missing && missing > 100 && lost - missing < 2000, "%d missing, %d told as lost",
         missing, lost);
     check_note(

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Whole scenes upstream of noise: every input of a tick is noise, and again and again their state
- * is restored from random bytes and the box is put into any state there is. No code leaves the
- * span, none but that of 0 A leaves a gate that is shut, and from tick to tick the force moves no
- * faster than slew or release allow. */
+/* Noise at whole scenes. Every input of a tick is noise. Again and again random bytes restore their
+ * state, and the box is put into any state. No code leaves the span. Only the code of 0 A leaves a
+ * gate that is shut. From tick to tick the force moves no faster than slew or release allow. */
 #include "check.h"
 
 #include "bilateral/bilateral.h"
@@ -101,7 +100,7 @@ static void noise_drop(void)
     exh_drive_serialize(&c, &drop.drive);
     exh_tracking_serialize(&c, &drop.track);
     exh_motion_serialize(&c, &drop.watch);
-    if (check_u64() % 2) { /* what would be a fault at once, and hide the rest */
+    if (check_u64() % 2) { /* these cause an immediate fault, which hides the rest */
         memset(&drop.quad, 0, sizeof drop.quad);
         memset(&drop.track, 0, sizeof drop.track);
         memset(&drop.watch, 0, sizeof drop.watch);

@@ -84,7 +84,7 @@ TEST(mode_and_links_stay)
     said_clean(dir);
 }
 
-/* A full disk stands for what fails at the end. */
+/* A full disk represents any failure at the end. */
 TEST(a_failed_write_leaves_the_old_one)
 {
     const struct rlimit few = {100, RLIM_INFINITY};
@@ -163,7 +163,7 @@ TEST(options_are_tried_before)
     CHECK_EQ_I64(outfile_try(o, 3), 2);
     o[0].path = path;
     o[1].path = dot;
-    CHECK_EQ_I64(outfile_try(o, 3), 2); /* not there yet, and one all the same */
+    CHECK_EQ_I64(outfile_try(o, 3), 2); /* not there yet, but the same file */
     CHECK_EQ_I64(symlink("a", link), 0);
     o[1].path = NULL;
     o[2].path = link;
@@ -204,7 +204,7 @@ TEST(killed_writers_leave_what_the_next_takes)
     said_clean(dir);
 }
 
-/* Even where they were blocked by whoever started it. */
+/* Also if the parent process had blocked the signals. */
 static void ended_by(int sig, int blocked, int expected)
 {
     const char *path = said_path(dir, "a");
@@ -252,7 +252,7 @@ TEST(children_leave_their_parents_alone)
     f = outfile_open("out", path);
     if (fork() == 0) {
         outpart_remove_all();
-        _exit(outfile_open("out", said_path(dir, "b")) ? 0 : 1); /* and has room of its own */
+        _exit(outfile_open("out", said_path(dir, "b")) ? 0 : 1); /* and has separate entries */
     }
     CHECK(wait(&status) > 0 && status == 0, "%d", status);
     fputs("whole", f);

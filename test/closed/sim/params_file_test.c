@@ -168,7 +168,7 @@ TEST(what_is_said_of_bad_ones)
     remove_dir();
 }
 
-/* An experiment with values of its own, saved, is the same when they are loaded. */
+/* An experiment with other values, saved, is the same when they are loaded. */
 TEST(experiments_take_and_leave_them)
 {
     static struct said a, b;

@@ -28,7 +28,7 @@ TEST(one_a_minute_for_a_day_is_no_overload)
     CHECK_EQ_I64(halts_after(10 * RATE_HZ), 0);
 }
 
-/* 101 at once; one a second: nine of ten stay. */
+/* 101 together. One a second: nine of ten stay. */
 TEST(a_burst_and_too_many_for_long_are)
 {
     struct pc104_overload o = fresh();

@@ -110,8 +110,8 @@ TEST(what_is_held_does_not_move)
 
 /* ---- Stiction ---------------------------------------------------------------- */
 
-/* The mass hangs on a string stretched for `tension`, the rotor is stuck; the load of
- * the mass is m g - tension, its friction mu times tension. */
+/* The mass is on a string stretched for `tension`, and the rotor is stuck. The load of the mass is
+ * m g - tension, its friction mu times tension. */
 static struct plant hanging(struct sim_device *d, double tension_N, double mu)
 {
     struct plant p = {0, 0, 0, 0, 0, 0};
@@ -205,8 +205,8 @@ static double law_N(const struct sim_device *d, double stretch_m, double opening
     return stretch_m < 0 || T < 0 ? 0 : T;
 }
 
-/* Tension as the mass and as the rotor felt it in one sub-step without friction: that of the
- * stretch half a step on, at the speeds that the law's own tension gives by then. */
+/* Tension at the mass and at the rotor in one sub-step without friction. It is that of the stretch
+ * half a step later. The speeds are those that the law's own tension gives by then. */
 TEST(the_string_only_pulls_and_pulls_both_ends_alike)
 {
     while (check_case(10)) {
@@ -322,11 +322,13 @@ TEST(exp_neg_is_good_to_1e_12)
 
 /* ---- Energy ------------------------------------------------------------------ */
 
-/* Leapfrog conserves not the energy E but D = E - h^2/8 dU''(v, v), exactly where the force is
- * linear. Without this term, E changes by h times the mean speed times the forces outside U, and by
- * h^2/8 U'' of the speeds. So D must not grow, with three exceptions. A sub-step in which the
- * string becomes slack or taut may add 5/8 k (v h)^2. A loss Fl taken at a speed other than the
- * mean may add h^2/2 (1/m + 1/mr) F Fl, where F is the sum of all forces. Rounding is the third. */
+/* Leapfrog does not conserve the energy E. It conserves D = E - h^2/8 dU''(v, v), exactly if the
+ * force is linear. Otherwise E changes by h times the mean speed times the forces outside U, and by
+ * h^2/8 U'' of the speeds.
+ *
+ * So D must not grow, with three exceptions. A sub-step in which the string becomes slack or taut
+ * may add 5/8 k (v h)^2. A loss Fl at another speed than the mean may add h^2/2 (1/m + 1/mr) F Fl,
+ * where F is the sum of all forces. Rounding is the third. */
 struct energy {
     double e_J, d_J; /* energy, and the one that the method keeps */
     double may_J;    /* how much D may grow in the sub-step that begins here */
@@ -435,8 +437,8 @@ TEST(a_quarter_of_the_error_with_half_the_substep)
     }
 }
 
-/* Both bodies slide one way on a taut string that damps, each with a friction of its own: also what
- * friction takes is of second order. */
+/* Both bodies slide one way on a taut string that damps, each with a separate friction. The loss by
+ * friction is also of second order. */
 TEST(friction_is_of_second_order)
 {
     static const double mu[][2] = {{0.4, 0}, {0, 0.4}, {0.3, 0.1}};
@@ -595,8 +597,8 @@ TEST(the_step_that_is_named_will_do)
     }
 }
 
-/* Pieces that are kept are those that would be worked out anew, whatever was asked for between; and
- * of ticks, outputs and servo samples on the grid there are few. */
+/* The kept pieces equal those of a new computation, for any requests between. Ticks, outputs and
+ * servo samples on the grid need few of them. */
 TEST(pieces_on_the_grid_are_few_and_what_they_would_be)
 {
     static struct plant_pieces kept;

@@ -19,7 +19,7 @@ static int begin(void)
     return errors >= 0 && dup2(tty.slave, STDERR_FILENO) >= 0;
 }
 
-/* What came there meanwhile. */
+/* Reads the output since then. */
 static void end(void)
 {
     fflush(stderr);

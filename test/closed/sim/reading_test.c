@@ -77,7 +77,7 @@ TEST(names_are_found)
         reading_table[READING_DEFAULT].name);
 }
 
-/* On a run of the simulation: every reading, by the analysis and all at once. */
+/* On a run of the simulation: every reading, by the analysis and by reading_all(). */
 TEST(all_at_once_is_one_by_one)
 {
     double all[READINGS];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* exhand glove --csv: recordings of others, whose sensors stand somewhere among other columns, in
- * numbers that are no codes, with some that are no numbers. */
+/* exhand glove --csv: recordings of other programs. Their sensors are among other columns, the
+ * numbers are no codes, and some are no numbers. */
 #include "said.h"
 #include "lab/lab.h"
 
@@ -81,7 +81,7 @@ TEST(columns_that_cannot_be_are_refused)
     said_clean(dir);
 }
 
-/* Codes of 8 bits and fractions of them come to the codes of 16 that they stand for. */
+/* Codes of 8 bits and fractions of them become the corresponding codes of 16 bits. */
 TEST(a_scale_makes_codes)
 {
     char *dir = said_dir();

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What `make remedies` stands on: its short loop is the bilateral scene's, bit by bit; and it tells
- * a silent contact from one that is not. */
+/* The basis of `make remedies`: its short loop equals the bilateral scene's, bit by bit. It
+ * distinguishes a silent contact from one that is not. */
 #include "check.h"
 
 #include "said.h"

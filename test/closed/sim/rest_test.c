@@ -192,7 +192,7 @@ TEST(a_mass_in_flight_is_not_at_rest)
     }
 }
 
-/* Position saturates at 2 m, where a mass that fell past it seems to stand still. */
+/* Position saturates at 2 m. A mass that fell past it seems to be at rest there. */
 TEST(a_mass_that_ran_away_is_not_at_rest)
 {
     static const struct {

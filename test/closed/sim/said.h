@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A subcommand of the host program in a process of its own: what it said. */
+/* A subcommand of the host program in a separate process, and its output. */
 #ifndef TEST_SIM_SAID_H
 #define TEST_SIM_SAID_H
 
@@ -35,7 +35,7 @@ static inline void said_read(char to[SAID_B], const char *path)
     to[n] = '\0';
 }
 
-/* Starts it, leader of a process group of its own, with its output in DIR. */
+/* Starts it, as leader of a new process group, with its output in DIR. */
 static inline pid_t said_start(
     const char *dir, int (*command)(int, char **), const char *const *word)
 {
@@ -47,7 +47,7 @@ static inline pid_t said_start(
     if (pid != 0) { return pid; }
     setpgid(0, 0);
     alarm(3000);             /* a hang fails its test before run.sh ends all of them */
-    signal(SIGINT, SIG_DFL); /* whoever runs in the background is given it ignored */
+    signal(SIGINT, SIG_DFL); /* a background process inherits it ignored */
     snprintf(path[0], sizeof path[0], "%s/said.out", dir);
     snprintf(path[1], sizeof path[1], "%s/said.err", dir);
     if (!freopen(path[0], "w", stdout) || !freopen(path[1], "w", stderr)) { _exit(99); }

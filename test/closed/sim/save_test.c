@@ -110,7 +110,7 @@ TEST(in_a_last_tick_that_found_the_registers_in_use)
     said_clean(dir);
 }
 
-/* The first is made and not yet written when the second is asked for: the second is what stays. */
+/* The second save is requested before the first is written: the second stays. */
 TEST(of_two_the_later_stays)
 {
     char *dir = said_dir();

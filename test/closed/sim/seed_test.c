@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What the log of a run of the simulated device hangs on: its seed, to the last byte,
- * and not where the encoder's counter stands. */
+/* The log of a run of the simulated device depends on its seed, to the last byte. It does not
+ * depend on the value of the encoder's counter. */
 #include "check.h"
 
 #include "box/run.h"

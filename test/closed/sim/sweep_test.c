@@ -299,7 +299,7 @@ TEST(an_interrupted_sweep_keeps_its_cells)
     said_clean(dir);
 }
 
-/* By the kernel, or the power: with the cells under way, and nothing told. */
+/* By the kernel, or a power failure: with cells in progress, and without a message. */
 TEST(a_killed_sweep_goes_on)
 {
     const struct timespec moment = {0, 2000000};

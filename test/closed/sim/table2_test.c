@@ -92,8 +92,8 @@ TEST(one_and_a_half_times_both_gains_oscillates)
     }
 }
 
-/* Without damping the command is k q, so k is what an estimator must return. What it returns with
- * damping is beside a model of its own: test/closed/model. */
+/* Without damping the command is k q, so an estimator must return k. With damping, its result is
+ * compared with a separate model: test/closed/model. */
 TEST(without_damping_the_stiffness_is_k)
 {
     measure();

@@ -36,7 +36,7 @@ static inline void terminal_close(struct terminal *t)
     close(t->master);
 }
 
-/* What was written on it since, behind what is in text; what has no room is forgotten. */
+/* Appends new output of the terminal to text. Output beyond its size is dropped. */
 static inline void terminal_read(const struct terminal *t, char *text, size_t size)
 {
     size_t at = strlen(text);

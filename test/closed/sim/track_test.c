@@ -104,7 +104,7 @@ TEST(with_too_short_a_time_it_would_be_told)
     CHECK(told_at(&late, 2000, &cfg, 1000) != UINT32_MAX, "not told");
 }
 
-/* --- a D/A that stands still --- */
+/* --- a D/A that does not update --- */
 
 struct stuck {
     struct drop_par par;
@@ -125,8 +125,9 @@ static void set_up(struct stuck *b, const struct posix_config *c, struct exh_per
     CHECK_EQ_I64(drop_setup(&b->cfg, &b->par, (struct exh_scene_board){T, 24}, NULL), 0);
 }
 
-/* The mass hangs at rest in the wall, then the D/A stands; somebody pulls. Ticks from the first
- * current coded that is off by more than tolerance and noise to no current and no enable. */
+/* The mass hangs at rest in the wall, then the D/A stops updating, and the string is pulled. Ticks
+ * from the first current coded that is off by more than tolerance and noise to no current and no
+ * enable. */
 static uint32_t ticks_to_safe(uint32_t rate_Hz, uint32_t *limit, double *stood_A)
 {
     static struct stuck b;
@@ -202,7 +203,7 @@ static int has(const char *path, const char *word)
     return strstr(text, word) != NULL;
 }
 
-/* The order of a tick stands in exhand/axis.h alone; a scene that has no tracking names that. */
+/* Only exhand/axis.h has the order of a tick. A scene without tracking names that. */
 TEST(every_scene_ticks_by_the_axis_and_tracks_or_says_that_it_does_not)
 {
     static const char *const by_hand[] = {"exh_quad_step(", "exh_motion_step(",

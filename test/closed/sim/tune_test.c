@@ -201,8 +201,8 @@ TEST(what_a_finger_feels)
     }
 }
 
-/* Whatever is staged, in every tick: the drive's slew limit stands above it. It is set low, so that
- * it acts. */
+/* For anything staged in any tick, the drive's slew limit applies to it. It is set low, so that it
+ * acts. */
 TEST(no_step_beyond_the_slew_limit)
 {
     static const uint32_t rates[] = {90, 100, 200, 500, 1000, 2000};

@@ -322,7 +322,7 @@ TEST(what_there_is_none_of_leaves_its_place_empty)
     size_t empty;
     if (terminal_open(&tty) < 0) { return; }
     dir = said_dir();
-    log = a_log_of_a_hand("100"); /* first: a terminal that nobody reads holds the watcher up */
+    log = a_log_of_a_hand("100"); /* first: an unread terminal blocks the watcher */
     watch = watch_on_terminal;
     start("--signals", "d,c");
     watch = cli_watch;

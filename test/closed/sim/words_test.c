@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Lines on stderr that hold nobody up: on a terminal that was halted they wait, and what was said
- * comes whole and in its order, however often the line of status was drawn. */
+/* Lines on stderr block no thread. On a halted terminal they wait. They come whole and in order,
+ * for any number of drawn lines of status. */
 #define _XOPEN_SOURCE 700 /* pseudo-terminals */
 
 #include "terminal.h"

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Bytes to a file by a thread of its own: a pipe that nobody reads, one that is slow, one that
- * ends. */
+/* Bytes to a file by a separate thread: a pipe without reads, a slow one, one that ends. */
 #include "check.h"
 
 #include "base/writer.h"
@@ -77,8 +76,8 @@ static void check_record(uint32_t k)
     for (size_t i = 2; i < n; i++) { CHECK_EQ_I64(got[i], (uint8_t)(k * 31 + i)); }
 }
 
-/* Nobody reads: pipe and ring fill, what finds no room is refused whole and at once; then all that
- * was taken comes, in its order, and nothing else. */
+/* Without a reader, pipe and ring fill. A record without room is refused whole and immediately.
+ * Then all accepted records come, in order, and nothing else. */
 TEST(a_full_pipe_refuses_and_waits_for_nobody)
 {
     static uint32_t taken[4096];
@@ -113,7 +112,7 @@ TEST(a_full_pipe_refuses_and_waits_for_nobody)
     close(end[0]);
 }
 
-/* With patience nothing is refused as long as somebody reads. */
+/* With patience nothing is refused as long as there is a reader. */
 TEST(patience_loses_nothing)
 {
     struct writer *w = begin();
@@ -140,7 +139,7 @@ TEST(patience_loses_nothing)
     }
 }
 
-/* No signal, but an error; and what comes later is refused as such. */
+/* No signal, but an error. Later records are refused with it. */
 TEST(a_reader_that_goes)
 {
     struct writer *w = begin();
@@ -156,7 +155,7 @@ TEST(a_reader_that_goes)
     close(end[1]);
 }
 
-/* The end comes all the same, and so does a put that waits. */
+/* The end still comes, and so does a put that waits. */
 TEST(a_file_that_takes_nothing)
 {
     static const uint8_t much[RING_B];
@@ -170,7 +169,7 @@ TEST(a_file_that_takes_nothing)
     CHECK(now_s() - before_s >= 0.4, "it has no patience");
 }
 
-/* Its thread opens and closes it: a pipe that nobody opens for reading holds nobody up either. */
+/* Its thread opens and closes it, so a pipe without a reader blocks no other thread. */
 TEST(a_file_by_its_name)
 {
     char name[64] = "/tmp/exhand-writer-XXXXXX", got[64] = "";

@@ -131,7 +131,7 @@ static uint64_t angles_of(uint32_t thin)
     return 8 * STRETCH * n;
 }
 
-/* Each part in a process of its own; one that dies leaves angles out, which is seen. */
+/* Each part is a separate process. One that dies leaves angles out, and the count shows it. */
 int every_angle(uint32_t thin)
 {
     struct seen all = {0, 0, 0, 0, 0, 0}, e;

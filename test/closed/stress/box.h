@@ -14,8 +14,8 @@ struct box {
     uint32_t faults, present;
     unsigned late, opened;
     uint64_t armed, ramped, gone; /* ticks in ARM, in its ramp, in RELEASE */
-    uint64_t calm;                /* ticks on end, up to the last, with a small force asked for */
-    uint64_t fast, still;         /* ticks on end beyond the speed limit; pulled without a count */
+    uint64_t calm;                /* ticks in a row, up to the last, with a small force command */
+    uint64_t fast, still;         /* ticks in a row beyond the speed limit; pulled without count */
     int32_t cnt;
     int32_t held, from; /* force of the last tick; when the release began */
     int32_t off;        /* code of the last tick, from dac_zero */
@@ -33,7 +33,7 @@ struct box_times {
 struct box_times box_times(
     const struct exh_safety_par *par, const struct exh_motion_par *watch, struct exh_period T);
 
-/* One tick; raised: causes that the box is told, `ready` as in struct exh_safety_in. */
+/* One tick; raised: causes that the box gets, `ready` as in struct exh_safety_in. */
 enum box_gate box_step(struct box *b, const struct box_times *t, const struct exh_safety_in *in);
 /* Of 2^30: how much of the force limit counts. */
 int64_t box_share(const struct box *b, const struct box_times *t);

@@ -173,7 +173,7 @@ static int32_t any_end(void)
     return u % 3 == 0 ? end[u / 3 % LEN(end)] : (int32_t)(uint32_t)(u >> 32) >> (u / 3 % 31);
 }
 
-/* 0 or of the sign of what it stands for; and never 0 where that is one LSB or more. */
+/* 0 or of the sign of the exact value. Never 0 if that is one LSB or more. */
 static void same_sign(const char *what, int64_t got, double want)
 {
     must(got == 0 ? fabs(want) < 1 : sign((double)got) == sign(want), "sign",

@@ -36,7 +36,7 @@ static void stage_force(void)
     stage_all(EXH_WHEN_WALL);
 }
 
-/* What acts at once. */
+/* Parameters that act immediately. */
 static void stage_rest(void)
 {
     static const int when[] = {

@@ -78,7 +78,7 @@ int ready(struct exh_period T)
     exh_params_slew_setup(&rig.params, &rig.active.tune, T);
     if (err != 0) { return err; }
     rig.times = box_times(&rig.active.safety, &rig.active.watch, T);
-    rig.box.calm = 1; /* before the first tick no law has asked for anything */
+    rig.box.calm = 1; /* before the first tick no law has commanded anything */
     if (rig.blind) {
         rig.cfg.quad.jump_cnt = INT32_MAX;
         rig.cfg.watch.speed_ticks = UINT32_MAX;
@@ -172,14 +172,14 @@ static struct exh_scene_in wild_in(uint64_t n)
     struct exh_scene_in in =
         idle_in(n, enc_extreme[n % 2 ? n / 2 % LEN(enc_extreme) : any(LEN(enc_extreme))]);
     if (n % 5 == 0) { in.drive.enc_raw[0] = (uint32_t)any_u64(); }
-    if (n % 4 == 3) { /* not on end: a current that does not follow is a fault */
+    if (n % 4 == 3) { /* not in consecutive ticks: a current that does not follow is a fault */
         in.drive.mon_raw[0] = n % 3 ? mon_extreme[n / 4 % 4] : (int16_t)((int)any(65536) - 32768);
     }
     in.drive.supply_raw = mon_extreme[n % 4];
     return in;
 }
 
-/* The string a piece in or out; no jump where those are told. */
+/* The string a piece in or out. No jump if the box reports jumps. */
 static uint32_t drawn(int in)
 {
     const uint32_t quarter = UINT32_C(1) << (rig.enc_bits - 2);

@@ -25,7 +25,7 @@ static uint32_t movement_faults(const struct hidden *h)
            (rig.times.still > 0 && b->still >= rig.times.still ? (uint32_t)EXH_FAULT_STUCK : 0u);
 }
 
-/* What the box must come to, from causes told apart. */
+/* The state that the box must come to, from separate causes. */
 static void box_tick(struct exh_safety_in in, struct hidden *h)
 {
     const uint32_t moved = movement_faults(h);
@@ -75,7 +75,7 @@ static int64_t asked_of(const struct exh_force_ledger *f)
     return f->spring_N_q20 + f->damper_N_q20 + f->pullback_N_q20 + f->passivity_N_q20;
 }
 
-/* Open: what is asked for, within what is allowed by now, or as near as slew lets it. */
+/* Open: the commanded force within the present limit, or as near as slew permits. */
 static void check_open(const struct exh_force_ledger *f)
 {
     const struct exh_drive_par *par = &rig.active.drive;
@@ -165,7 +165,7 @@ static void check_current(const struct hidden *h)
     const int64_t passed = i->table_A_q26 + i->peak_A_q26 + i->i2t_A_q26 + i->gate_A_q26;
     const double half_code = 67108864.0 * 65536.0 / par->dac_rawpA_q16 / 2;
     const int code = h->out.dac_raw[0] - par->dac_zero_raw;
-    /* Held to less than is asked for: the span's end, the word's, or in a release the last code. */
+    /* Limited below the command: the span's end, the word's, or in a release the last code. */
     const int at_end = code == par->dac_span_raw || h->out.dac_raw[0] == 65535 ||
                        (h->gate == BOX_FALLS && code == rig.box.off);
     must(sum == i->coded_A_q26, "current ledger", "%" PRId64 " != %ld", sum, (long)i->coded_A_q26);

@@ -83,7 +83,7 @@ void must(int holds, const char *rule, const char *fmt, ...);
 /* One tick of the rig, watched. */
 void tick(const struct exh_scene_in *in, struct exh_drive_out *out);
 
-/* A line of the table; besides: what had to hold besides the rules. */
+/* A line of the table, with the further condition beside the rules. */
 void report(const char *name, const char *besides);
 int failures(void);
 
@@ -94,8 +94,8 @@ uint64_t any_u64(void);
 uint32_t any(uint32_t n);
 /* A healthy box; tick 0 has the command to run. */
 struct exh_scene_in idle_in(uint64_t n, uint32_t enc_raw);
-/* With encoder and monitor at their ends or anywhere, turn and turn about, while the gate is open;
- * else mostly a string far in and a person who clears, lets go and arms. */
+/* While the gate is open, encoder and monitor alternate between their ends and any values. Else
+ * mostly a string far in and a person who clears, lets go and arms. */
 struct exh_scene_in handled_in(uint64_t n);
 
 /* --- the cases, a file each --- */

@@ -344,7 +344,7 @@ TEST(the_same_inputs_give_the_same_bits)
     world_free(a), world_free(b);
 }
 
-/* --- the hand of its own --- */
+/* --- the scripted hand --- */
 
 TEST(five_fingers_hold_the_ball)
 {

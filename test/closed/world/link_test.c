@@ -178,7 +178,7 @@ static void open_wanting(uint32_t session)
     link_materials(&world, &scene);
 }
 
-/* Takes what has come; of every nth PARAM the answer is lost. */
+/* Takes the packets that came. For lose of ten PARAM packets the answer is lost. */
 static int params(struct controller *c, struct exh_wire_param asked[200], unsigned lose)
 {
     unsigned char buf[2 * EXH_WIRE_MAX_B];

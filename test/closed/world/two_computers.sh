@@ -1,17 +1,16 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# two_computers.sh EXHAND WORLD: the whole command and the whole world program, with nothing between
-# them but UDP: as two processes on loopback, and in two network namespaces with a cable between
-# where the machine lets this (root, or user namespaces; it says so where not). The world's material
-# is softer than the controller's own and must be what is felt, also by a controller that was
-# started anew.
+# two_computers.sh EXHAND WORLD: the whole command and the whole world program, connected only by
+# UDP. They run as two processes on loopback, and in two network namespaces with a cable between.
+# The latter needs root or user namespaces. Without, it says so. The world's material is softer than
+# the controller's own. The contact must feel so, also for a controller that was started anew.
 exhand=$1 world=$2
 if [ ! -x "$exhand" ] || [ ! -x "$world" ]; then
     echo "usage: two_computers.sh EXHAND WORLD" >&2
     exit 2
 fi
 
-# Without root: root in a user namespace, where there is one, with a /run of its own for ip.
+# Without root: root in a user namespace, if there is one, with a separate /run for ip.
 if [ "$(id -u)" != 0 ] && [ -z "$TWO_INSIDE" ] && unshare -Urnm true 2>/dev/null; then
     export TWO_INSIDE=1
     exec unshare -Urnm sh -c 'mount -t tmpfs none /run && ip link set lo up && exec "$@"' sh "$0" \
@@ -111,7 +110,7 @@ meet() # WHERE WORLD-PREFIX CONTROLLER-PREFIX
     scene 15000
     start_world $there
     felt "$where" 1 15000 $here
-    sleep 2 # without a key a world hears nobody else within a second (docs/WIRE.md)
+    sleep 2 # without a key a world hears no other peer within a second (docs/WIRE.md)
     felt "$where" 2 15000 $here
     end_world
     check "$where: traces (controllers, thousands of frames, odd): $(traced)" \

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# window.sh WORLD DIR [KEY...]: opens the window of the world simulator on a screen of its own,
-# presses keys as somebody would, and leaves; in DIR the last draw list. Prints the program's exit
-# status. Exit 77: no screen.
+# window.sh WORLD DIR [KEY...]: opens the window of the world simulator on a separate screen,
+# presses keys as a user does, and leaves. DIR gets the last draw list. Prints the program's exit
+# status. Exit status 77: no screen.
 world=$1 dir=$2
 shift 2
 command -v Xvfb >/dev/null && command -v xdotool >/dev/null || exit 77

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The window and its keys, on a screen of its own (Xvfb), pressed as somebody would (xdotool). What
- * was on it is read from the draw list that the program leaves. */
+/* The window and its keys, on a separate screen (Xvfb), pressed as a user does (xdotool). The
+ * program leaves a draw list, which has the picture. */
 #include "check.h"
 
 #include "world/draw.h"

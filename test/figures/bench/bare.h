@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Bare integer code: the least that does the same sum as exactly, as one would write it for one
- * device: no ledger, no hysteresis, no limits of what its inputs may be. Inline, as CMSIS's
+/* Bare integer code: the shortest code with the same accuracy, as one would write it for one
+ * device. It has no ledger, no hysteresis, and no limits of its inputs. It is inline, as CMSIS's
  * controllers are. */
 #ifndef BENCH_BARE_H
 #define BENCH_BARE_H

@@ -153,8 +153,8 @@ bench:
 	@B=$(B) test/figures/bench/bench.sh $(ARGS); status=$$?; \
 	    echo; B=$(B) test/figures/bench/peers.sh table && exit $$status
 
-# The report's part; a bound that is broken is make bench's to tell, and what has no figures fails
-# in its own sections. With SHORT it takes the last bench's results if its programs are no newer.
+# The report's part. make bench reports an exceeded bound, and missing figures fail in their own
+# sections. With SHORT it takes the last bench's results if its programs are no newer.
 .PHONY: bench-csv
 bench-csv:
 	@[ -n "$$SHORT" ] && $(MAKE) --no-print-directory -s $(bench_bin) $(peers) && \

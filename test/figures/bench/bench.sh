@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: MIT
 # What each kernel costs and how wrong it is: bench.sh [--update]
 #
-# Builds nothing: runs kernels, velocity and speed from $B/bench, the first and the last also
-# under callgrind, and kernels-i686, where that was built, under callgrind alone. Writes
-# $B/bench/bench.csv and velocity.csv, prints the tables and what has changed since
-# test/figures/bench/baseline.csv. Instructions are printed, never fatal: they are the compiler's as
-# much as ours. --update makes this run the baseline.
+# Builds nothing: runs kernels, velocity and speed from $B/bench, the first and the last also under
+# callgrind, and kernels-i686, if it was built, under callgrind alone. Writes $B/bench/bench.csv and
+# velocity.csv, prints the tables and the changes since test/figures/bench/baseline.csv.
+# Instructions are printed, never fatal: they are the compiler's as much as ours. --update makes
+# this run the baseline.
 #
 # Environment: B (build); SPEED=no: the simulation is left out.
 # Exit status: 0 ok, 1 an error above its documented bound, or a kernel of the baseline is gone,

@@ -32,7 +32,7 @@ static void kernel_op(uint32_t i) { bench_sink = tick_once(&kernel, &kernel_in[i
 #define PLANES     (2 * BENCH_OPS / 5 + 1) /* at 2 kHz; fewer at any higher rate */
 #define ARM_TICKS  25000u
 #define HALF       512u /* of a bend: flat at 0, a fist there, flat again at twice it */
-#define MEET       300u /* the planes stand where the fingertips are then */
+#define MEET       300u /* the planes are at the fingertips' places then */
 #define CODE_ZERO  32768
 #define FINGERS_ID 0x8610
 #define SESSION_ID 0x8613
@@ -99,7 +99,7 @@ static void put_plane(
     p->point_m_q30[axis] = is[axis];
 }
 
-/* Packets of a world that answers at once, HELLO first. */
+/* Packets of a world that answers immediately, HELLO first. */
 static void write_packets(const struct exh_wire_planes *planes)
 {
     struct exh_wire_packet hello = {.type = EXH_WIRE_HELLO}, p = {.type = EXH_WIRE_PLANES};

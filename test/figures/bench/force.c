@@ -288,7 +288,7 @@ static long double peak_N_q20(void)
     return path_cfg.calib.force_to_cur[1].y == 0 ? 1 : path_cfg.calib.force_to_cur[1].x;
 }
 
-/* What the whole D/A codes within a limit stand for. */
+/* The current of the whole D/A codes within a limit. */
 static long double whole_codes(long double limit_A_q26)
 {
     const long double code = (long double)(INT64_C(1) << (EXH_Q_CUR + EXH_Q_DAC)) /

@@ -6,7 +6,7 @@
 
 #define CASES 20000
 
-/* An effort that nothing limits is sent as it is asked for. */
+/* An effort below all limits is sent unchanged. */
 static void error_effort(struct error *e)
 {
     int32_t last = 0;

@@ -2,13 +2,15 @@
 /* peers errors | sweep [few] | sines | count | time | ram | twins: ours and others' low-passes and
  * sines in one program, on the same inputs; CSV for peers.sh.
  *
- * errors: peer, then for fc/fs 0.1, 0.01, 0.001, 0.0001 in ppm of full scale: worst error at
- * 0 Hz after 30 periods at +-0.37, +-0.01 and released; rms over a step of 0.37; rms of a
- * settled sine of 0.37 at fc; then 1 if a step to 0.98 at 0.01 stays wrong. Reference: the
- * same filter in long double, fed with the input as the peer could take it.
- * sweep: peer, fc/fs 10^-5 to 0.45, input, largest and rms error in ppm of full scale: of a step
- * to 0.37, of a square wave from end to end of full scale, of white noise of full scale. What is
- * beyond full scale counts as full scale. few: four cut-offs.
+ * errors: peer, then errors in ppm of full scale for fc/fs 0.1, 0.01, 0.001, 0.0001.
+ * They are: worst error at 0 Hz after 30 periods at +-0.37, +-0.01 and released; rms over a step
+ * of 0.37; rms of a settled sine of 0.37 at fc. Then 1 if a step to 0.98 at 0.01 stays wrong.
+ * Reference: the same filter in long double, with the input as the peer could take it.
+ *
+ * sweep: peer, fc/fs 10^-5 to 0.45, input, largest and rms error in ppm of full scale. Inputs: a
+ * step to 0.37, a square wave from end to end of full scale, white noise of full scale. Values
+ * beyond full scale count as full scale. few: four cut-offs.
+ *
  * count: as kernels count does; each peer by 22 channels of one sample at fc/fs 0.01 and 0.4, then
  * by one channel of 64. time: peer, ns of one op by 22 channels or of one sine and cosine.
  */
@@ -157,7 +159,7 @@ static long double input_of(int kind, uint32_t t, uint32_t half)
     return bench_i32() / 2147483648.0L;
 }
 
-/* Ten periods of the cut-off, a square wave's two halves; what goes on does so for 20000 ticks. */
+/* Ten periods of the cut-off, of a square wave two halves. Continuing inputs last 20000 ticks. */
 static void print_swept(const struct filter_peer *p, uint32_t fc, uint32_t fs)
 {
     static const char *const name[] = {"step", "square", "noise"};

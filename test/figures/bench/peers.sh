@@ -3,17 +3,21 @@
 # Low-passes and sines of others beside ours: peers.sh fetch | fixmath | rust | table
 #
 # fetch: CMSIS-DSP's C sources, as its package on PyPI holds them, into $B/peers, checked by
-# their sum; never committed. When that cannot be had it says why and the table does without.
-# fixmath: libfixmath's C sources, as Debian has them, by apt into $B/peers, checked likewise: the
+# their sum; never committed. Without them it says why, and the table does not have them.
+#
+# fixmath: libfixmath's C sources, as Debian has them, by apt into $B/peers, also checked. The
 # library in its package is compiled without optimisation.
+#
 # rust: builds the crate idsp, version and sums as peers_rust/Cargo.lock has them, into
-# $B/peers/rust. table: runs $B/bench/peers and, where built, peers-i686; prints both tables; both
-# as CSV in $B/bench/filters.csv and sines.csv, errors over fc/fs in sweep.csv. Instructions above
-# the requirement are shown as "over", never fatal. SHORT: few cut-offs.
+# $B/peers/rust.
+#
+# table: runs $B/bench/peers and, if it was built, peers-i686. Prints both tables, and writes them
+# as CSV into $B/bench/filters.csv and sines.csv, errors over fc/fs into sweep.csv. Instructions
+# above the requirement are shown as "over", never fatal. SHORT: few cut-offs.
 #
 # Environment: B (build).
-# Exit status: 0 ok; table: 1 an error of ours above its bound, or a twin is none; fetch, fixmath,
-# rust: 1 not there; 2 bad usage, 3 valgrind or a binary missing.
+# Exit status: 0 ok, 2 bad usage, 3 valgrind or a binary missing. 1, of table: an error of ours is
+# above its bound, or a twin is none. 1, of the others: not there.
 set -eu
 
 b=${B:-build}

@@ -43,8 +43,8 @@ BIQUAD(df1)
 BIQUAD(wide)
 BIQUAD(dither)
 
-/* Gains whose poles are those of the bilinear transform: the recurrence's matrix has the trace and
- * determinant asked for. */
+/* Gains whose poles are those of the bilinear transform: the recurrence's matrix has the required
+ * trace and determinant. */
 static void gains(const struct butterworth *f, int32_t k[2])
 {
     k[0] = (int32_t)lrintl((1 + f->a1 + f->a2) / 4 * 4294967296.0L);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What the scenes do from raw inputs to newtons, radians and metres, as one would write it in
- * double, in float and, for reference, in long double; pipe_body.h has it, once a type.
- */
+/* The scenes' way from raw inputs to newtons, radians and metres, as one would write it in double,
+ * in float and, for reference, in long double. pipe_body.h has it, once a type. */
 #ifndef BENCH_PIPE_H
 #define BENCH_PIPE_H
 

@@ -34,7 +34,7 @@ void N2(wall, start)(
     s->out = s->turn;
 }
 
-/* The energy of the contact, and what of the force may stand. */
+/* The energy of the contact, and the force that it allows. */
 static T N(passive)(struct N(wall) * s, int32_t cnt, int touching, T asked)
 {
     T limit = s->f_max;
@@ -47,7 +47,7 @@ static T N(passive)(struct N(wall) * s, int32_t cnt, int touching, T asked)
     return asked > limit ? limit : asked;
 }
 
-/* A string that hangs slack never runs in by itself. */
+/* A slack string runs in only by a pull. */
 static void N(wind)(struct N(wall) * s)
 {
     if (s->touching || s->inward || s->turn != s->out) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The kernels in double and in float, apart from whoever calls them. */
+/* The kernels in double and in float, in a source apart from their callers. */
 #include "plain.h"
 
 #if __STDC_HOSTED__ /* else there is no C library, and no sine */

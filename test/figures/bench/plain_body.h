@@ -31,8 +31,8 @@ void N(tip)(const struct N(bones) * b, const T q[3], T tip[3])
 }
 #endif
 
-/* Distance to the plane; the virtual contact moves along until d_lim, then stands until the finger
- * has left. */
+/* Distance to the plane. The virtual contact moves along until d_lim, then it is fixed until the
+ * finger has left. */
 void N(freeze)(struct N(freeze) * s, const T tip[3], T pos, int touching)
 {
     s->d = s->offset - (s->n[0] * tip[0] + s->n[1] * tip[1] + s->n[2] * tip[2]);

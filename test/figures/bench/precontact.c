@@ -123,7 +123,7 @@ static struct exh_vec3 any_vec(int32_t size)
     return (struct exh_vec3){x, y, z};
 }
 
-/* d and q_lim of one tick with a plane just told; in LSB of 2^-30 m. */
+/* d and q_lim of one tick with a new plane; in LSB of 2^-30 m. */
 static void error_of(struct error *e, int from_slope)
 {
     start_with(from_slope);
@@ -144,7 +144,7 @@ static void error_of(struct error *e, int from_slope)
         d += pad;
         g = from_slope ? -dot(&p.normal_q30, &in.slope_q24) / (1 << 30) / (1 << 24) : 1;
         if (!from_slope) { error_add(e, s.d_m_q30 - d); }
-        /* A far plane is nobody's contact: what counts is 20 mm. */
+        /* A far plane is no contact: only planes within 20 mm count. */
         if (d < par.d_lim_m_q30 - 1 && d > -MM(20)) {
             error_add(e, s.lim_m_q30 - (in.pos_m_q30 - d / g));
         }

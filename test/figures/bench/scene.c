@@ -26,8 +26,8 @@ static void input(uint32_t i, int32_t noise)
     in.drive.mon_raw[0] = monitor_of(out.dac_raw[0]);
 }
 
-/* Arming asks for a small force and the ramp for time: the string stands where the movement
- * begins, outside the wall, until the box runs with its whole force limit. */
+/* Arming needs a small force and the ramp needs time. The string stays at the start of the
+ * movement, outside the wall, until the box runs with its whole force limit. */
 static void arm(const struct exh_safety *safety, void (*tick)(void))
 {
     out.dac_raw[0] = 32768;

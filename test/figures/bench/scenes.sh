@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 # Whole ticks of the scenes, as CSV: scenes.sh
 #
-# Runs $B/bench/scenes and, where built, scenes-i686; writes $B/bench/scenes.csv: scene, rate, way
-# (fixed, double, float), quantity, unit, largest and rms error; and scenes_cost.csv: scene, way,
-# instructions of a tick at 2 kHz on x86-64 and i686, ns on this machine.
+# Runs $B/bench/scenes and, if it was built, scenes-i686. Writes $B/bench/scenes.csv: scene, rate,
+# way (fixed, double, float), quantity, unit, largest and rms error. Writes scenes_cost.csv: scene,
+# way, instructions of a tick at 2 kHz on x86-64 and i686, ns on this machine.
 #
 # Environment: B (build), SHORT (not empty: a tenth of the time). Exit status: 0 ok, 3 valgrind or
 # the binary missing.

@@ -11,7 +11,7 @@
 
 #define PI         3.14159265358979323846L
 #define ROUND_S    1.2
-#define MEET       0.55L /* the planes stand where the fingertips are then */
+#define MEET       0.55L /* the planes are at the fingertips' places then */
 #define STRING_CNT 1000  /* of a whole bend */
 #define ZERO       32768
 #define PULL_N     10

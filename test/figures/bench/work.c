@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* work errors | count | time: kernels of ours and of others, as CSV for the report.
  *
- * errors: kernel, name, kind, unit, "all" or the seconds of 2 kHz ticks at whose end it was, the
- * largest and the rms error; at a time: of the second before. count: as kernels count does.
- * time: kernel, name, ns of one op, the least of 15 runs.
+ * errors: kernel, name, kind, unit, when, the largest and the rms error. when is "all", or the
+ * seconds of 2 kHz ticks: then the errors are those of the second before. count: as kernels count
+ * does. time: kernel, name, ns of one op, the least of 15 runs.
  */
 #define _POSIX_C_SOURCE 200809L
 #include "work.h"

@@ -56,8 +56,8 @@ extern int32_t curve_at[BENCH_OPS];
 void curve_seed(void);
 long double curve_exact(int32_t x);
 
-/* A plane, a fingertip (and the string) before it: on the way down and up again of op i, and
- * anywhere within half a metre, of which the exact distance comes back. */
+/* A plane, a fingertip (and the string) before it. freeze_path(): on the way down and up again of
+ * op i. freeze_any(): anywhere within half a metre. Returns the exact distance. */
 struct freeze_case {
     long double normal[3], offset_m, tip_m[3], pos_m;
     int touching;

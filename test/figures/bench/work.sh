@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 # Kernels of ours, of others and in plain floating point, as CSV: work.sh
 #
-# Runs $B/bench/work and, where built, work-i686; writes $B/bench/work.csv: kernel, name, kind,
-# unit, when (all, or seconds of ticks at 2 kHz), largest and rms error, instructions of one op on
-# x86-64 and i686, ns on this machine.
+# Runs $B/bench/work and, if it was built, work-i686. Writes $B/bench/work.csv: kernel, name, kind,
+# unit, when (all, or seconds of ticks at 2 kHz), largest and rms error. Then instructions of one op
+# on x86-64 and i686, and ns on this machine.
 #
 # Environment: B (build). Exit status: 0 ok, 3 valgrind or the binary missing.
 set -eu

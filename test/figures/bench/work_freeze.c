@@ -127,7 +127,7 @@ static long double any_case(struct exh_plane *any, struct exh_vec3 *p)
     return offset_of(any) - dot(&any->normal_q30, p) * 0x1p-60L;
 }
 
-/* The same; the plane is told, the tip in *p. */
+/* The same, and it sends the plane. The tip is in *p. */
 static long double next(struct exh_vec3 *p)
 {
     struct exh_plane any;

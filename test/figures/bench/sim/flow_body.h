@@ -4,7 +4,7 @@
  * In each mode (string taut or slack, each body sliding one way or the other or stuck) the plant is
  * linear. e^(A t) is kept for t = 2^-10, 2^-11 .. 2^-50 s; any time is a sum of these. A piece
  * within which the mode would change is halved until it is the shortest: the change is then known
- * to 1e-15 s. What changes twice within a piece of the longest step is not seen. */
+ * to 1e-15 s. Two changes within a piece of the longest step are not seen. */
 #include "method.h"
 
 #include <stdint.h>
@@ -147,7 +147,7 @@ static REAL tension(const REAL z[])
 
 static int pulls(const REAL z[]) { return z[S] >= 0 && tension(z) >= 0; }
 
-/* The way a body at speed v goes, or will go that stands. */
+/* The way of a body at speed v. At rest: the way it will go. */
 static int way(REAL v, REAL net_N, REAL dry_N)
 {
     if (v != 0) { return v > 0 ? 1 : -1; }

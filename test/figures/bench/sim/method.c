@@ -36,7 +36,7 @@ static int way(double v, double net_N, double dry_N)
     return net_N > dry_N ? 1 : net_N < -dry_N ? -1 : 0;
 }
 
-/* On the mass besides the string. */
+/* The force on the mass, without the string's. */
 static inline double push_N(const struct part *s, double t_s, double x, double v)
 {
     const struct plant_hand *const h = s->hand;
@@ -107,7 +107,7 @@ static struct ways ways_of(const struct plant *p, const struct part *s, double t
     return k;
 }
 
-/* What has turned, and would stick where it is. */
+/* Stops bodies that have turned and would stick at their place. */
 static void stick(struct plant *p, const struct part *s, struct ways k, double t_s)
 {
     const int mass = k.mass * p->v_mps < 0, rotor = k.rotor * p->w_mps < 0;
@@ -122,8 +122,8 @@ static void stick(struct plant *p, const struct part *s, struct ways k, double t
 
 /* --- implicit midpoint --- */
 
-/* With V, W the mean speeds: m2 V = m2 v + push0 - (1 + i mu) T, T = T0 + join (V - W), and so on:
- * two equations, whose determinant hangs on the ways alone. */
+/* With V, W the mean speeds: m2 V = m2 v + push0 - (1 + i mu) T, T = T0 + join (V - W), and so on.
+ * These are two equations, and only the ways decide their determinant. */
 static void prepare_midpoint(struct part *s)
 {
     const struct sim_device *const d = s->d;

@@ -26,7 +26,7 @@ enum method {
 extern const char *const method_name[METHODS];
 
 /* As plant_advance_hand(), or, hand being NULL, plant_advance(); by steps of at most d->substep_s.
- * The flow wants a hand whose target stands, and knows no end of a finger's way. */
+ * The flow needs a hand with a fixed target, and ignores the ends of a finger's way. */
 void method_advance(enum method m, struct plant *p, const struct sim_device *d, double dt_s,
     double ref_A, const struct plant_hand *hand);
 
@@ -39,7 +39,7 @@ static inline int method_steps(const struct sim_device *d, double dt_s)
 /* Nothing but the current moves: by any method the same. */
 void leapfrog_hold(struct plant *p, const struct sim_device *d, double dt_s, double ref_A);
 
-/* Each in a source of its own: sim/plant.c, flow_body.h twice. */
+/* Each has a separate source: sim/plant.c, flow_body.h twice. */
 void leapfrog_advance(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
     const struct plant_hand *hand);
 void semi_advance(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,

@@ -41,8 +41,8 @@ static void step_current(struct plant *p, const struct step *s)
     p->mon_A = p->cur_A + (p->mon_A - p->cur_A) * s->keep_mon;
 }
 
-/* push_mps: what a force besides the string adds to the mass's speed; damp: what that force's
- * own damping leaves of it (implicit). */
+/* push_mps: the speed that a force other than the string's adds to the mass. damp: the share of it
+ * that this force's own damping leaves (implicit). */
 static inline void step_string(
     struct plant *p, const struct sim_device *d, const struct step *s, double push_mps, double damp)
 {

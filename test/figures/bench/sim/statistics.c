@@ -139,7 +139,7 @@ static void work(const void *ctx, int i, void *to)
     memset(&c, 0, sizeof c);
     memset(&r, 0, sizeof r);
     now = at->method;
-    c.all = 1; /* what stands still is known of the simulator's own method */
+    c.all = 1; /* a state of rest is that of the simulator's own method */
     c.rate_Hz = (uint32_t)table2_paper[row].rate_Hz;
     c.k_Npm = table2_paper[row].k_Npm * scale;
     c.b_Nspm = table2_paper[row].b_Nspm * scale;

@@ -4,13 +4,14 @@
  *   work errors       problem,method,step_s,error_m,reference_m of every method and step
  *   work ns           problem,method,step_s,ns of CPU for a second of the problem
  *   work count        runs each once in work_run(), for callgrind; prints
- * problem,method,step_s,seconds; steps down to 2^-16 s: below, a step costs what it costs there
- *   work check        the reference against closed form and against what is known of a bounce
+ *                     problem,method,step_s,seconds; steps down to 2^-16 s: below, a step costs
+ *                     the same
+ *   work check        the reference against closed form and against known facts of a bounce
  *   --short behind it: every third step
  *
- * Steps are 2^-10 .. 2^-20 s, and the simulator's own. error_m: the most that mass or string are
- * off at any multiple of 2^-10 s; reference_m: by how much the reference differs from itself with
- * steps four times as long. */
+ * Steps are 2^-10 .. 2^-20 s, and the simulator's own. error_m: the largest error of mass or string
+ * at any multiple of 2^-10 s. reference_m: the difference of the reference from itself with steps
+ * four times as long. */
 #include "method.h"
 
 #include <stdio.h>

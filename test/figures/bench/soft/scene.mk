@@ -10,5 +10,5 @@ SCENE_CFLAGS = -Itest -Itest/figures/bench $(if $(CMSIS),-DPEERS_CMSIS -isystem 
                -isystem $(CMSIS)/PrivateInclude -isystem $(CMSIS)/Source \
                -isystem test/figures/bench/soft)
 SCENE_LIBS := -lgcc
-# A system header, which -MMD does not tell.
+# A system header, which -MMD does not list.
 $(B)/mps2/soft/test/figures/bench/soft/cmsis.o: test/figures/bench/soft/cmsis_compiler.h

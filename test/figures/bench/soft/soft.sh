@@ -1,10 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Kernels on small CPUs: soft.sh
-# Builds the image of this directory for a Cortex-M3, a Cortex-M0, and a Cortex-M4 with its DSP
-# extension and FPU, and runs each under QEMU, where virtual time is 64 ns an instruction, seen by a
-# timer of 25 MHz. CMSIS-DSP is among them if peers.sh has fetched it. Writes $B/bench/soft.csv:
-# cpu, kernel, name, instructions of one op.
+# soft.sh: kernels on small CPUs. Builds the image of this directory for a Cortex-M3, a Cortex-M0,
+# and a Cortex-M4 with its DSP extension and FPU. Runs each under QEMU, where virtual time is 64 ns
+# an instruction, by a timer of 25 MHz. CMSIS-DSP is among them if peers.sh has fetched it. Writes
+# $B/bench/soft.csv: cpu, kernel, name, instructions of one op.
 # Environment: B (build), MAKE. Exit status: 0 ok, 1 it did not run, 3 no compiler or emulator.
 set -eu
 b=${B:-build}
