@@ -15,7 +15,7 @@ $(B)/test/hil: $(hil_obj) $(filter-out %/main.o,$(cli_obj)) $(sim_obj) $(B)/posi
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(unicorn)/lib/libunicorn.so.2 \
 	    -Wl,-rpath,$(unicorn)/lib $(cli_libs)
 
-# An image with the emulated cards in the place of port instructions.
+# An image with the emulated cards instead of port instructions.
 hil_inside := PORT=pc104 CARDS=inside \
               cards_inside="$(wildcard ports/cards/*.c) $(emu_src) test/image/hil/inside/inside.c"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The drop scene's configuration at 2 kHz with gains that are no powers of two, and a
- * movement through its wall: what the force path and the ticks are fed with. */
+/* The input of the force path and the ticks: the drop scene's configuration at 2 kHz, with gains
+ * that are no powers of two, and a movement through its wall. */
 #ifndef BENCH_PATH_H
 #define BENCH_PATH_H
 

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-/* Wiring, as docs/CARDS.md has it; a table of its own, so that the driver's is judged by it. */
+/* Wiring, as in docs/CARDS.md. It is a separate table, so that it judges the driver's. */
 enum {
     READY_A = 0,
     ONE_ESTOP = 1,

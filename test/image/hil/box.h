@@ -14,8 +14,8 @@ struct box {
     struct emu_box emu;
     uint64_t from_ns; /* emu.time_ns when the harness's time was 0 */
     int one_finger;   /* wired for one finger, on board A alone */
-    /* The glove's samples are about to be read, or with glove_starts a scan begins; NULL: nobody
-     * asks. */
+    /* The glove's samples are about to be read, or with glove_starts a scan begins. NULL: no
+     * callback. */
     int glove_starts;
     void (*glove)(void *ctx);
     void *ctx;
@@ -27,7 +27,7 @@ void box_open(struct box *b, int one_finger, const struct emu_config *c);
 int box_in(struct box *b, struct hil *h, uint16_t port, unsigned size, uint32_t *value);
 int box_out(struct box *b, struct hil *h, uint16_t port, unsigned size, uint32_t value);
 
-/* What comes in from outside, and what the cards put out. Encoders stand at 0 until first set. */
+/* Signals from outside, and outputs of the cards. Encoders are at 0 until first set. */
 void box_put(struct box *b, const struct exh_drive_in *in);
 void box_put_glove(struct box *b, const int16_t raw[EXH_GLOVE_SENSORS]);
 void box_get(const struct box *b, struct exh_drive_out *out);

@@ -147,7 +147,7 @@ static int uart_out(struct uart *u, uint64_t now_ps, uint64_t char_ps, unsigned 
     if (reg == 1) { u->ier = v; }
     if (reg != 0) { return -1; }
     if (u->busy_ps < now_ps) { u->busy_ps = now_ps; }
-    if (char_ps && (u->busy_ps - now_ps) / char_ps > room) { /* besides the one on the line */
+    if (char_ps && (u->busy_ps - now_ps) / char_ps > room) { /* beside the one on the line */
         u->lost++;
         return -1;
     }
@@ -166,7 +166,7 @@ static uint8_t uart_in(const struct uart *u, uint64_t now_ps, uint64_t char_ps, 
     case 3: return u->line;
     case 4: return u->modem;
     case 5: return (uint8_t)((idle ? 0x40 : 0) | (empty ? 0x20 : 0));
-    case 6: return 0xB0; /* somebody is there */
+    case 6: return 0xB0; /* a peer is connected */
     case 7: return u->scratch;
     default: return 0;
     }

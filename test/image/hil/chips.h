@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The chips of a PC that an image may touch, as far as it may: 8259 pair, 8254, HPET, 16550.
- * Each keeps its own time only as a number that it is told. */
+/* The chips of a PC that an image may touch, as far as it may: 8259 pair, 8254, HPET, 16550. Each
+ * keeps its own time only as a number that its caller passes. */
 #ifndef HIL_CHIPS_H
 #define HIL_CHIPS_H
 
@@ -31,7 +31,7 @@ struct pit {
 struct hpet {
     uint32_t period_fs; /* of its counter; 0: there is no HPET */
     uint64_t config, status;
-    uint64_t held;    /* the counter while it stands */
+    uint64_t held;    /* the counter while stopped */
     uint64_t from_ps; /* and it was that at this time, when it runs */
     struct {
         uint64_t config, compare, period;
@@ -50,7 +50,7 @@ struct chips {
     struct pit pit;
     struct hpet hpet;
     struct uart uart;
-    uint64_t char_ps; /* of the serial line; 0: it takes them at once */
+    uint64_t char_ps; /* of the serial line; 0: it takes them immediately */
 };
 
 void chips_open(struct chips *c, uint32_t hpet_fs);
@@ -76,7 +76,7 @@ int chips_out8(struct chips *c, uint64_t now_ps, uint16_t port, uint8_t value, i
 
 int hpet_advance(struct hpet *t, uint64_t now_ps); /* 1: its interrupt was requested */
 uint64_t hpet_next_ps(const struct hpet *t);
-int hpet_is_legacy(const struct hpet *t); /* it stands in the place of the 8254 */
+int hpet_is_legacy(const struct hpet *t); /* it replaces the 8254 */
 uint32_t hpet_read(const struct chips *c, uint64_t now_ps, uint32_t offset);
 void hpet_write(struct chips *c, uint64_t now_ps, uint32_t offset, uint32_t value);
 

@@ -11,7 +11,7 @@ struct class_of {
     uint32_t accepted;            /* packets, up to the tick before */
 };
 
-/* Sum of enum count_key: before the tick, of what goes in; and behind it, of what came out. */
+/* Sum of enum count_key: before the tick, of the inputs, and after it, of the outputs. */
 unsigned class_in(struct class_of *c, const struct hil *h, const struct exh_scene_in *in);
 unsigned class_out(
     struct class_of *c, const struct hil *h, const struct exh_drive_out *out, unsigned key);

@@ -24,7 +24,7 @@ struct hil_cost {
 };
 extern const struct hil_cost hil_cost_default;
 
-/* What stands at an address that the harness watches: called before the block there runs. */
+/* A function at an address that the harness watches. It is called before the block there runs. */
 struct hil;
 typedef void hil_watch_fn(struct hil *h, uint32_t address);
 #define HIL_WATCHES 8
@@ -41,10 +41,10 @@ struct hil {
     struct box *box; /* the cards; NULL: there are none */
 
     uint64_t now_ps;
-    uint64_t wake_ps; /* the next thing that a chip does by itself, or 0: an interrupt waits */
+    uint64_t wake_ps; /* the next thing that a chip does alone, or 0: an interrupt waits */
     uint64_t insns;   /* executed */
     uint64_t singly;  /* the same, counted one by one, slowly, if */
-    int count_singly; /* that was asked for before hil_open() */
+    int count_singly; /* that was set before hil_open() */
     uint64_t ports;   /* accesses, all of them */
     uint64_t cards;   /* those to the cards */
     uint64_t hpets;
@@ -53,7 +53,7 @@ struct hil {
     int idle;          /* it waits in HLT */
     int waited;        /* and has before */
     uint32_t last_end; /* where the block before this one ended */
-    int wants_stop;    /* the harness asked for it, at the start of a block */
+    int wants_stop;    /* the harness requested it, at the start of a block */
     int returns;       /* the harness did what a function should */
     uint32_t returned;
     uint32_t call;      /* a function of the image that the harness wants run; 0: none */
@@ -62,7 +62,7 @@ struct hil {
     enum hil_end end;
     uint32_t status; /* of HIL_EXIT: what was written to the debug port */
     char why[160];   /* of HIL_BROKEN */
-    FILE *records;   /* what comes out of port 0xE9, or NULL */
+    FILE *records;   /* output of port 0xE9, or NULL */
     void (*line)(struct hil *h, const char *text); /* called with each line of it, or NULL */
     char text[256];
     unsigned text_n;

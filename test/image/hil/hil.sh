@@ -6,7 +6,7 @@
 #   slow     a scene that is too slow is found late
 #   drop     the drop experiment, closed loop: the POSIX port's bits
 #   rates    the same at the paper's rates, at 20 kHz and from the 8254
-#   box      the full box, closed loop, likewise
+#   box      the full box, closed loop, in the same way
 #   replay   the image's own records replay on the host
 #   wild     random and extreme inputs
 #   absent   no cards, and no HPET
@@ -41,8 +41,8 @@ fast="supply=0 ad_settle=0"
 box="--loop --glove-age 1"
 # The most a class of ticks may vary in the scene's instructions, ppm of its dearest tick.
 even="--spread 60000"
-# The most instructions that a tick of the full box may take, the image's part and the scene's: with
-# a glove frame in every tick, and with one in every twentieth, computed and taken in parts.
+# The most instructions that a tick of the full box may take, the image's part and the scene's. With
+# a glove frame in every tick. With one in every twentieth, computed and taken in parts.
 dear="--most 23600"
 dear_parts="--most 17000"
 # With as few accesses as a tick can do with (docs/CARDS.md); the glove at 500 Hz, in parts.
@@ -137,8 +137,8 @@ show_absent()
 }
 
 # qemu IMAGE TICKS [OPTION...]: the timer interrupt of qemu, in virtual time, 8 ns an instruction.
-# The processor does not sleep: from HLT qemu goes to the next timer at once, and now and then to
-# the one behind it.
+# The processor does not sleep: from HLT qemu goes immediately to the next timer, and now and then
+# to the one behind it.
 qemu()
 {
     image=$b/pc104/$1.elf n=$2

@@ -36,8 +36,8 @@ uint64_t hpet_next_ps(const struct hpet *t)
     return t->from_ps + (ahead * t->period_fs + 999) / 1000;
 }
 
-/* The counter's value is `held` at from_ps: moved up to what has been seen, without losing a
- * part of a count. */
+/* The counter's value is `held` at from_ps. Moves both up to the last access, without losing a part
+ * of a count. */
 static void hpet_move_up(struct hpet *t, uint64_t now_ps)
 {
     const uint64_t counts = hpet_counter(t, now_ps) - t->held;

@@ -46,8 +46,7 @@ static int header_of(const struct file *f, Elf32_Ehdr *e)
     return 0;
 }
 
-/* clears: what the file has not is 0. Where memory is flash, nobody clears what a file leaves out.
- */
+/* clears: bytes that the file does not have are 0. In flash they stay unchanged. */
 static int load_segments(
     const struct file *f, const Elf32_Ehdr *e, image_place_fn *place, void *ctx, int clears)
 {

@@ -7,7 +7,7 @@
 
 struct inputs {
     uint64_t state;             /* of the generator */
-    uint32_t walk[EXH_FINGERS]; /* what the strings move besides */
+    uint32_t walk[EXH_FINGERS]; /* further movement of the strings */
     int torn; /* encoders jump, too: the scene takes none that did for good again */
     struct exh_scene_in last;
 };

@@ -83,7 +83,7 @@ static int may_interrupt(const struct hil *h)
     return pic_wants(&h->chips) && hil_reg(h, UC_X86_REG_EFLAGS) & FLAG_IF;
 }
 
-/* --- what the processor tells us --- */
+/* --- callbacks of the processor --- */
 
 /* Instructions of the block here. Asked of Unicorn once: the code does not change. */
 static unsigned learn_block(struct hil *h, uint32_t address)
@@ -147,7 +147,7 @@ static void on_block(uc_engine *uc, uint64_t address, uint32_t size, void *user)
     }
 }
 
-/* Before each instruction, when somebody wants to know whether the blocks are counted right. */
+/* Before each instruction, to check the counts of blocks. */
 static void on_instruction(uc_engine *uc, uint64_t address, uint32_t size, void *user)
 {
     struct hil *h = user;
@@ -359,7 +359,7 @@ int hil_open(struct hil *h, const char *image)
         fprintf(stderr, "hil: out of memory\n");
         return -1;
     }
-    memset(h->ram, 0xA5, HIL_RAM_B); /* nobody clears memory for an image */
+    memset(h->ram, 0xA5, HIL_RAM_B); /* memory is not cleared for an image */
     return hil_load(h, image) < 0 || open_processor(h) < 0 ? -1 : 0;
 }
 

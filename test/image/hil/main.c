@@ -94,7 +94,7 @@ static int judge(void)
     const double period_s = chips_period_s(&h->chips);
     int bad = how_it_ended(h);
     const uint64_t missed = run.instants - run.ticks;
-    if (run.scene == 0) { return bad; } /* a test of its own: it says itself what it found */
+    if (run.scene == 0) { return bad; } /* a separate test: it prints its own result */
     printf("  period %.9f us: %" PRIu64 " instants, %" PRIu64 " ticks, %" PRIu64 " missed; %" PRIu64
            " instants found the image at work\n",
         period_s * 1e6, run.instants, run.ticks, missed, run.late);

@@ -33,7 +33,7 @@ static void charge(struct hil *h)
 static uint32_t on_in(uc_engine *uc, uint32_t port, int size, void *user)
 {
     struct hil *h = user;
-    uint32_t value = size == 4 ? UINT32_MAX : (1u << 8 * size) - 1; /* nobody drives the bus */
+    uint32_t value = size == 4 ? UINT32_MAX : (1u << 8 * size) - 1; /* no card drives the bus */
     uint8_t byte;
     (void)uc;
     if (h->box && box_in(h->box, h, (uint16_t)port, (unsigned)size, &value)) { return value; }

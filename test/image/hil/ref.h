@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The reference: the same scene on the POSIX port, in a process of its own, tick by tick. */
+/* The reference: the same scene on the POSIX port, in a separate process, tick by tick. */
 #ifndef HIL_REF_H
 #define HIL_REF_H
 
@@ -24,7 +24,7 @@ struct ref_cfg {
     uint16_t glove_age;   /* of frames as the cards hand them over, ticks */
     int turns;            /* monitors and supply of the tick before, one a board, in turn */
     int glove_last;       /* a frame is of the tick in which the one before was handed over */
-    int monitor_age;      /* of monitors and supply, likewise, 0 or 1 */
+    int monitor_age;      /* of monitors and supply, in ticks, 0 or 1 */
 };
 
 /* One tick: what went in and came out, */

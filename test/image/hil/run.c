@@ -12,14 +12,14 @@ enum { SCENE_FINGERS = 8, SCENE_TICK = 44, SCENE_SHOW = 48 };
 
 struct run run;
 
-/* --- what the machine tells us --- */
+/* --- callbacks of the machine --- */
 
 static void on_back(struct hil *h, uint32_t address)
 {
     struct exh_drive_out out;
     (void)address;
     if (!run.count.ticking) { return; }
-    /* A tick fills in no signals by itself. */
+    /* A tick does not fill in signals: the function at `show` does. */
     run.shown = !run.shown;
     if (run.shown && run.show) {
         hil_call(h, run.show);

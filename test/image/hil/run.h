@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* One run of an image: what it is told, and what is known of it. */
+/* One run of an image: its options and its state. */
 #ifndef HIL_RUN_H
 #define HIL_RUN_H
 
@@ -9,7 +9,7 @@
 
 struct run_options {
     const char *image, *options; /* the file, and its command line */
-    const char *records;         /* where what comes out of port 0xE9 goes, or NULL */
+    const char *records;         /* file for the output of port 0xE9, or NULL */
     int wild, quiet, singly, loop, absent, board, turns, glove_last, whole;
     double cpi, port_us, hpet_MHz, baud;
     int64_t seed, where, ticks, rate_Hz, glove_age, monitor_age, spoil;

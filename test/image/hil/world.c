@@ -92,7 +92,7 @@ static void start(struct world *w)
     struct posix_config alone = w->ref_cfg.board;
     memset(&w->result, 0, sizeof w->result);
     w->ref = ref_start(&w->ref_cfg);
-    alone.line.on = 0; /* what comes over the link comes to the reference */
+    alone.line.on = 0; /* the link's packets come to the reference */
     posix_configure(&alone);
     w->broken = w->ref == NULL || exh_board_init(1, &T) < 0;
 }

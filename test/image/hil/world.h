@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What is behind the cards: the simulated device, which stands at each tick's instant, and beside
- * it the POSIX port doing the same run, compared tick by tick. */
+/* The world behind the cards: the simulated device, held at each tick's instant. Beside it the
+ * POSIX port does the same run, compared tick by tick. */
 #ifndef HIL_WORLD_H
 #define HIL_WORLD_H
 

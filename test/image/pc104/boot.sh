@@ -1,12 +1,14 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
-# Boots images under QEMU in every way that must end well, safe or refused: boot.sh DIR
-# DIR holds the images of all scenes, SCENE.elf and SCENE-none.elf (CARDS=none), and drop-none.iso.
-# Each case: exit status of ports/pc104/run.sh, what the image must have said, its options. Virtual
-# time; yet when the processor sleeps, QEMU may take it past the next tick, too (some in 10^5, more
-# on a loaded host): where none may be missed, it does not sleep (idle=spin).
+# boot.sh DIR: boots images under QEMU in every way that must end well, safe or refused. DIR holds
+# the images of all scenes, SCENE.elf and SCENE-none.elf (CARDS=none), and drop-none.iso.
+#
+# Each case has the exit status of ports/pc104/run.sh, the expected output of the image, and its
+# options. Time is virtual. Yet when the processor sleeps, QEMU may take it past the next tick, too
+# (some in 10^5, more on a loaded host). In cases that may miss none, it does not sleep (idle=spin).
+#
 # EXHAND names the host program, which replays the records.
-# Exit status: 0 all as told, 1 not, 2 bad usage, 3 no QEMU.
+# Exit status: 0 all as expected, 1 not, 2 bad usage, 3 no QEMU.
 set -u
 
 run=ports/pc104/run.sh
@@ -116,8 +118,8 @@ if [ -x "$exhand" ]; then
     boots 0 '^records lost 0$' log=serial ticks=1000 rate=1000
 fi
 
-# Calibrations: none, and the box does not arm; a good one, and it does; one that is none, another
-# box's, too old, of another finger, made with other scales: refused by name.
+# Calibrations. Without one the box does not arm, with a good one it does. Others are refused by
+# name: invalid, of another box, too old, of another finger, made with other scales.
 boots 0 '^arming refused at calibration$' ticks=1000
 says '^no calibration: arming will be refused at calibration '
 says ', enable 0x00000000$'
@@ -165,9 +167,9 @@ if [ -x "$exhand" ]; then
     unset MODULES
 fi
 
-# The black box: 0.8 N of a wall where the string begins, and a monitor that reads nothing: a fault,
-# told by the image and again by the host. In the loop, after a processor exception, and on the
-# words' own line.
+# The black box: 0.8 N of a wall at the string's start, and a monitor that reads nothing. The fault
+# is reported by the image and again by the host. In the loop, after a processor exception, and on
+# the words' own line.
 told() # FILE PATTERN
 {
     "$exhand" replay --timeline "$1" >"$out/replay" 2>&1 ||
@@ -207,7 +209,7 @@ boots 6 '^rate 2000 Hz: a tick costs more than its period: take at most 1333 Hz$
     rate=2000
 boots 0 'done' budget=600 rate=1333 ticks=100
 
-# Safe. What is provoked shows that the outputs were made safe before it was told.
+# Safe. Provoked faults show that the outputs were made safe before the message.
 safe 5 '^divide error, vector 0, error 0x00000000, eip 0x001[0-9a-f]+, tick 300$' provoke=divide \
     provoke_at=300
 safe 5 '^invalid opcode, vector 6, ' provoke=opcode
@@ -279,7 +281,7 @@ for scene in minimal glove bilateral; do
 done
 image=$1/glove-none.elf
 boots 2 '^option dump: this scene has no black box$' dump=serial
-# First power-up, with nobody there: words as the host's, and no stage without the one before.
+# First power-up, without a person: words as the host's, and no stage without the one before.
 image=$1/bringup-none.elf
 boots 0 '^encoder: pull the string out by hand' ticks=4000 stage=1
 says '^rest: ok, monitor 0 mA, moved 0.0 mm$'

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-# What tests of an image under QEMU share: sourced, with name set to the test's, and dir to where
-# it keeps what the image said (said) and what went wrong (err).
-# shellcheck shell=bash disable=SC2154 # both are whoever sources it's
+# Shared by tests of an image under QEMU, which source it. They set name to the test's name, and dir
+# to the directory of the image's output (said) and of error messages (err).
+# shellcheck shell=bash disable=SC2154 # the sourcing script sets both
 
 failed=0 checks=0
 

@@ -93,7 +93,7 @@ size_t frames_arp(const struct frames *f, uint8_t *at, unsigned op)
     return 60; /* as a cable brings it: filled up */
 }
 
-/* Whole to the last of its sums, the wire's too (docs/WIRE.md), and from nobody it knows. */
+/* Complete with all its checksums, the wire's too (docs/WIRE.md), and from an unknown sender. */
 static size_t stranger(struct frames *f, uint8_t *at)
 {
     uint8_t packet[256];
@@ -155,13 +155,13 @@ size_t frames_bad(struct frames *f, uint8_t *at)
         break;
     case 1: n = resized(f, at, n); break;
     case 2: at[below(f, n)] ^= (uint8_t)(1u << below(f, 8)); break;
-    case 3: /* a datagram to all, an answer to nobody */
+    case 3: /* a datagram to all, an answer to no one */
         for (size_t i = 0; i < 6; i++) { at[i] = 255; }
         break;
     case 4: /* whole, and no packet of the wire's; or one, of a stranger's */
         if (below(f, 2)) { n = stranger(f, at); }
         break;
-    case 5: /* somebody who has our address, and is heard if it is ARP */
+    case 5: /* another host with our address; as ARP it is taken */
         put(at + 28, f->to.ip, 4);
         break;
     default:

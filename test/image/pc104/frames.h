@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Frames as somebody may send them who means no good, or is broken: made of a number. For the unit
- * test, the fuzzer and the flood over an emulator's cable. */
+/* Frames of an attacker or of a broken host, made from a number. For the unit test, the fuzzer and
+ * the flood over an emulator's cable. */
 #ifndef TEST_PC104_FRAMES_H
 #define TEST_PC104_FRAMES_H
 
@@ -10,7 +10,7 @@
 
 struct frames {
     uint64_t state;
-    struct net_cfg to;      /* who is to get them; `to` may be the broadcast */
+    struct net_cfg to;      /* the receiver; `to` may be the broadcast */
     uint8_t mac[NET_MAC_B]; /* the peer's */
 };
 

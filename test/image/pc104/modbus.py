@@ -3,8 +3,8 @@
 """A Modbus master on the image's COM2, which QEMU has as a TCP socket: modbus.py PORT READS|rule
 [remote].
 
-Requests are at most 14 bytes, what QEMU's UART takes at once: how QEMU hands over more has no
-timing of a line. Prints what failed; exit status 0 all as told, 1 not, 3 no image.
+Requests are at most 14 bytes, which QEMU's UART takes in one write. QEMU passes more bytes on
+without the timing of a line. Prints what failed. Exit status 0 all as expected, 1 not, 3 no image.
 """
 import socket
 import struct
@@ -40,7 +40,7 @@ class Line:
         self.socket.sendall(frame)
 
     def hear(self, length, seconds):
-        """length bytes, or what came in that time."""
+        """length bytes, or those that came in that time."""
         got, end = b"", time.time() + seconds
         while len(got) < length and time.time() < end:
             try:

@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: MIT
 # The image's Modbus slave under QEMU: modbus.sh [READS]
 #   ways       what is said where there is no UART, or an option that does not hold
-#   master     a client of its own (modbus.py) reads, writes and commands; no tick is missed, and
-#              the log replays bit for bit
-# B: where things are built (build). Virtual time, 8 ns an instruction (4 at two rates), the
-# processor never sleeps: a request comes when the host sends it, so every run is another. It says
-# nothing of a real line's timing.
-# Exit status: 0 all as told, 1 not, 2 bad usage, 3 something is missing (it says what).
+#   master     a separate client (modbus.py) reads, writes and commands; no tick is missed, and the
+#              log replays bit for bit
+#
+# B: the build (build). Time is virtual, 8 ns an instruction (4 at two rates), and the processor
+# never sleeps. A request comes when the host sends it, so every run is different. It says nothing
+# of a real line's timing.
+# Exit status: 0 all as expected, 1 not, 2 bad usage, 3 something is missing (it says what).
 set -u
 
 b=${B:-build}

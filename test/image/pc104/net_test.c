@@ -81,7 +81,7 @@ TEST(a_datagram_is_made_as_in_the_example)
     struct net_cfg theirs = {{2, 0, 0, 0, 0, 9}, PEER_IP, OUR_IP, 4747, 256};
     const struct frames us = {1, theirs, {0x52, 0x54, 0, 1, 2, 3}};
     net_open(&other, &theirs);
-    CHECK_EQ_I64((int64_t)net_datagram(&other, sent, 4747, "abc", 3), 0); /* knows nobody */
+    CHECK_EQ_I64((int64_t)net_datagram(&other, sent, 4747, "abc", 3), 0); /* knows no peer */
     CHECK_EQ_I64((int64_t)net_ask(&other, sent, 0), NET_ARP_B);
     (void)net_take(&other, frame, frames_arp(&us, frame, 2), 0, &at, &payload_B);
     CHECK_EQ_I64((int64_t)net_datagram(&other, sent, 4747, "abc", 3), (int64_t)sizeof hello);
@@ -120,7 +120,7 @@ TEST(only_an_answer_that_was_asked_for_is_believed)
     dropped(frames_arp(&thief, frame, 2), NET_ARP_UNASKED);
     CHECK_EQ_I64(net.peer_mac[5], 9);
     CHECK_EQ_I64((int64_t)net_ask(&net, sent, 1000 * MS), NET_ARP_B);
-    thief.to.peer_ip += 5; /* somebody else answers */
+    thief.to.peer_ip += 5; /* another host answers */
     dropped_at(frames_arp(&thief, frame, 2), 1001 * MS, NET_ARP_UNASKED);
     thief.to.peer_ip -= 5;
     (void)frames_arp(&thief, frame, 2);
@@ -282,7 +282,7 @@ static uint64_t counted(const struct net_counts *c)
     return n;
 }
 
-/* In a block of its own size, so that a read beyond its end is seen. */
+/* In a block of exactly its size, so that a read beyond its end is seen. */
 TEST(whatever_comes_is_counted_once_and_never_read_beyond_its_end)
 {
     static uint8_t block[FRAMES_MAX_B];

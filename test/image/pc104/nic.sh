@@ -3,18 +3,21 @@
 # The image's network card under QEMU: nic.sh PART... of
 #   ways       what is said where there is no card, another card, no peer, or an option that is none
 #   bilateral  the paper's second experiment over it: the unmodified world simulator at the other
-#   end flood      FRAMES bad frames
+#              end
+#   flood      FRAMES bad frames
 #   dump       the black box after a fault, over it
-# B: where things are built (build). SPEEDS (natural), APPROACHES (1), FRAMES (20000), SEED (1).
+# B: the build (build). SPEEDS (natural), APPROACHES (1), FRAMES (20000), SEED (1).
 #
-# bilateral (with a ramp of 200 ms, for arming may end a tick apart and the first contact is at 0.52
-# s): the host's experiment without the card leaves a log. Its inputs stand at the connectors of
-# emulated cards inside the image (tape.c), tick by tick; planes, materials and HELLOs come from
-# build/posix/world over UDP, the image's log goes out over UDP. From the first freeze on its nine
-# signals must be the host's, in every tick: so the host's strings would have moved as they did. It
-# says nothing of a real machine's timing. Virtual time, 2 ns an instruction: the budget of a tick
-# with all the packets that it may bring must fit.
-# Exit status: 0 all as told, 1 not, 2 bad usage, 3 something is missing (it says what).
+# bilateral: the host's experiment without the card leaves a log. Its inputs are at the connectors
+# of emulated cards inside the image (tape.c), tick by tick. Planes, materials and HELLOs come from
+# build/posix/world over UDP, and the image's log goes out over UDP. From the first freeze on its
+# nine signals must be the host's, in every tick. So the host's strings would have moved as they
+# did.
+#
+# It has a ramp of 200 ms, because arming may end a tick apart and the first contact is at 0.52 s.
+# It says nothing of a real machine's timing. Time is virtual, 2 ns an instruction. The budget of a
+# tick with all the packets that it may bring must fit.
+# Exit status: 0 all as expected, 1 not, 2 bad usage, 3 something is missing (it says what).
 set -u
 
 b=${B:-build}
@@ -57,7 +60,7 @@ boot()
     check "options '${*:2}': status $status, want $want" [ "$status" = "$want" ]
 }
 
-said_number() # NAME: what stands behind it, or 0
+said_number() # NAME: the number behind it, or 0
 {
     tr -d '\r' <"$dir/said" |
         awk -v name="$1" '$0 ~ "^" name " [0-9]+$" { n = $NF } END { print n + 0 }'
@@ -113,7 +116,7 @@ nine()
     "$exhand" csv --all --finger index "$1" | awk -F, -v ticks="$2" '
         NR == 1 { for (i = 1; i <= NF; i++) if ($i == "frozen") bits = i; next }
         NR > ticks + 1 { exit }
-        $bits % 2 { on = 1 } # it stands
+        $bits % 2 { on = 1 } # it is frozen
         on { print $1 "," $2 "," $3 "," $4 "," $5 "," $6 "," $7 "," $8 "," $9 }'
 }
 

@@ -35,7 +35,7 @@ static int on;
 
 /* --- the tape --- */
 
-/* The next record of that type; 0: there is none. By its head alone: whoever started this has
+/* The next record of that type. 0: there is none. It reads the head alone. The starting program has
  * checked the log, and its sums would cost the tick more than the scene does. */
 static int next(struct exh_record *r, uint8_t type)
 {

@@ -42,7 +42,7 @@ static void begin(struct stm *s, struct stm_adc *a, uint64_t from)
     a->done_at = from + conversion_time(s, a);
 }
 
-/* A conversion whose predecessor nobody took is lost, and with it all that follow (OVR). */
+/* A conversion whose predecessor was not read is lost, and with it all later ones (OVR). */
 static void end(struct stm *s, unsigned n)
 {
     struct stm_adc *a = &s->adc[n];

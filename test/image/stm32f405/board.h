@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What is wired to the chip: D/A, analog inputs with the glove's multiplexers, encoders, contacts,
- * drives, lines. A table of its own, so that the port's wiring.tsv is judged by it. */
+/* The wiring of the chip: D/A, analog inputs with the glove's multiplexers, encoders, contacts,
+ * drives, lines. It is a separate table, so that it judges the port's wiring.tsv. */
 #ifndef BOARD_H
 #define BOARD_H
 
@@ -14,11 +14,11 @@ struct board {
     struct da da;
     int16_t mon[EXH_FINGERS], supply;
     int16_t glove[EXH_GLOVE_SENSORS];
-    uint32_t enc[EXH_FINGERS]; /* where they stand; at power-on at 0 */
+    uint32_t enc[EXH_FINGERS]; /* their counts; 0 at power-on */
     uint8_t stuck, miswired;   /* bits of encoders: no count comes; lines exchanged; */
     uint8_t half;              /* line B stays low */
     uint8_t welded;            /* bits of drives: the line that enables them is high for good */
-    int32_t jump[EXH_FINGERS]; /* counts that come once, by themselves */
+    int32_t jump[EXH_FINGERS]; /* counts that come once, without a movement */
     uint32_t misread;          /* counts by which encoders at fault have deviated, in all */
 };
 
@@ -28,6 +28,6 @@ void board_get(const struct board *b, const struct stm *s, struct exh_drive_out 
 /* Drives that are enabled, as bits. */
 unsigned board_enables(const struct stm *s);
 extern void (*board_sent)(unsigned usart, uint8_t byte);
-extern void (*board_changed)(void); /* a pin has moved, and what hangs on it acted */
+extern void (*board_changed)(void); /* a pin has moved, and its device acted */
 
 #endif

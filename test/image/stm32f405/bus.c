@@ -165,7 +165,7 @@ uint64_t stm_next(const struct stm *s)
 }
 
 /* A bus's clock is slower than the processor's: an access waits for it twice. The CRC unit takes
- * four clocks a word, and who writes the next has loaded it meanwhile, in two. */
+ * four clocks a word. The writer of the next word has loaded it meanwhile, in two. */
 unsigned stm_wait_cycles(const struct stm *s, uint32_t address)
 {
     const struct stm_clocks *k = &s->clk;

@@ -6,7 +6,7 @@
 
 /* --- exceptions --- */
 
-/* Lower goes first; those without a register stand below 0. */
+/* Lower goes first. Exceptions without a register are below 0. */
 static int priority_of(const struct stm_core *c, unsigned e)
 {
     switch (e) {

@@ -6,10 +6,10 @@
  * loads behind one another and stores take one cycle each, a branch that is taken one more, a
  * division two.
  *
- * The flash by RM0090, 3.5.2, at most: 64 instruction buffers and 8 data buffers of 16 bytes; the
- * one used longest ago goes. A line in none of them takes the wait states. A line that follows in
- * order was asked for when the line before it began, so the time that one ran is hidden. At least:
- * no waits at all. */
+ * The flash by RM0090, 3.5.2, at most: 64 instruction buffers and 8 data buffers of 16 bytes. The
+ * least recently used one goes. A line in none of them takes the wait states. A line that follows
+ * in order was requested when the line before it began, so the time that one ran is hidden. At
+ * least: no waits at all. */
 #include "machine.h"
 
 #include <stdlib.h>

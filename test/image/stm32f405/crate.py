@@ -7,7 +7,7 @@ crate.py extract DIR REGS >crate.tsv: DIR holds the sources of `stm32f4` and `co
 its fields as name:lowest bit:width. Names are the crates'. Only what the header REGS names.
 crate.py check TSV REGS: whatever REGS says of a register is what TSV says. Exit status 1: it is
 not.
-crate.py planted TSV REGS: the check tells each number of REGS that is changed by one bit.
+crate.py planted TSV REGS: the check detects each number of REGS that is changed by one bit.
 """
 import pathlib
 import re
@@ -99,7 +99,7 @@ def interrupts(crate):
 
 KIND = {"TIM": r"TIM\d+", "GPIO": r"GPIO\w", "USART": r"US?ART\d", "SPI": r"SPI\d", "ADC": r"ADC\d",
         "DMA": r"DMA\d"}
-# A name of the header that stands for several, or that the crates write otherwise.
+# A name of the header for several fields, or that the crates write otherwise.
 SAME = {"TIM_CCMR1": "CCMR1_INPUT"}
 FIELD_SAME = {"IWDGRSTF": "WDGRSTF"}
 # Not in the crates: keys of the flash and the watchdog, and the D/A, which is no part of the chip.
@@ -122,7 +122,7 @@ def header(text):
 
 
 def of(name, peripherals):
-    """Peripherals that a name of the header stands for, and what is left of it."""
+    """Peripherals of a name of the header, and the rest of the name."""
     if name.startswith("ADC_COMMON_"):
         return ["ADC_COMMON"], name[len("ADC_COMMON_"):]
     first, _, rest = name.partition("_")

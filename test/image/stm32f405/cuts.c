@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The supply fails in an operation of a save: a sector's erasure, or any word. The start that
- * follows finds the parameters of before or, behind the last word, the new ones. */
+/* The supply fails in an operation of a save: a sector's erasure, or any word. The next start finds
+ * the earlier parameters or, after the last word, the new ones. */
 #include "faults.h"
 
 #include "exhand/slots.h"
@@ -17,7 +17,7 @@
 #define IMAGE_B 4096u
 
 static struct machine *m;
-static uint8_t saved[2][IMAGE_B]; /* of before, new */
+static uint8_t saved[2][IMAGE_B]; /* earlier, new */
 static uint32_t saved_B;
 
 static void to_loop(struct machine *machine) { machine_stop(machine, M_DONE); }

@@ -7,7 +7,7 @@
 
 struct da {
     uint16_t reg[32];
-    uint16_t active[8]; /* what the outputs stand for */
+    uint16_t active[8]; /* codes of the outputs */
     uint32_t frame, answer, next;
     uint8_t bits, answered, selected, silent, cleared;
     uint32_t frames, torn; /* taken; of another length than 24 */

@@ -131,7 +131,7 @@ static void go_by(unsigned f, double A)
     now.above |= A > now.finger[f].limit_A + CODES;
 }
 
-/* At the pins, each time that one of them moves: what the drives are told. */
+/* At the pins, each time that one of them moves: the commands to the drives. */
 static void look(void)
 {
     const unsigned on = board_enables(&m->s);
@@ -298,8 +298,8 @@ static int by_time(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Before the gate is open a fault need not be told: the box is, or goes, off. A fault with a name
- * leaves the box in FAULT. */
+/* Before the gate is open a fault need not be reported: the box is, or goes, off. A fault with a
+ * name leaves the box in FAULT. */
 static int is_wrong(const struct seen *s)
 {
     const struct kind *k = &kinds[s->kind];

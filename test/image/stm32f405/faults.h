@@ -9,8 +9,8 @@
 int stm_faults(struct machine *m, unsigned times, uint64_t seed, enum kind_set set);
 
 /* The supply fails in so many operations of a save into flash, the first and the last among them. A
- * line on stdout. 0: each time the parameters of before or the new ones are there, as the image
- * says, too. */
+ * line on stdout. 0: each time the earlier parameters or the new ones are there, and the image says
+ * the same. */
 int stm_cuts(struct machine *m, const char *image, unsigned times);
 
 /* A small program leaves memory, each way. A line on stdout. 0: each ends in its state. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The independent watchdog (RM0090 chapter 21), by a clock of its own: 32 kHz, 17 to 47 (data
- * sheet). Once it runs, only a reset ends that. */
+/* The independent watchdog (RM0090 chapter 21), by a separate clock: 32 kHz, 17 to 47 (data sheet).
+ * Once it runs, only a reset ends that. */
 #include "stm.h"
 
 enum { KR = 0, PR = 4, RLR = 8, SR = 12 };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "kinds.h"
 
-#define ASTRAY 0x08080000u /* an endless loop stands there */
+#define ASTRAY 0x08080000u /* an endless loop is there */
 
 static struct machine *m;
 

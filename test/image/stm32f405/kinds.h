@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What goes wrong in chip, wiring and program, and what must follow. */
+/* Faults of chip, wiring and program, and the required results. */
 #ifndef KINDS_H
 #define KINDS_H
 

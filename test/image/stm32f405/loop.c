@@ -113,7 +113,7 @@ static void start_device(void)
     loop.ready = 1;
 }
 
-/* SysTick's instant: outputs of the tick before act, the device moves on, inputs stand. */
+/* SysTick's instant: outputs of the tick before act, the device moves on, inputs are set. */
 static void on_instant(void *ctx)
 {
     struct machine *m = loop.m;
@@ -170,8 +170,8 @@ static void start_twin(void)
     if (sc->params) { sc->params->locked = 1; }
 }
 
-/* What the port reads is what stands at its pins: counts exactly, codes to a step of 12 bits of
- * what stood there within the last ticks. */
+/* The port must read the signals at its pins: counts exactly, codes to a step of 12 bits of those
+ * within the last ticks. */
 static void check_inputs(const struct exh_scene_in *in)
 {
     for (unsigned i = 0; i < loop.cfg.scene->fingers; i++) {
@@ -245,7 +245,7 @@ void loop_on_back(struct machine *m)
     const uint8_t *at = machine_at(m, loop.out, sizeof loop.last);
     struct exh_drive_out out;
     if (!loop.ticking) { return; }
-    if (!loop.shown && loop.show) { /* a tick fills in no signals by itself */
+    if (!loop.shown && loop.show) { /* a tick does not fill in signals */
         loop.shown = 1;
         machine_call(m, loop.show);
         return;
@@ -261,7 +261,7 @@ void loop_on_back(struct machine *m)
     compare_signals(m);
 }
 
-/* The loop has done all of a tick: what stands at the pins is what the twin says. */
+/* The loop has done all of a tick: the pins must equal the twin. */
 static void end_tick(struct machine *m)
 {
     struct loop_result *r = &loop.r;

@@ -84,7 +84,7 @@ static void spend_both(struct machine *m, uint32_t cycles)
 
 /* --- exceptions --- */
 
-/* 0: the stack is no memory. Its pointer moves all the same. */
+/* 0: the stack is no memory. Its pointer still moves. */
 static int push(struct machine *m, unsigned e)
 {
     static const int reg[7] = {UC_ARM_REG_R0, UC_ARM_REG_R1, UC_ARM_REG_R2, UC_ARM_REG_R3,
@@ -133,7 +133,7 @@ static void leave(struct machine *m)
     const uint32_t sp = machine_reg(m, UC_ARM_REG_SP);
     const uint8_t *from = machine_at(m, sp, 32);
     uint32_t frame[8];
-    if (e == 0) { /* no handler runs: nobody may execute there */
+    if (e == 0) { /* no handler runs: execution there is a fault */
         m->faulted = STM_MEMMANAGE;
         return;
     }
@@ -157,7 +157,7 @@ static unsigned wanted(const struct machine *m)
     return stm_wanted(&m->s, (int)(machine_reg(m, UC_ARM_REG_PRIMASK) & 1));
 }
 
-/* --- what the processor tells us --- */
+/* --- callbacks of the processor --- */
 
 /* A store into flash is what the flash makes of it. */
 static void finish_store(struct machine *m)
@@ -344,8 +344,8 @@ static void wait_for(struct machine *m, int event)
     }
 }
 
-/* A fault that no handler may take, as one runs that goes before it: the processor stands until a
- * reset or, in a hard fault, NMI. */
+/* No handler may take this fault, because a running one has a higher priority. The processor stops
+ * until a reset or, in a hard fault, NMI. */
 static void lock_up(struct machine *m, unsigned cause)
 {
     snprintf(m->why, sizeof m->why, "locked up: exception %u in a handler, at 0x%x", cause,
@@ -543,7 +543,7 @@ int machine_open(struct machine *m, const char *image)
     cost_open(&m->cost);
     if (m->speed == 0) { m->speed = 1; }
     memset(m->flash, 0xFF, STM_FLASH_B);
-    memset(m->ram, 0xA5, STM_RAM_B); /* nobody clears memory for an image */
+    memset(m->ram, 0xA5, STM_RAM_B); /* memory is not cleared for an image */
     memset(m->ccm, 0xA5, STM_CCM_B);
     if (image && image_load(image, EM_ARM, place, m, &entry) < 0) {
         fprintf(stderr, "stm32f405: %s: not an Arm image that fits\n", image);

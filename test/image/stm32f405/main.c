@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* One run of an image, or what is asked for instead: see help[]. */
+/* One run of an image, or another action of the options: see help[]. */
 #include "faults.h"
 #include "kinds.h"
 #include "show.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The models by themselves: what each part does, and does wrong, by its registers alone. */
+/* The models alone: what each part does, and does wrong, by its registers. */
 #include "da.h"
 #include "stm.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Pins (RM0090 chapter 8). A pin that is no output shows what stands at it from outside. */
+/* Pins (RM0090 chapter 8). A pin that is no output shows the level from outside. */
 #include "stm.h"
 
 enum { MODER = 0, IDR = 4, ODR = 5, BSRR = 6, AFRL = 8 };

@@ -74,7 +74,7 @@ void stm_hse_fails(struct stm *s)
     const int watched = (r[CR] & CSS_ON) && (r[CR] & HSE_RDY);
     s->wrong |= 1u << STM_HSE_DEAD;
     s->rcc.hse_at = STM_NEVER;
-    if (!watched) { return; } /* what runs by it stands still: machine.c sees the clock gone */
+    if (!watched) { return; } /* its users stop: machine.c sees the clock gone */
     r[CR] &= ~(HSE_RDY | HSE_ON);
     r[CR] |= HSI_ON | HSI_RDY;
     r[CIR] |= CSSF;
@@ -125,7 +125,7 @@ static void write_cr(struct stm *s, uint32_t v)
     }
 }
 
-/* A part that is held in reset loses all it was told. */
+/* A part that is held in reset loses all its settings. */
 static void reset_parts(struct stm *s, uint32_t at, uint32_t v)
 {
     for (unsigned i = 0; at == APB1RSTR && i < 6; i++) {

@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# What `make run PORT=stm32f405` does: run.sh IMAGE [OPTION...], options of the emulator (--help).
-# Scenes drop, guarded and bilateral run in closed loop with a simulated hand; every other image,
-# and one with BOX=none, under QEMU (ports/stm32f405/run.sh), which has no more of the chip than
-# processor, UARTs and timers.
+# run.sh IMAGE [OPTION...]: `make run PORT=stm32f405`, with options of the emulator (--help). Scenes
+# drop, guarded and bilateral run in closed loop with a simulated hand. Every other image, and one
+# with BOX=none, runs under QEMU (ports/stm32f405/run.sh), which has only processor, UARTs and
+# timers of the chip.
 # Environment: B (build). Exit status: as of the one that runs it; 3: it is not built.
 set -u
 

@@ -38,7 +38,7 @@ static void spi_done(struct stm *s, unsigned n)
     if (stm_outside.spi) {
         stm_outside.spi(stm_outside.ctx, n, p->shift, p->r[CR1] & DFF ? 16 : 8);
     }
-    if (p->r[SPI_SR] & (RXNE | OVR)) { /* it is lost, and so is what follows */
+    if (p->r[SPI_SR] & (RXNE | OVR)) { /* it is lost, and so are later words */
         p->r[SPI_SR] |= OVR;
     } else {
         p->r[SPI_SR] |= RXNE;

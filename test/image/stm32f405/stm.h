@@ -34,7 +34,7 @@ enum {
     STM_IRQ0 = 16
 };
 
-/* What goes wrong, from when it is asked for on. */
+/* Faults, from their start on. */
 enum stm_wrong {
     STM_WELL,
     STM_HSE_DEAD,  /* the crystal stops, or never starts */
@@ -69,7 +69,7 @@ struct stm_flash {
 
 struct stm_port {
     uint32_t r[10];
-    uint16_t in; /* what stands at the pins from outside */
+    uint16_t in; /* levels at the pins from outside */
 };
 
 struct stm_tim {
@@ -94,7 +94,7 @@ struct stm_dma {
 struct stm_spi {
     uint32_t r[9];
     uint64_t done_at;
-    uint16_t shift, next, back;   /* on the line, behind it, what comes back */
+    uint16_t shift, next, back;   /* on the line, behind it, the answer */
     uint8_t shifts, waits, taken; /* taken: DR was read, SR not yet behind it */
     uint64_t words;
 };
@@ -122,7 +122,7 @@ struct stm_core {
 
 struct stm_crc {
     uint32_t data;
-    uint8_t own; /* a byte that it keeps for whoever wants to */
+    uint8_t own; /* a byte that it keeps for any program */
 };
 
 struct stm_iwdg {
@@ -134,7 +134,7 @@ struct stm_iwdg {
 
 struct stm {
     uint64_t now;
-    uint64_t wake; /* something happens by itself then; 0: look anew */
+    uint64_t wake; /* the next event; 0: look anew */
     struct stm_clocks clk;
     struct stm_rcc rcc;
     struct stm_flash flash;
@@ -156,13 +156,13 @@ struct stm {
     uint8_t resets;                    /* the chip asks to be started anew */
 };
 
-/* What stands outside of the chip. Not copied by a snapshot. */
+/* Connections outside of the chip. Not copied by a snapshot. */
 struct stm_outside {
     void *ctx;
     uint8_t *flash, *ram, *ccm;
     uint16_t (*analog)(void *ctx, unsigned channel); /* code of 12 bits at this channel */
     void (*spi)(void *ctx, unsigned spi, uint16_t word, unsigned bits); /* has gone out */
-    uint16_t (*miso)(void *ctx, unsigned spi);                         /* what comes back with it */
+    uint16_t (*miso)(void *ctx, unsigned spi);                         /* the answer to that word */
     void (*pins)(void *ctx, unsigned port, uint16_t was, uint16_t is); /* outputs changed */
     void (*sent)(void *ctx, unsigned usart, uint8_t byte);
     void (*tick)(void *ctx); /* SysTick's instant */
@@ -182,7 +182,7 @@ uint32_t stm_read(struct stm *s, uint32_t address, unsigned size);
 void stm_write(struct stm *s, uint32_t address, unsigned size, uint32_t value);
 /* Whatever happens up to now. */
 void stm_go_on(struct stm *s);
-/* When something happens next by itself. */
+/* The time of the next event. */
 uint64_t stm_next(const struct stm *s);
 /* Cycles of the processor that an access takes beyond those of its instruction (README.md). */
 unsigned stm_wait_cycles(const struct stm *s, uint32_t address);
@@ -200,7 +200,7 @@ uint32_t stm_pwr_read(struct stm *s, uint32_t off);
 void stm_pwr_write(struct stm *s, uint32_t off, uint32_t v);
 uint32_t stm_flash_read(struct stm *s, uint32_t off);
 void stm_flash_write(struct stm *s, uint32_t off, uint32_t v);
-/* A store into the flash's own addresses: what stands there afterwards. */
+/* A store into the flash's own addresses: the value there afterwards. */
 void stm_flash_store(struct stm *s, uint32_t off, unsigned size, uint32_t was, uint32_t value);
 uint32_t stm_port_read(struct stm *s, unsigned port, uint32_t off);
 void stm_port_write(struct stm *s, unsigned port, uint32_t off, unsigned size, uint32_t v);
@@ -230,13 +230,13 @@ enum stm_request {
     STM_REQ_USART_TX = 0x400,
     STM_REQ_USART_RX = 0x500
 }; /* and the part's number */
-/* One item is asked for: 1: a stream took it. */
+/* One item is requested: 1: a stream took it. */
 int stm_dma_request(struct stm *s, unsigned request);
 uint32_t stm_spi_read(struct stm *s, unsigned n, uint32_t off);
 void stm_spi_write(struct stm *s, unsigned n, uint32_t off, uint32_t v);
 void stm_spi_go_on(struct stm *s);
 uint64_t stm_spi_next(const struct stm *s);
-/* A stream was enabled: whoever has been asking is served. */
+/* A stream was enabled: waiting requests are served. */
 void stm_serial_ask(struct stm *s);
 uint32_t stm_usart_read(struct stm *s, unsigned n, uint32_t off);
 void stm_usart_write(struct stm *s, unsigned n, uint32_t off, uint32_t v);
@@ -257,9 +257,9 @@ void stm_core_write(struct stm *s, uint32_t address, unsigned size, uint32_t v);
 void stm_core_go_on(struct stm *s);
 uint64_t stm_core_next(const struct stm *s);
 void stm_core_reset(struct stm *s);
-/* An exception is asked for. */
+/* An exception is requested. */
 void stm_pend(struct stm *s, unsigned exception);
-/* The exception to be taken now, or 0. masked: PRIMASK; only what goes beyond it is taken. */
+/* The exception to be taken now, or 0. masked: PRIMASK; only higher ones are taken. */
 unsigned stm_wanted(const struct stm *s, int masked);
 /* The same, whatever is active: what ends a WFI. */
 int stm_wakes(const struct stm *s);

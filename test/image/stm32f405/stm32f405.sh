@@ -7,15 +7,15 @@
 #                      fast
 #   where              cycles by function: of the mean tick, and of the dearest
 #   spoil              a count more in one tick is found in that tick
-#   faults             faults from random times: drives off in time, each told by its name; what
+#   faults             faults from random times: drives off in time, each reported by its name; what
 #                      no detector sees took effect, and kept the limits of the parameters; all
 #                      scenes in one table, each in $B/test/stm32f405/faults.txt
 #   planted            the same with a drive that stays enabled: all are found
 #   cuts               the supply fails in each operation of a save into flash
 #   jumps              a program that leaves memory ends in a state that has a name
 #   show               what make run PORT=stm32f405 prints
-# README.md says what is reckoned. Environment: B (build), TICKS of a run at 1
-# kHz, TIMES of faults in all, LIMIT (86400 s) of a run: what takes longer hangs.
+# README.md says what is counted. Environment: B (build), TICKS of a run at 1 kHz, TIMES of faults
+# in all, LIMIT (86400 s) of a run: a longer run hangs.
 # Exit status: 0 all ok, 1 not, 2 bad usage, 3 something is not built.
 set -u
 
