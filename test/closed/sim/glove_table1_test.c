@@ -166,7 +166,7 @@ TEST(the_selftest_takes_recordings)
 /* ---- Skew ------------------------------------------------------------------------------- */
 
 /* Errors are in proportion to the interval and to the speed. The delay part is the way of a
- * fingertip in a scan. It is below the fingertip's speed: joints' speeds times their lever arms. */
+ * fingertip in a scan. Its speed is below the sum of the joints' speeds times their lever arms. */
 TEST(skew_grows_with_interval_and_speed)
 {
     const char *dir = said_dir();

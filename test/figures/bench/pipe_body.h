@@ -47,7 +47,7 @@ static T N(passive)(struct N(wall) * s, int32_t cnt, int touching, T asked)
     return asked > limit ? limit : asked;
 }
 
-/* A slack string runs in only by a pull. */
+/* A slack string does not run in without a pull. */
 static void N(wind)(struct N(wall) * s)
 {
     if (s->touching || s->inward || s->turn != s->out) {
