@@ -261,7 +261,7 @@ static inline int16_t code_of(double v)
 }
 
 /* What the low-pass has left when channel `first` is held at t_s. Most angles that move began their
- * lines at once. */
+ * lines at the same time. */
 static struct left left_of_line(struct sim_glove *g, unsigned first, double t_s)
 {
     struct left now = {g->line_s, 0};

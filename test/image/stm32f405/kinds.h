@@ -30,14 +30,14 @@ struct kind {
     enum kind_end ends;
     void (*begin)(unsigned chance); /* chance: which finger, or where to */
     void (*cease)(void);            /* 3 us later, or NULL */
-    uint32_t (*sign)(void); /* another value at the end than before: it took effect. NULL: told */
+    uint32_t (*sign)(void); /* another value at the end than before: it took effect. NULL: named */
     enum kind_set set;
 };
 extern const struct kind kinds[];
 extern const unsigned kind_count;
 void kind_overruns(unsigned chance); /* the stack */
 
-/* The parameters of a set, besides the scene's. */
+/* The parameters of a set, in addition to the scene's. */
 void kinds_set(enum kind_set set);
 #define KIND_ARM_N    0.3
 #define KIND_ARM_MS   400
