@@ -56,22 +56,6 @@ static void before(uint32_t tick, struct exh_scene_in *in)
     dumpfile_before(tick, in);
 }
 
-static void keep(struct bilateral_track *t, const struct bilateral_sample *s)
-{
-    if (t->n == t->cap) {
-        const size_t cap = t->cap ? 2 * t->cap : 8192;
-        struct bilateral_sample *more = realloc(t->at, cap * sizeof *more);
-        if (more == NULL) {
-            run.no_memory = 1;
-            posix_stop();
-            return;
-        }
-        t->at = more;
-        t->cap = cap;
-    }
-    t->at[t->n++] = *s;
-}
-
 static uint32_t digest_of(uint32_t digest, const struct bilateral_paper *p)
 {
     const int32_t v[] = {
@@ -79,17 +63,17 @@ static uint32_t digest_of(uint32_t digest, const struct bilateral_paper *p)
     return exh_crc32(digest, v, sizeof v);
 }
 
-static void widen(
-    struct bilateral_range *g, const struct bilateral_sample *s, const int32_t *joint, int first)
+static void widen(struct bilateral_range *g, double x_m, const struct bilateral_paper *raw,
+    const int32_t *joint, int first)
 {
-    if (first || s->x_m < g->lo_m) { g->lo_m = s->x_m; }
-    if (first || s->x_m > g->hi_m) { g->hi_m = s->x_m; }
+    if (first || x_m < g->lo_m) { g->lo_m = x_m; }
+    if (first || x_m > g->hi_m) { g->hi_m = x_m; }
     for (int j = 0; j < EXH_HAND_JOINTS; j++) {
         if (first || joint[j] < g->lo_turn_q32[j]) { g->lo_turn_q32[j] = joint[j]; }
         if (first || joint[j] > g->hi_turn_q32[j]) { g->hi_turn_q32[j] = joint[j]; }
     }
-    if (s->raw.f_des_N_q20 > g->f_max_N_q20) { g->f_max_N_q20 = s->raw.f_des_N_q20; }
-    g->touched += s->raw.c != 0;
+    if (raw->f_des_N_q20 > g->f_max_N_q20) { g->f_max_N_q20 = raw->f_des_N_q20; }
+    g->touched += raw->c != 0;
 }
 
 static struct bilateral_finger_is finger_is(const struct bilateral_run_cfg *c, unsigned f)
@@ -109,33 +93,55 @@ static void see_truth(unsigned f, struct bilateral_sample *s, int touches)
     if (touches) { s->touch_m = bilateral_string_m(&run.world, &w, t_s, 0); }
 }
 
+static void keep(
+    unsigned f, struct bilateral_track *t, const struct bilateral_paper *raw, int32_t bits)
+{
+    const struct sim_finger *plant = posix_finger(f);
+    const enum sim_path_phase phase = plant->path.phase;
+    const int under_way =
+        phase == SIM_PATH_APPROACH || phase == SIM_PATH_HOLD || phase == SIM_PATH_WITHDRAW;
+    struct bilateral_sample s = {*raw, bits,
+        phase == SIM_PATH_PLAY ? 1
+        : under_way            ? (int32_t)plant->path.number
+                               : 0,
+        phase == SIM_PATH_HOLD, plant->plant.x_m, (double)NAN, (double)NAN};
+    if (run.sees) { see_truth(f, &s, raw->c && !t->c); }
+    if (t->n == t->cap) {
+        const size_t cap = t->cap ? 2 * t->cap : 8192;
+        struct bilateral_sample *more = realloc(t->at, cap * sizeof *more);
+        if (more == NULL) {
+            run.no_memory = 1;
+            posix_stop();
+            return;
+        }
+        t->at = more;
+        t->cap = cap;
+    }
+    t->at[t->n++] = s;
+}
+
 /* 1 while the finger has something to do. */
 static int one_finger(unsigned f, const struct bilateral_signals *sig)
 {
-    struct bilateral_track *t = &run.r->finger[f];
+    const struct bilateral_paper *raw = &sig->paper[f];
     const struct sim_finger *plant = posix_finger(f);
-    const enum sim_path_phase phase = plant->path.phase;
-    const int plays = phase == SIM_PATH_PLAY;
-    const int under_way =
-        phase == SIM_PATH_APPROACH || phase == SIM_PATH_HOLD || phase == SIM_PATH_WITHDRAW;
-    struct bilateral_sample s = {sig->paper[f], sig->more[f].bits,
-        plays       ? 1
-        : under_way ? (int32_t)plant->path.number
-                    : 0,
-        phase == SIM_PATH_HOLD, plant->plant.x_m, (double)NAN, (double)NAN};
-    if (run.cfg->keep && run.sees) { see_truth(f, &s, s.raw.c && !t->c); }
-    if (!run.cfg->bare) { widen(&t->range, &s, sig->more[f].joint_turn_q32, run.r->ticks == 1); }
-    if (s.bits & EXH_PRECONTACT_FREEZE) {
+    const int32_t bits = sig->more[f].bits;
+    struct bilateral_track *t = &run.r->finger[f];
+    if (run.cfg->keep) { keep(f, t, raw, bits); }
+    if (bits & EXH_PRECONTACT_FREEZE) {
         t->freezes++;
-        t->scale = ((double)s.raw.q_lim_m_q30 - s.raw.q_m_q30) / -(double)s.raw.d_m_q30;
+        t->scale = ((double)raw->q_lim_m_q30 - raw->q_m_q30) / -(double)raw->d_m_q30;
     }
-    t->frozen_yet |= (s.bits & EXH_PRECONTACT_STANDS) != 0;
-    t->contacts += s.raw.c && !t->c;
-    t->unfrozen += s.raw.c && !(s.bits & EXH_PRECONTACT_STANDS);
-    t->c = s.raw.c;
-    if (t->frozen_yet && !run.cfg->bare) { t->digest = digest_of(t->digest, &s.raw); }
-    if (run.cfg->keep) { keep(t, &s); }
-    return phase != SIM_PATH_DONE;
+    t->frozen_yet |= (bits & EXH_PRECONTACT_STANDS) != 0;
+    t->contacts += raw->c && !t->c;
+    t->unfrozen += raw->c && !(bits & EXH_PRECONTACT_STANDS);
+    t->c = raw->c;
+    if (!run.cfg->bare) {
+        const int first = run.r->ticks == 1;
+        widen(&t->range, plant->plant.x_m, raw, sig->more[f].joint_turn_q32, first);
+        if (t->frozen_yet) { t->digest = digest_of(t->digest, raw); }
+    }
+    return plant->path.phase != SIM_PATH_DONE;
 }
 
 /* A device that does not reach RUN makes the experiment invalid, unless another client commands
