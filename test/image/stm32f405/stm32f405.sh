@@ -85,8 +85,9 @@ faults()
     # Scene, rate, seed of hand and device, set of kinds, how many faults, share of 435 of each of
     # 23. The box takes five times as long, and each fault of sets 1 to 4 takes seconds.
     for s in "drop 1000 1 0 23 140" "drop 1000 2 0 23 65" "drop 1000 3 0 23 65" \
-        "drop 2000 1 0 23 48" "guarded 1000 1 0 23 95" "box 1000 1 0 23 22" "box 1000 1 1 9" \
-        "box 1000 1 2 15" "drop 1000 5 3 12" "drop 1000 5 4 4"; do
+        "drop 2000 1 0 23 48" "guarded 1000 1 0 23 48" "guarded 1000 4 0 23 47" \
+        "box 1000 1 0 23 22" "box 1000 1 1 9" "box 1000 1 2 15" "drop 1000 5 3 12" \
+        "drop 1000 5 4 4"; do
         # shellcheck disable=SC2086 # a list of words
         set -- $s
         n=$5
