@@ -31,22 +31,28 @@ static struct sim_device lively(void)
     return d;
 }
 
-static struct table2_result run_on(
-    struct sim_device d, double rate_Hz, double k, double b, double on, FILE *log)
+static struct run_cfg four_falls(double rate_Hz, double k, double b)
 {
-    const struct run_setting setting = {"passivity", on};
     struct run_cfg c;
     memset(&c, 0, sizeof c);
     c.scene = &exh_scene_guarded;
     c.rate_Hz = (uint32_t)rate_Hz;
     c.k_Npm = k;
     c.b_Nspm = b;
-    c.setting = &setting;
     c.settings = 1;
     c.board = posix_config_default();
+    c.board.falls = 4;
+    return c;
+}
+
+static struct table2_result run_on(
+    struct sim_device d, double rate_Hz, double k, double b, double on, FILE *log)
+{
+    const struct run_setting setting = {"passivity", on};
+    struct run_cfg c = four_falls(rate_Hz, k, b);
+    c.setting = &setting;
     c.board.device = d;
     c.board.device.observe_s = 2;
-    c.board.falls = 4;
     c.board.log = log;
     return table2_measure(&c, NULL, TABLE2_SAME);
 }
@@ -54,6 +60,18 @@ static struct table2_result run_on(
 static struct table2_result run(double rate_Hz, double k, double b, double on, FILE *log)
 {
     return run_on(sim_device_default(), rate_Hz, k, b, on, log);
+}
+
+/* The paper's gains, with the wall somewhere between two counts. */
+static struct table2_result run_seed(const struct table2_row *p, double on, uint64_t seed)
+{
+    const struct run_setting setting = {"passivity", on};
+    struct run_cfg c = four_falls(p->rate_Hz, p->k_Npm, p->b_Nspm);
+    c.setting = &setting;
+    c.wall = RUN_WALL_DRAWN;
+    c.board.device.observe_s = 2;
+    c.board.seed = seed;
+    return table2_measure(&c, NULL, TABLE2_REST);
 }
 
 /* Up to 16 times the paper's gains, at each of its rates. Without the controller the bound is
@@ -81,19 +99,34 @@ TEST(no_contact_gives_out_more_than_the_bound)
     check_note("without the controller %d of %d runs pass the bound, with it none", beyond, runs);
 }
 
+/* Outputs that come up to a tick late may cost a little force. The share depends on where the wall
+ * and the servo's samples happen to be, so it is the mean of eight seeds: at most 0.2 % of the force,
+ * and no more falls that oscillate. */
+static void late_costs_little(const struct table2_row *p)
+{
+    double taken_Ns = 0, force_Ns = 0;
+    int late = 0, off = 0;
+    for (uint64_t seed = 1; seed <= 8; seed++) {
+        const struct table2_result with = run_seed(p, 2, seed);
+        taken_Ns += with.guard.taken_Ns;
+        force_Ns += with.guard.force_Ns;
+        late += with.oscillating;
+        off += run_seed(p, 0, seed).oscillating;
+    }
+    CHECK(force_Ns > 0.8 && taken_Ns < 2e-3 * force_Ns && late <= off,
+        "%g Hz: %g of %g Ns, %d oscillate, %d without", p->rate_Hz, taken_Ns, force_Ns, late, off);
+}
+
 TEST(stable_gains_lose_nothing)
 {
     for (int i = 0; i < TABLE2_ROWS; i++) {
         const struct table2_row *p = &table2_paper[i];
         const struct table2_result in_time = run(p->rate_Hz, p->k_Npm, p->b_Nspm, 1, NULL);
         const struct table2_result off = run(p->rate_Hz, p->k_Npm, p->b_Nspm, 0, NULL);
-        const struct table2_result late = run(p->rate_Hz, p->k_Npm, p->b_Nspm, 2, NULL);
         CHECK(in_time.done && in_time.guard.force_Ns > 0.1 && in_time.guard.acted == 0 &&
                   in_time.b_Npm == off.b_Npm && in_time.oscillating == off.oscillating,
             "%g Hz", p->rate_Hz);
-        CHECK(
-            late.guard.taken_Ns < 1e-3 * late.guard.force_Ns && late.oscillating == off.oscillating,
-            "%g Hz: %g of %g Ns", p->rate_Hz, late.guard.taken_Ns, late.guard.force_Ns);
+        late_costs_little(p);
     }
 }
 
