@@ -99,9 +99,9 @@ TEST(no_contact_gives_out_more_than_the_bound)
     check_note("without the controller %d of %d runs pass the bound, with it none", beyond, runs);
 }
 
-/* Outputs that come up to a tick late may cost a little force. The share depends on where the wall
- * and the servo's samples happen to be, so it is the mean of eight seeds: at most 0.2 % of the force,
- * and no more falls that oscillate. */
+/* Outputs that come up to a tick late may cost a little force. The share depends on the place of
+ * the wall and of the servo's samples, so the test takes eight seeds together. At most 0.2 % of the
+ * force is taken, and no more falls oscillate. */
 static void late_costs_little(const struct table2_row *p)
 {
     double taken_Ns = 0, force_Ns = 0;
