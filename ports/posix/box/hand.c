@@ -164,8 +164,7 @@ static void watch_arming(const struct bilateral_signals *sig)
 static const struct bilateral_signals *signals(void)
 {
     const struct exh_scene *sc = &exh_scene_bilateral;
-    const int32_t *values = run.cfg->bare && run.ran ? sc->values : exh_scene_signals(sc);
-    return (const void *)values;
+    return (const void *)(run.cfg->bare && run.ran ? sc->values : exh_scene_signals(sc));
 }
 
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
@@ -239,10 +238,8 @@ int bilateral_stage(const struct bilateral_run_cfg *c)
     for (size_t i = 0; err == 0 && i < sizeof known / sizeof known[0]; i++) {
         err = cli_param_set(p, known[i].name, known[i].value);
     }
-    if (err == 0 && c->trial) {
-        err = cli_param_set(p, "rule_on", BILATERAL_RULE_OFF);
-        if (err == 0) { err = cli_param_set(p, "chatter_energy", 0); }
-    }
+    if (err == 0 && c->trial) { err = cli_param_set(p, "rule_on", BILATERAL_RULE_OFF); }
+    if (err == 0 && c->trial) { err = cli_param_set(p, "chatter_energy", 0); }
     for (int i = 0; err == 0 && i < c->owns; i++) {
         err = cli_param_set(p, c->own[i].name, c->own[i].value);
     }
@@ -333,8 +330,7 @@ static struct posix_config board_of(const struct bilateral_run_cfg *c)
         b.line.frame_s = 1 / c->fps;
     }
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
-        const double touch_m = run.r->finger[f].touch_m;
-        if (touch_m > 0) { b.exo.path[f].believed_m = touch_m; }
+        if (run.r->finger[f].touch_m > 0) { b.exo.path[f].believed_m = run.r->finger[f].touch_m; }
     }
     return b;
 }
@@ -356,8 +352,8 @@ int bilateral_run(const struct bilateral_run_cfg *c, struct bilateral_run *r)
     run.see_every = c->rate_Hz / SEES_HZ + 1;
     world_line_start();
     err = bilateral_stage(c);
-    if (err == 0) { put_up(c); }
     if (err < 0) { return err; }
+    put_up(c);
     board = board_of(c);
     for (unsigned f = 0; f < BILATERAL_FINGERS; f++) { /* who knows what a world elsewhere holds */
         if (c->board.line.udp_local && !c->scene) { r->finger[f].touch_m = -1; }
@@ -376,9 +372,7 @@ int bilateral_run(const struct bilateral_run_cfg *c, struct bilateral_run *r)
     if (err == 0) {
         const struct bilateral_signals *sig = (const void *)exh_scene_signals(&exh_scene_bilateral);
         r->box = sig->box;
-        for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
-            r->finger[f].refused = sig->more[f].refused;
-        }
+        for (int f = 0; f < BILATERAL_FINGERS; f++) { r->finger[f].refused = sig->more[f].refused; }
         r->faults = (uint32_t)r->box.faults;
         for (int w = 0; w < SIM_LINK_WAYS; w++) { r->way[w] = posix_link()->way[w].counts; }
         r->frames = run.peer.frames;

@@ -41,6 +41,7 @@ fast="supply=0 ad_settle=0"
 box="--loop --glove-age 1"
 # The most a class of ticks may vary in the scene's instructions, ppm of its dearest tick.
 even="--spread 60000"
+even_drop="--spread 80000"
 # The most instructions that a tick of the full box may take, the image's part and the scene's. With
 # a glove frame in every tick. With one in every twentieth, computed and taken in parts.
 dear="--most 23600"
@@ -90,7 +91,7 @@ show_slow() { run "every hundredth tick takes two and a half periods" slow --tic
 show_drop()
 {
     # shellcheck disable=SC2086
-    run "the paper's first experiment, 2 kHz" drop --loop $even --ticks "$ticks"
+    run "the paper's first experiment, 2 kHz" drop --loop $even_drop --ticks "$ticks"
     run "another seed" drop --loop --seed 2 --ticks "$few"
 }
 show_rates()
