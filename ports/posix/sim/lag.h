@@ -70,11 +70,7 @@ struct sim_decay {
 };
 double sim_decay_at(struct sim_decay *d, double tau_s, double s);
 
-/* The same output, and the same as sim_lag_follow() with at + slope s: left is what was left then
- * of e^-(t / tau). A lag that has settled needs none. */
-static inline int sim_lag_settled(const struct sim_lag *l) { return l->off == 0; }
-
-/* It has, on what does not change. */
+/* 1: the output does not change any more. */
 static inline int sim_lag_rests(const struct sim_lag *l)
 {
     return l->off == 0 && l->terms == 1 && l->x.amp == 0;
@@ -82,6 +78,8 @@ static inline int sim_lag_rests(const struct sim_lag *l)
 struct sim_line {
     double start_s, at, slope;
 };
+/* The same output as sim_lag_at(), and a line to follow as by sim_lag_follow(). left: what is left
+ * of e^-(t / tau). */
 static inline double sim_lag_left(const struct sim_lag *l, double t_s, double left)
 {
     return sim_lag_target(l, t_s - l->x.start_s) + l->off * left;
