@@ -85,5 +85,41 @@ TEST(the_quantile_is_students)
     }
 }
 
+/* A glove channel's noise: mean 0, deviation 1, and never beyond 8 * 127.5 of 209. */
+TEST(eight_bytes_are_a_normal_of_deviation_1)
+{
+    enum { N = 100000 };
+    struct sim_random r = {12};
+    double sum = 0, square = 0, most = 0;
+    for (int i = 0; i < N; i++) {
+        const double x = sim_random_bytes(&r);
+        sum += x;
+        square += x * x;
+        most = fabs(x) > most ? fabs(x) : most;
+    }
+    CHECK(fabs(sum / N) < 4 / sqrt(N), "mean %g", sum / N);
+    CHECK(fabs(sqrt(square / N) - 1) < 0.01, "standard deviation %g", sqrt(square / N));
+    CHECK(most < 4.9 && most > 3.5, "%g", most);
+}
+
+/* Counted from the first sample, one by one in wider arithmetic. */
+TEST(the_servo_samples_at_its_next_instant)
+{
+    static const double hz[] = {800, 5000, 20000};
+    struct sim_random r = {13};
+    for (size_t k = 0; k < sizeof hz / sizeof hz[0]; k++) {
+        const double first_s = 0.3 + sim_random_unit(&r) / hz[k];
+        for (int i = 0; i < 1000; i++) {
+            const double at_s = first_s + (sim_random_unit(&r) - 1e-3) / hz[k] * i;
+            long double next_s = first_s;
+            while (next_s <= at_s) { next_s += 1.0L / hz[k]; }
+            CHECK(fabsl(sim_servo_s(first_s, hz[k], at_s) - next_s) < 1e-12L, "%g Hz: %.17g s",
+                hz[k], at_s);
+        }
+        CHECK(sim_servo_s(first_s, hz[k], first_s) > first_s, "%g Hz: its own instant", hz[k]);
+    }
+}
+
 TEST_MAIN("chance", the_monitors_noise_is_as_wide_as_its_row,
+    eight_bytes_are_a_normal_of_deviation_1, the_servo_samples_at_its_next_instant,
     each_fall_has_its_own_clock_and_height, the_quantile_is_students);
