@@ -45,6 +45,7 @@ int memcmp(const void *a, const void *b, size_t n);
 #define CHECK_PRINTF(fmt, args)
 #endif
 
+#define LEN(a)     (sizeof(a) / sizeof((a)[0]))
 #define TEST(name) static void name(void)
 
 #define CHECK_NAMES(...) #__VA_ARGS__ /* expands a list that is a macro */
@@ -52,7 +53,7 @@ int memcmp(const void *a, const void *b, size_t n);
     int main(void) \
     { \
         static const check_fn list[] = {__VA_ARGS__}; \
-        return check_main(group, CHECK_NAMES(__VA_ARGS__), list, sizeof list / sizeof list[0]); \
+        return check_main(group, CHECK_NAMES(__VA_ARGS__), list, LEN(list)); \
     } \
     typedef int check_main_defined
 

@@ -4,8 +4,6 @@
 #include "said.h"
 #include "lab/lab.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 /* A fingertip as fast as the string, whose position is known exactly and without delay. */
 #define PLAIN "--scale", "1", "--lag", "0", "--noise", "0", "--fps", "100"
 

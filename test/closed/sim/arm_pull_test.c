@@ -8,7 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
 #define PULL_N 0.3
 #define THREE  (1u << EXH_THUMB | 1u << EXH_INDEX | 1u << EXH_LITTLE)
 

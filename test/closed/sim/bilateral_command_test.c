@@ -6,8 +6,6 @@
 
 #include "exhand/record.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 /* ---- Logs ---------------------------------------------------------------------------------- */
 
 /* What the world asks for and what it gets of it, over a link that loses: the log sends the same

@@ -3,8 +3,6 @@
  * figures only beside the same. */
 #include "said.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 #define SCENES  "ports/posix/world/scenes/"
 #define NATURAL "bilateral", "--speed", "natural", "--approaches", "1"
 

@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 /* Every bit of what finger f felt, moved and was commanded from its freeze to the end, and how it
  * moved before. q_lim and d: while the plane of this approach is held. */
 static void check_same(

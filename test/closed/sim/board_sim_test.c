@@ -17,8 +17,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 static struct exh_period start(const struct posix_config *c, uint32_t rate_Hz)
 {
     struct exh_period T = {0, 0};

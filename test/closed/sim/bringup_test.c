@@ -9,8 +9,6 @@
 
 #include "exhand/error.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 static struct bringup_run r;
 
 static const char *const reads[BRINGUP_STAGES + 1] = {

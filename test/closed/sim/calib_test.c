@@ -15,7 +15,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define LEN(a)      (sizeof(a) / sizeof((a)[0]))
 #define DEVICE      7
 #define DAY         20000
 #define ID_DEVICE   0x8901

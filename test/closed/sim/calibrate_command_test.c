@@ -5,8 +5,6 @@
 #include <signal.h>
 #include <time.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 /* `exhand calibrate` with these words, blanks between; @ is the directory. */
 static int command(const char *dir, const char *words)
 {

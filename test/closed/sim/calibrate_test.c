@@ -16,8 +16,6 @@
 
 #include <math.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 static const double mass_kg[] = {0.1, 0.2, 0.3, 0.5, 0.7};
 
 static struct calibration_cfg config(uint64_t seed)

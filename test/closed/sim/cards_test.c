@@ -9,8 +9,6 @@
 
 #include "exhand/error.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 static struct said with, without;
 static char *dir;
 static FILE *log_to;

@@ -9,8 +9,6 @@
 
 #include <string.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 static struct {
     double from_s, until_s; /* the supply is at rail_V */
     int16_t rail_raw;

@@ -10,8 +10,6 @@
 
 #include <string.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 static double touched_s, fault_s; /* < 0: never */
 
 static void begin(const struct exh_scene *sc, struct exh_scene_board board)

@@ -16,8 +16,6 @@
 #include <signal.h>
 #include <time.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 /* ---- What is refused ----------------------------------------------------------- */
 
 #define LONG_64  "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef"

@@ -5,8 +5,6 @@
 #include "base/columns.h"
 #include "bilateral/bilateral.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 #define NINE "t_s,q_m,qd_m_per_s,f_des_n,i_des_a,c,f_mon_n,d_m,q_lim_m"
 
 static char *whole_file(const char *path)

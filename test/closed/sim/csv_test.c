@@ -11,8 +11,6 @@
 
 #include "exhand/error.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 /* ---- Table II from the CSVs ----------------------------------------------------- */
 
 #define SAMPLES_MAX 200000

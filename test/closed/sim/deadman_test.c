@@ -4,8 +4,7 @@
 
 #include "exhand/run/deadman.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-#define HELD   EXH_DIN_DEADMAN
+#define HELD EXH_DIN_DEADMAN
 
 static struct exh_safety safety;
 static const struct exh_scene scene = {.name = "none", .safety = &safety};

@@ -11,8 +11,6 @@
 #include <math.h>
 #include <string.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 /* No friction but what the hand reckons with. */
 static struct sim_device smooth(void)
 {

@@ -14,7 +14,6 @@
 
 #include <string.h>
 
-#define LEN(a)  (sizeof(a) / sizeof((a)[0]))
 #define SENSORS SIM_GLOVE_SENSORS
 #define TICKS   64
 

@@ -11,8 +11,7 @@
 
 #include <math.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-#define RAD    (3.14159265358979323846 / 180)
+#define RAD (3.14159265358979323846 / 180)
 
 /* --- against the truth --- */
 

@@ -11,7 +11,6 @@
 #include <math.h>
 #include <string.h>
 
-#define LEN(a)  (sizeof(a) / sizeof((a)[0]))
 #define PI_L    3.141592653589793238462643383279L
 #define PI      3.141592653589793238
 #define LSB_V   (10.0 / 32768)

@@ -9,7 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define LEN(a)   (sizeof(a) / sizeof((a)[0]))
 #define TURN_RAD 6.283185307179586
 #define ROWS_MAX 7000
 #define COLS_MAX 34

@@ -7,7 +7,6 @@
 
 #include "exhand/glove.h"
 
-#define LEN(a)  (sizeof(a) / sizeof((a)[0]))
 #define SENSORS EXH_GLOVE_SENSORS
 
 /* Rows of angles. */

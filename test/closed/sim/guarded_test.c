@@ -8,7 +8,6 @@
 
 #include "guarded/guarded.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
 /* The way of a tick is rounded up, by 2 of 23 counts at most, and half a code may be held above
  * f_max. */
 #define ROUND 1.09

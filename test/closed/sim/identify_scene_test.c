@@ -6,8 +6,6 @@
 
 #include "identify/identify.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 static struct identify_data data;
 
 static struct identify_session session(uint64_t seed)

@@ -15,8 +15,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 static struct said s;
 static struct identify_data data;
 

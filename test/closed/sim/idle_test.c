@@ -16,8 +16,7 @@
 
 #include <string.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-#define FALLS  2
+#define FALLS 2
 
 static struct run_cfg config(double rate_Hz, double k_Npm, double b_Nspm)
 {

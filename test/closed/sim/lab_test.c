@@ -5,8 +5,6 @@
 #include "commands.h"
 #include "lab/lab.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 static const struct {
     int (*was)(int, char **), (*is)(int, char **);
     const char *name, *option[9];

@@ -12,8 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 static struct identify_data data;
 /* From a tick until the drive looked, mean over the steps of the last run. */
 static double waited_s;

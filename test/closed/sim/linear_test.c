@@ -8,8 +8,6 @@
 
 #include <math.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 static double between(double lo, double hi)
 {
     return lo + (hi - lo) * (double)(check_u64() >> 11) / 9007199254740992.0;

@@ -11,9 +11,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-#define N      100000
-#define GAP_S  0.0025
+#define N     100000
+#define GAP_S 0.0025
 
 static struct sim_link_way way;
 

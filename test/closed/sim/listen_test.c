@@ -19,7 +19,6 @@
 
 #define PIECE   64u
 #define SESSION 77u
-#define LEN(a)  (sizeof(a) / sizeof((a)[0]))
 
 /* --- a log --- */
 

@@ -12,8 +12,6 @@
 #include "exhand/bytes.h"
 #include "exhand/record.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 /* of a log read to its end */
 struct counted {
     uint32_t frames, events, keyframes, last_tick, gaps;

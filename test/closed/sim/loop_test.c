@@ -38,7 +38,6 @@ void late_assert_failed(const char *file, int line);
 #undef exh_board_safe
 #undef exh_assert_failed
 
-#define LEN(a)          (sizeof(a) / sizeof((a)[0]))
 #define DAC_ZERO        32768
 #define ID_K            0x0401
 #define ID_STEP         0x0201

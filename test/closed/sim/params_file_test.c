@@ -15,8 +15,7 @@
 
 #include <dirent.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-#define ID_K   0x0401
+#define ID_K 0x0401
 
 static char dir[64], file[128];
 

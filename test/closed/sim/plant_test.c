@@ -12,7 +12,6 @@
 #include <stddef.h>
 #include <string.h>
 
-#define LEN(a)   (sizeof(a) / sizeof((a)[0]))
 #define TWO_PI_L 6.283185307179586476925286766559L
 
 static double root_of(double v)

@@ -4,8 +4,6 @@
  */
 #include "said.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 static struct said s;
 
 /* The command with FROM as its standard input. */

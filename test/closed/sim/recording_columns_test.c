@@ -8,7 +8,6 @@
 #include <stdlib.h>
 
 #define SENSORS 22
-#define LEN(a)  (sizeof(a) / sizeof((a)[0]))
 #define V7      ".11,.12,.13,.14,.15,.16,.17"
 #define V15     ".18,.19,.2,.21,.22,.23,.24,.25,.26,.27,.28,.29,.3,.31,.32"
 #define V       V7 "," V15

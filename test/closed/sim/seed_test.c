@@ -15,7 +15,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
 #define COUNTS (1 << 24)
 
 struct bytes {

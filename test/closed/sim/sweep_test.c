@@ -10,8 +10,6 @@
 #include <signal.h>
 #include <time.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 /* A sweep of the smallest size: two rates, one fall a cell, watched for 1 s. */
 #define SMALL(dir) \
     "drop", "--sweep", "--rate", "90,500", "--falls", "1", "--grid", "3x2", "--jobs", "2", \

@@ -15,7 +15,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LEN(a)  (sizeof(a) / sizeof((a)[0]))
 #define NOISE   EXH_Q(3, 100, EXH_Q_CUR) /* of the monitor, either way, and its steps */
 #define CODES_A (324900 / 176.0)         /* D/A codes an ampere */
 

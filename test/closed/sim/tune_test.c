@@ -13,8 +13,6 @@
 
 #include <inttypes.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 enum how {
     ONE,    /* k from 500 to 5000 N/m, in equal parts */
     HALT,   /* as ONE in one part, and where it is 40 ticks later it is to stay */

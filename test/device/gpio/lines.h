@@ -31,7 +31,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#define LEN(a)  (sizeof(a) / sizeof((a)[0]))
 #define ESTOP   4
 #define SECOND  8
 #define DEADMAN 5

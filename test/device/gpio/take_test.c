@@ -6,8 +6,6 @@
 
 #include <string.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 TEST(all_fields)
 {
     struct gpio_spec s;

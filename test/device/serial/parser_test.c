@@ -9,7 +9,6 @@
 #include <string.h>
 
 #define SENSORS CYBERGLOVE_SENSORS
-#define LEN(a)  (sizeof(a) / sizeof((a)[0]))
 
 static struct emu_cyber glove;
 static struct cyberglove in;

@@ -11,8 +11,7 @@
 #include <stdlib.h>
 #include <sys/wait.h>
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-#define TICKS  120000
+#define TICKS 120000
 
 static const struct frozen {
     const struct side *side;

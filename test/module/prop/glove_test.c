@@ -9,7 +9,6 @@
 #include "check.h"
 #include "wide.h"
 
-#define LEN(a)  (sizeof(a) / sizeof((a)[0]))
 #define SENSORS EXH_GLOVE_SENSORS
 
 static const struct exh_period kilohertz = {1, 1000};

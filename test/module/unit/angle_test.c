@@ -6,7 +6,6 @@
 
 #include "check.h"
 
-#define LEN(a)  (sizeof(a) / sizeof((a)[0]))
 #define ONE_Q30 (INT32_C(1) << 30)
 
 TEST(quarters_are_exact)

@@ -9,7 +9,6 @@
 #include <string.h>
 
 #define VALUES EXH_WHENS
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
 
 enum { BEFORE, CALM, OPEN, PHASES };
 

@@ -15,12 +15,11 @@
 /* Compiled here, as images of scenes have it and the library has not. */
 #include "../../../lib/src/run/calib_set.c"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-#define N(f)   EXH_Q(f, 1000, EXH_Q_FORCE) /* mN */
-#define A(i)   EXH_Q(i, 1000, EXH_Q_CUR)   /* mA */
-#define DAY    20000
-#define ALL    31u
-#define KF     3000 /* mN/A */
+#define N(f) EXH_Q(f, 1000, EXH_Q_FORCE) /* mN */
+#define A(i) EXH_Q(i, 1000, EXH_Q_CUR)   /* mA */
+#define DAY  20000
+#define ALL  31u
+#define KF   3000 /* mN/A */
 
 static const struct exh_signal_group group = {exh_drive_rows, EXH_DRIVE_ROWS, EXH_FINGERS};
 static const struct exh_signal_table table = {&group, 1};

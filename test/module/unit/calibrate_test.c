@@ -8,7 +8,6 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
 #define N(f)   EXH_Q(f, 1000, EXH_Q_FORCE) /* mN */
 #define A(i)   EXH_Q(i, 1000, EXH_Q_CUR)   /* mA */
 #define POINTS 4

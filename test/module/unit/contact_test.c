@@ -7,8 +7,6 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 static const struct exh_contact_par par_20k = {
     .k_Npm_q10 = EXH_Q(20000, 1, EXH_Q_K),
     .b_Nspm_q20 = EXH_Q(60, 1, EXH_Q_B),

@@ -17,7 +17,6 @@
 
 #define ROUNDS 1500u
 #define TICKS  24u
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
 
 static uint32_t seed = 1;
 

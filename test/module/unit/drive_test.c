@@ -8,8 +8,6 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 /* --- one axis: 10 N per A --- */
 
 #define NEWTON (1 << EXH_Q_FORCE)

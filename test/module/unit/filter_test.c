@@ -6,8 +6,6 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 static const struct exh_filter_cfg *tuned(int32_t order, int32_t fc_Hz_q16, uint32_t rate_Hz)
 {
     static struct exh_filter_cfg cfg;

@@ -7,8 +7,6 @@
 #include "check.h"
 #include "wide.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 TEST(sat32_keeps_the_sign_and_is_audited)
 {
     static const struct {

@@ -8,9 +8,8 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-#define K(v)   EXH_Q(v, 1, EXH_Q_K)
-#define B(v)   EXH_Q(v, 1, EXH_Q_B)
+#define K(v) EXH_Q(v, 1, EXH_Q_K)
+#define B(v) EXH_Q(v, 1, EXH_Q_B)
 
 /* 0: 10000, 20: 30000, 40: 20000, 50: 0; from 500 up; at 2000 Hz. */
 static const struct exh_gains_par rule = {

@@ -4,8 +4,6 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 struct box {
     struct exh_drive_par par[EXH_FINGERS];
     struct exh_knot knot[2];

@@ -6,8 +6,7 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-#define ALL    ((1u << EXH_GLOVE_SENSORS) - 1u)
+#define ALL ((1u << EXH_GLOVE_SENSORS) - 1u)
 
 static struct exh_glove_cal sound(void)
 {

@@ -7,8 +7,7 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-#define ALL    ((1u << EXH_GLOVE_SENSORS) - 1u)
+#define ALL ((1u << EXH_GLOVE_SENSORS) - 1u)
 
 struct fixture {
     struct exh_glove_par par;

@@ -9,8 +9,6 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 static struct exh_hand_par defaults(void)
 {
     const struct exh_hand_par par = {

@@ -4,8 +4,6 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 static const struct exh_signal rows[] = {
     {0x8001, 0, EXH_WHEN_ANY, -100, 100, 1, "a", "", "a"},
     {0x8002, 0, EXH_WHEN_ANY, -100, 100, 2, "b", "", "b"},

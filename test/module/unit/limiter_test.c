@@ -6,8 +6,7 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-#define UNIT   1000000
+#define UNIT 1000000
 
 /* 1 kHz, 5 units of effort, 100 units/s up, 200 down; ramp 100 ms, release 10 ms. */
 static const struct exh_limiter_par effort_par = {

@@ -7,7 +7,6 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
 #define MPS    (1 << 27)
 #define AMPERE (1 << 26)
 

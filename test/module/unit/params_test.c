@@ -9,8 +9,6 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 static const struct exh_signal rows[] = {
     {0x7101, 0, EXH_WHEN_SLEWED, INT32_MIN, INT32_MAX, 0, "force", "n", "little by little"},
     {0x7102, 0, EXH_WHEN_ANY, -10, 10, 3, "bit", "", "at once"},

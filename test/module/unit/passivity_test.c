@@ -8,7 +8,6 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
 #define NEWTON EXH_Q(1, 1, EXH_Q_FORCE)
 #define AMPERE EXH_Q(1, 1, EXH_Q_CUR)
 #define STEP   EXH_Q(1, 10000, EXH_Q_STEP) /* 0.1 mm */

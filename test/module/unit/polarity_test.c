@@ -6,9 +6,8 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-#define STEP   EXH_Q(1, 10000, EXH_Q_STEP) /* 0.1 mm a count */
-#define PULL   EXH_Q(3, 10, EXH_Q_FORCE)
+#define STEP EXH_Q(1, 10000, EXH_Q_STEP) /* 0.1 mm a count */
+#define PULL EXH_Q(3, 10, EXH_Q_FORCE)
 
 static const struct exh_period kHz = {1, 1000};
 static const struct exh_polarity_par par = {PULL, 400, EXH_Q(3, 10000, EXH_Q_POS)};

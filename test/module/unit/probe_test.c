@@ -6,9 +6,8 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-#define MA(i)  EXH_Q(i, 1000, EXH_Q_CUR)
-#define MM(l)  EXH_Q(l, 1000, EXH_Q_POS)
+#define MA(i) EXH_Q(i, 1000, EXH_Q_CUR)
+#define MM(l) EXH_Q(l, 1000, EXH_Q_POS)
 
 /* 100 um a count, 1 kHz: a dwell of 10 ms is 10 ticks, 1 mm is 10 counts. */
 static const struct exh_probe_scale scale = {EXH_Q(1, 10000, EXH_Q_STEP), {1, 1000}};

@@ -7,8 +7,7 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-#define ILL    99
+#define ILL 99
 
 /* Place of A<<1|B in the upward sequence 00 01 11 10. */
 static const int place[4] = {0, 1, 3, 2};

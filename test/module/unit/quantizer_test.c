@@ -6,8 +6,6 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 TEST(refusals)
 {
     static const struct {

@@ -15,7 +15,6 @@
 #include "check.h"
 
 #define FIELDS_MAX  16u
-#define LEN(a)      (sizeof(a) / sizeof((a)[0]))
 #define A(num, den) EXH_Q(num, den, EXH_Q_CUR)
 #define M(num, den) EXH_Q(num, den, EXH_Q_POS)
 

@@ -6,8 +6,6 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 static const uint8_t all_types[] = {EXH_RECORD_HEADER, EXH_RECORD_FRAME, EXH_RECORD_EVENT,
     EXH_RECORD_KEYFRAME, EXH_RECORD_DROPPED, EXH_RECORD_END};
 

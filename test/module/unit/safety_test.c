@@ -7,7 +7,6 @@
 
 #include "check.h"
 
-#define LEN(a)     (sizeof(a) / sizeof((a)[0]))
 #define ALL_DRIVES (31u * EXH_DIN_DRIVE0)
 #define HEALTHY    (EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS | ALL_DRIVES)
 #define FULL       (1 << 30)

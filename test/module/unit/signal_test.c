@@ -14,8 +14,6 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 /* Group A: two rows, once. Group B: three rows, twice: values 2..4 and 5..7. */
 static const struct exh_signal row_a[] = {
     {0x7101, 0, EXH_WHEN_ANY, -10, 10, 3, "gain", "", "may change at any time"},

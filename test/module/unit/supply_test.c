@@ -6,7 +6,6 @@
 
 #include "check.h"
 
-#define LEN(a)  (sizeof(a) / sizeof((a)[0]))
 #define V(n)    EXH_Q(n, 1, EXH_Q_SUPPLY)
 #define QUARTER EXH_Q(4 * 10, 32768, EXH_Q_VPRAW) /* through 1:4: 24 V are 19660.8 codes */
 

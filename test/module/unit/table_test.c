@@ -7,8 +7,6 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 #define KNOTS 5
 static void some_table(struct exh_knot *k)
 {

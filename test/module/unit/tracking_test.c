@@ -6,7 +6,6 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
 #define TOL    EXH_Q(1, 4, EXH_Q_CUR)
 #define AMPERE EXH_Q(1, 1, EXH_Q_CUR)
 

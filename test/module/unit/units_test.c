@@ -4,8 +4,6 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 TEST(formats_are_the_documented_ones)
 {
     static const struct {

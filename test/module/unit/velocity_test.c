@@ -8,8 +8,6 @@
 #include "check.h"
 #include "wide.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 /* 15.7 um a count (10 mm pulley, 4000 counts a turn); 1/2000 s. */
 static const struct exh_velocity_scale scale_2k = {69049330, {1, 2000}};
 /* A rate that divides nothing: 8254 timer, divisor 65. */

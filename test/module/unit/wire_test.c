@@ -8,8 +8,6 @@
 
 #include "check.h"
 
-#define LEN(a) (sizeof(a) / sizeof((a)[0]))
-
 static uint8_t buf[EXH_WIRE_MAX_B];
 
 static struct exh_wire_packet sample(uint8_t type)
