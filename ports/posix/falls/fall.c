@@ -30,5 +30,8 @@ const char *fall_status_text(enum fall_status status)
     return "unknown status";
 }
 
-/* Never a null pointer for an empty list; calloc refuses a product that wraps. */
-void *fall_alloc(size_t n, size_t size_B) { return calloc(n ? n : 1, size_B); }
+/* Never a null pointer for an empty list, and none of a product that wraps. */
+void *fall_alloc(size_t n, size_t size_B)
+{
+    return n <= SIZE_MAX / size_B ? malloc(n ? n * size_B : 1) : NULL;
+}

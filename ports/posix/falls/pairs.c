@@ -2,6 +2,7 @@
 #include "falls/pairs.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum fall_status fall_pairs_alloc(struct fall_pairs *p, size_t cap)
 {
@@ -38,20 +39,22 @@ enum fall_status fall_pool(const struct fall_log *log, const struct fall_contact
     return FALL_OK;
 }
 
-/* Merges [lo, mid) and [mid, hi); of two equal forces the left one goes first,
- * which is what makes the sort stable. */
+/* Merges [lo, mid) and [mid, hi). Of two equal forces the left one goes first, so the sort is
+ * stable. The choice is a number, not a branch: it cannot be predicted. */
 static void merge(
     const struct fall_pair *from, struct fall_pair *to, size_t lo, size_t mid, size_t hi)
 {
-    size_t left = lo, right = mid;
+    const struct fall_pair *left = from + lo, *right = from + mid;
+    const struct fall_pair *const left_end = right, *const right_end = from + hi;
 
-    for (size_t i = lo; i < hi; i++) {
-        if (left < mid && (right == hi || from[left].f_N <= from[right].f_N)) {
-            to[i] = from[left++];
-        } else {
-            to[i] = from[right++];
-        }
+    for (to += lo; left < left_end && right < right_end; to++) {
+        const int is_left = left->f_N <= right->f_N;
+        *to = *(is_left ? left : right);
+        left += is_left;
+        right += !is_left;
     }
+    memcpy(to, left, (size_t)(left_end - left) * sizeof *to);
+    memcpy(to + (left_end - left), right, (size_t)(right_end - right) * sizeof *to);
 }
 
 static enum fall_status sort_by_force(struct fall_pairs *p)
@@ -89,16 +92,16 @@ enum fall_status fall_band(
  * positions give equal averages to the last bit. */
 static struct fall_pair window(const struct fall_pair *first, enum fall_force force)
 {
+    struct fall_pair out = first[FALL_WINDOW / 2];
     double q = 0.0, f = 0.0;
 
-    for (size_t i = 0; i < FALL_WINDOW; i++) {
-        q += first[i].q_m;
-        f += first[i].f_N;
-    }
-    struct fall_pair out = first[FALL_WINDOW / 2];
+    for (size_t i = 0; i < FALL_WINDOW; i++) { q += first[i].q_m; }
     out.q_m = q / FALL_WINDOW;
     if (force == FALL_FORCE_NEWEST) { out.f_N = first[FALL_WINDOW - 1].f_N; }
-    if (force == FALL_FORCE_MEAN) { out.f_N = f / FALL_WINDOW; }
+    if (force == FALL_FORCE_MEAN) {
+        for (size_t i = 0; i < FALL_WINDOW; i++) { f += first[i].f_N; }
+        out.f_N = f / FALL_WINDOW;
+    }
     return out;
 }
 
