@@ -4,7 +4,7 @@
 # Every scene that has a subcommand, over the simulated device.
 cli_src := $(wildcard ports/posix/exhand/*.c ports/posix/exhand/*/*.c) \
            $(wildcard $(addprefix ports/posix/,base/*.c box/*.c falls/*.c identify/*.c slave/*.c)) \
-           $(addprefix lib/src/run/,log.c blackbox.c deadman.c calib_set.c crc_table.c) \
+           $(addprefix lib/src/run/,log.c blackbox.c deadman.c calib_set.c) ports/posix/crc.c \
            $(addprefix examples/,drop/drop.c guarded/guarded.c calibrate/calibrate.c glove/glove.c \
              glove/cal.c) \
            $(wildcard $(addprefix examples/,bilateral/*.c bringup/*.c identify/*.c)) \
