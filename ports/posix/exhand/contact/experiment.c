@@ -28,22 +28,31 @@ static void judge(const struct bilateral_run_cfg *c, const struct bilateral_run 
     out->drawn_Npm = out->count.line.k_Npm;
 }
 
+static void local_run(const void *ctx, int i, void *result)
+{
+    struct run_cfg c = *(const struct run_cfg *)ctx;
+    c.board.seed += (uint64_t)i;
+    *(struct table2_result *)result = table2_measure(&c, NULL, TABLE2_SAME);
+}
+
 /* The drop experiment at the same rate and gains, with a random wall in each run. */
-static struct table2_runs local_runs(const struct bilateral_options *o)
+static int local_runs(const struct bilateral_options *o, struct table2_runs *out)
 {
     struct run_cfg c = {.rate_Hz = o->run.rate_Hz, .k_Npm = o->run.k_Npm, .b_Nspm = o->run.b_Nspm};
     static struct table2_result r[LOCAL_RUNS];
-    struct table2_runs none = {0};
-    if (o->udp || c.k_Npm < 0 || c.b_Nspm < 0) { return none; } /* of what, is not known here */
+    const struct jobs jobs = {
+        LOCAL_RUNS, (int)o->jobs, sizeof r[0], r, local_run, &c, "falls", posix_interrupt};
+    int err;
+    memset(out, 0, sizeof *out);
+    if (o->udp || c.k_Npm < 0 || c.b_Nspm < 0) { return 0; } /* of what, is not known here */
     c.board = posix_config_default();
     c.board.device = o->run.board.device;
     c.board.falls = 10;
+    c.board.seed = (uint64_t)o->seed;
     c.wall = RUN_WALL_DRAWN;
-    for (int i = 0; i < LOCAL_RUNS; i++) {
-        c.board.seed = (uint64_t)o->seed + (uint64_t)i;
-        r[i] = table2_measure(&c, NULL, TABLE2_SAME);
-    }
-    return table2_runs(r, NULL, LOCAL_RUNS);
+    err = jobs_run(&jobs);
+    if (err == 0) { *out = table2_runs(r, NULL, LOCAL_RUNS); }
+    return err;
 }
 
 /* The same approaches over a perfect link: which fingers had every bit of theirs. */
@@ -183,9 +192,10 @@ static int one_speed(
 int bilateral_experiment(const struct bilateral_options *o)
 {
     static struct bilateral_result result[BILATERAL_SPEEDS_MAX * BILATERAL_FINGERS];
-    const struct table2_runs local = local_runs(o);
+    struct table2_runs local;
     FILE *csv;
-    int n = 0, err = 0, heard = 0;
+    int n = 0, err = local_runs(o, &local), heard = 0;
+    if (err) { return err; }
     memset(result, 0, sizeof result);
     if (o->run.k_Npm < 0 || o->run.b_Nspm < 0) {
         printf("%.6g Hz, %s's own k and b", (double)o->run.rate_Hz, o->scene);
