@@ -1,30 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The scene identify keeps its limits at any rate, and ends with a cause whatever is wrong. */
-#include "identify/session.h"
-
-#include "check.h"
+#include "identify_rig.h"
 
 #include "identify/identify.h"
-
-static struct identify_data data;
-
-static struct identify_session session(uint64_t seed)
-{
-    struct identify_session c;
-    memset(&c, 0, sizeof c);
-    c.rate_Hz = 2000;
-    c.mass_kg = 0.5;
-    c.repeats = 2;
-    c.board = posix_config_default();
-    c.board.seed = seed;
-    return c;
-}
-
-static void run(const struct identify_session *c)
-{
-    identify_data_free(&data);
-    CHECK_EQ_I64(identify_session(c, &data), 0);
-}
 
 static double most_A(void)
 {

@@ -5,7 +5,7 @@
 #include "base/assign.h"
 #include "file_of.h"
 #include "identify/estimate.h"
-#include "identify/session.h"
+#include "identify_rig.h"
 #include "said.h"
 
 #include "identify/identify.h"
@@ -16,27 +16,8 @@
 #include <stdlib.h>
 
 static struct said s;
-static struct identify_data data;
 
 /* --- the estimate --- */
-
-static struct identify_session session(uint64_t seed)
-{
-    struct identify_session c;
-    memset(&c, 0, sizeof c);
-    c.rate_Hz = 2000;
-    c.mass_kg = 0.5;
-    c.repeats = 2;
-    c.board = posix_config_default();
-    c.board.seed = seed;
-    return c;
-}
-
-static void run(const struct identify_session *c)
-{
-    identify_data_free(&data);
-    CHECK_EQ_I64(identify_session(c, &data), 0);
-}
 
 TEST(what_is_found_is_the_device)
 {

@@ -65,102 +65,98 @@ static void tick(void)
 }
 
 /* k of the file, by a box that starts with it; INT32_MIN: no file. */
-static int32_t kept(const char *path)
+static int32_t kept(const char *from)
 {
-    FILE *f = fopen(path, "rb");
+    FILE *f = fopen(from, "rb");
     if (f == NULL) { return INT32_MIN; }
     fclose(f);
     end();
     sc->defaults();
-    CHECK_EQ_I64(params_load_file(path, sc->params), 0);
+    CHECK_EQ_I64(params_load_file(from, sc->params), 0);
     return sc->params->staged[k];
+}
+
+static char *dir;
+static const char *path;
+
+static void start(void)
+{
+    dir = said_dir();
+    path = said_path(dir, "p.img");
+    begin(path);
+}
+
+static void ends_with(int32_t want)
+{
+    mail_end();
+    CHECK_EQ_I64(kept(path), want);
+    said_clean(dir);
 }
 
 TEST(behind_the_last_tick_too)
 {
-    char *dir = said_dir();
-    const char *path = said_path(dir, "p.img");
     int32_t was;
-    begin(path);
+    start();
     was = sc->params->staged[k];
     tick();
     ask(SAVE);
     CHECK_EQ_I64(kept(path), INT32_MIN);
-    mail_end();
-    CHECK_EQ_I64(kept(path), was);
-    said_clean(dir);
+    ends_with(was);
 }
 
 /* The registers are in use at the last tick's end: nothing is copied there. */
 TEST(in_a_last_tick_that_found_the_registers_in_use)
 {
-    char *dir = said_dir();
-    const char *path = said_path(dir, "p.img");
     struct exh_scene_in in = {0};
     int32_t was;
-    begin(path);
+    start();
     was = sc->params->staged[k];
     ask(SAVE);
     (void)mail_before(&in);
     (void)mail_take();
     mail_after(&in);
     mail_give();
-    mail_end();
-    CHECK_EQ_I64(kept(path), was);
-    said_clean(dir);
+    ends_with(was);
 }
 
 /* The second save is requested before the first is written: the second stays. */
 TEST(of_two_the_later_stays)
 {
-    char *dir = said_dir();
-    const char *path = said_path(dir, "p.img");
     int32_t goal;
-    begin(path);
+    start();
     ask(SAVE);
     tick();
     goal = ask_for_more();
     tick();
-    mail_end();
-    CHECK_EQ_I64(kept(path), goal);
-    said_clean(dir);
+    ends_with(goal);
 }
 
 TEST(what_was_applied_with_it_is_in_it)
 {
-    char *dir = said_dir();
-    const char *path = said_path(dir, "p.img");
     int32_t goal;
-    begin(path);
+    start();
     tick();
     goal = ask_for_more();
-    mail_end();
-    CHECK_EQ_I64(kept(path), goal);
-    said_clean(dir);
+    ends_with(goal);
 }
 
 TEST(it_keeps_what_is_wanted)
 {
-    char *dir = said_dir();
-    const char *path = said_path(dir, "p.img");
     int32_t goal;
-    begin(path);
+    start();
     tick();
     goal = ask_for_more();
     tick();
     CHECK(sc->params->active[k] < goal && sc->params->moving, "it is there already");
     stage(goal + 4096); /* not applied: not wanted */
     mail_save();
-    mail_end();
-    CHECK_EQ_I64(kept(path), goal);
-    said_clean(dir);
+    ends_with(goal);
 }
 
 TEST(what_cannot_be_written_leaves_what_was)
 {
-    char *dir = said_dir();
-    const char *path = said_path(dir, "no/p.img");
-    begin(path);
+    dir = said_dir();
+    begin(said_path(dir, "no/p.img"));
     ask(SAVE);
     tick();
     mail_save();
