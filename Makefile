@@ -62,7 +62,7 @@ base += $(shell $(CC) -fmacro-prefix-map=a=b -E -xc /dev/null >/dev/null 2>&1 &&
 
 # What all objects are compiled with. Another text here compiles all anew.
 stamp      := $(out)/flags
-flags_text := $(CC) | $(base) | $(PORT_CFLAGS) | $(PORT_WHOLE) | $(PORT_FLOAT) | \
+flags_text := $(CC) | $(base) | $(PORT_CFLAGS) | $(PORT_WHOLE) | $(PORT_INLINE) | $(PORT_FLOAT) | \
               $(PORT_HOSTFLAGS) | $(CFLAGS) | $(LDFLAGS)
 
 # lib/src/run needs a board and a scene: it is of images, not of the library.
@@ -124,7 +124,8 @@ image_of  := $(SCENE)$(if $(FROZEN),-frozen-$(subst /,_,$(FROZEN)))$(if $(filter
              custom,$(SCENE)),$(filter-out -wall,-$(MODEL_NAME)))
 image     := $(out)/$(image_of)$(PORT_SUFFIX).elf
 # A scene with SCENE_WHOLE is optimised as one program with library, loop and cards, if the port has
-# flags for it (PORT_WHOLE). The port's files are not, as interrupts, faults and tests enter there.
+# flags for it (PORT_WHOLE). The port's files are not, as interrupts, faults and tests enter there,
+# but for those of PORT_INLINE.
 # Records are not, as the bound of the stack finds their indirect calls by file.
 one      := $(if $(FROZEN),,$(and $(PORT_WHOLE),$(SCENE_WHOLE)))
 one_at   := $(out)$(if $(one),/whole)
@@ -132,7 +133,7 @@ one_lib  := $(if $(one),$(one_at)/libexhand.a,$(lib))
 one_link := $(if $(one),$(base) $(PORT_CFLAGS) $(PORT_WHOLE) -flto-partition=one \
             -Wno-maybe-uninitialized $(CFLAGS))
 ifneq ($(one),)
-$(out)/$(SCENE)/ports/cards/%.o: SCENE_CFLAGS += $(PORT_WHOLE)
+$(out)/$(SCENE)/ports/cards/%.o $(PORT_INLINE:%.c=$(out)/$(SCENE)/%.o): SCENE_CFLAGS += $(PORT_WHOLE)
 $(one_at)/%.o: %.c $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(base) $(PORT_CFLAGS) $(if $(filter lib/%,$<),,$(PORT_HOSTFLAGS)) $(PORT_WHOLE) \

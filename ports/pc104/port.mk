@@ -34,6 +34,8 @@ PORT_CFLAGS   := -m32 -march=i686 -ffreestanding -fno-pic -fno-pie -fno-stack-pr
                  -fcf-protection=none -fno-asynchronous-unwind-tables -mgeneral-regs-only
 # For a scene with much to do in a tick (SCENE_WHOLE): an eighth fewer instructions, and 30 KB more.
 PORT_WHOLE    := -O3 -flto -ffat-lto-objects
+# An access is one instruction, and a call of it six more.
+PORT_INLINE   := ports/pc104/port_io.c
 PORT_FLOAT    := -msse2 -mfpmath=sse -fno-math-errno
 comma         := ,
 PORT_LDFLAGS   = -m32 -nostdlib -static -no-pie \
