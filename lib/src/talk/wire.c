@@ -6,10 +6,12 @@
 #include "exhand/safety.h"
 
 #include "../num/mem.h"
+#include "../num/place.h"
 
 #define HEAD_B     UINT32_C(18)
 #define LEN_AT     4u
 #define CRC_B      4u
+#define PLANE_B    40u
 #define FINGERS_OF ((1u << EXH_FINGERS) - 1u)
 #define WINDOW     64 /* number of past sequence numbers remembered */
 
@@ -20,15 +22,15 @@ struct head {
     uint32_t session, seq, stamp_us;
 };
 
-static void head_bytes(struct exh_bytes *c, struct head *h)
+static inline void head_at(uint8_t *p, struct head *h, int reads)
 {
-    exh_bytes_u16(c, &h->magic);
-    exh_bytes_u8(c, &h->version);
-    exh_bytes_u8(c, &h->type);
-    exh_bytes_u16(c, &h->len_B);
-    exh_bytes_u32(c, &h->session);
-    exh_bytes_u32(c, &h->seq);
-    exh_bytes_u32(c, &h->stamp_us);
+    place_u16(p, &h->magic, reads);
+    place_u8(p + 2, &h->version, reads);
+    place_u8(p + 3, &h->type, reads);
+    place_u16(p + LEN_AT, &h->len_B, reads);
+    place_u32(p + 6, &h->session, reads);
+    place_u32(p + 10, &h->seq, reads);
+    place_u32(p + 14, &h->stamp_us, reads);
 }
 
 /* --- payloads --- */
@@ -39,15 +41,21 @@ static void demand(struct exh_bytes *c, int holds)
     if (!holds) { exh_bytes_fail(c); }
 }
 
+static inline void hello_at(uint8_t *p, struct exh_wire_hello *h, int reads)
+{
+    place_u8(p, &h->role, reads);
+    place_u32(p + 1, &h->lib_version, reads);
+    place_u32(p + 5, &h->table_crc, reads);
+    for (unsigned i = 0; i < 2 * EXH_FINGERS; i++) {
+        place_i16(p + 9 + 2 * i, &h->pull_radpm_q7[i / 2][i % 2], reads);
+    }
+}
+
 static void hello_bytes(struct exh_bytes *c, struct exh_wire_hello *h)
 {
-    exh_bytes_u8(c, &h->role);
-    exh_bytes_u32(c, &h->lib_version);
-    exh_bytes_u32(c, &h->table_crc);
-    for (unsigned f = 0; f < EXH_FINGERS; f++) {
-        exh_bytes_i16(c, &h->pull_radpm_q7[f][0]);
-        exh_bytes_i16(c, &h->pull_radpm_q7[f][1]);
-    }
+    uint8_t *const p = place_of(c, 9 + 4 * EXH_FINGERS);
+    if (p == NULL) { return; }
+    PLACE(c, hello_at, p, h);
     demand(c, h->role <= EXH_WIRE_WORLD);
 }
 
@@ -80,32 +88,32 @@ static void state_bytes(struct exh_bytes *c, struct exh_wire_state *s)
     demand(c, (s->fingers | s->frozen | s->touching) <= FINGERS_OF && s->state <= EXH_STATE_FAULT);
 }
 
-static void plane_bytes(struct exh_bytes *c, struct exh_wire_plane *p)
+static inline void planes_at(uint8_t *p, struct exh_wire_planes *s, int reads)
 {
-    /* In one call, which checks the room once. */
-    const int32_t *const n = p->normal_q30, *const at = p->point_m_q30, *const hit = p->hit_m_q30;
-    int32_t v[] = {n[0], n[1], n[2], at[0], at[1], at[2], hit[0], hit[1], hit[2]};
-    exh_bytes_u8(c, &p->kind);
-    exh_bytes_u8(c, &p->material);
-    exh_bytes_u16(c, &p->object);
-    exh_bytes_i32s(c, v, 9);
-    for (unsigned i = 0; i < 3; i++) {
-        p->normal_q30[i] = v[i];
-        p->point_m_q30[i] = v[3 + i];
-        p->hit_m_q30[i] = v[6 + i];
+    place_u32(p, &s->echo_seq, reads);
+    place_u32(p + 4, &s->echo_stamp_us, reads);
+    place_u8(p + 8, &s->fingers, reads);
+    p += 9;
+    for (unsigned f = 0; f < EXH_FINGERS; f++, p += PLANE_B) {
+        struct exh_wire_plane *const w = &s->plane[f];
+        place_u8(p, &w->kind, reads);
+        place_u8(p + 1, &w->material, reads);
+        place_u16(p + 2, &w->object, reads);
+        place_vec3(p + 4, w->normal_q30, reads);
+        place_vec3(p + 16, w->point_m_q30, reads);
+        place_vec3(p + 28, w->hit_m_q30, reads);
     }
-    demand(c, p->kind <= EXH_PLANE_HIT);
 }
 
 static void planes_bytes(struct exh_bytes *c, struct exh_wire_planes *s)
 {
-    exh_bytes_u32(c, &s->echo_seq);
-    exh_bytes_u32(c, &s->echo_stamp_us);
-    exh_bytes_u8(c, &s->fingers);
+    uint8_t *const p = place_of(c, 9 + EXH_FINGERS * PLANE_B);
+    if (p == NULL) { return; }
+    PLACE(c, planes_at, p, s);
     demand(c, s->fingers <= FINGERS_OF);
     for (unsigned f = 0; f < EXH_FINGERS; f++) {
-        plane_bytes(c, &s->plane[f]);
-        demand(c, s->fingers >> f & 1 || s->plane[f].kind == EXH_PLANE_UNTOLD);
+        const unsigned kind = s->plane[f].kind;
+        demand(c, kind <= EXH_PLANE_HIT && (s->fingers >> f & 1 || kind == EXH_PLANE_UNTOLD));
     }
 }
 
@@ -129,6 +137,7 @@ static void trace_bytes(struct exh_bytes *c, struct exh_wire_trace *t)
     exh_bytes_i16(c, &t->result);
     exh_bytes_u8(c, &t->frames);
     demand(c, t->frames <= EXH_WIRE_FRAMES && t->result <= 0 && (t->result == 0 || t->frames == 0));
+    if (c->mode == EXH_BYTES_READ) { memset(t->frame, 0, sizeof t->frame); }
     for (unsigned i = 0; i < t->frames && i < EXH_WIRE_FRAMES; i++) {
         exh_bytes_u32(c, &t->frame[i].tick);
         exh_bytes_i32s(c, t->frame[i].raw, EXH_TRACE_SIGNALS);
@@ -175,8 +184,9 @@ int32_t exh_wire_encode(
 {
     struct head h = {EXH_WIRE_MAGIC, EXH_WIRE_VERSION, p->type, 0, tx->session, tx->seq, stamp_us};
     struct exh_bytes c = exh_bytes_writer(buf, cap_B);
+    uint8_t *const head = place_of(&c, HEAD_B);
     uint32_t end, crc;
-    head_bytes(&c, &h);
+    if (head != NULL) { head_at(head, &h, 0); }
     if (!payload_bytes(&c, p)) { return -EXH_E_UNKNOWN; }
     end = c.at;
     if (end == UINT32_MAX || tx->session == 0) { return -EXH_E_RANGE; }
@@ -199,17 +209,16 @@ static int read_packet(struct exh_wire_rx *rx, struct head *h, struct exh_wire_p
     const uint8_t *buf, size_t len_B)
 {
     struct exh_bytes c = exh_bytes_reader(buf, len_B);
-    uint32_t crc = 0, whole_B;
-    head_bytes(&c, h);
+    uint8_t *const head = place_of(&c, HEAD_B);
+    uint32_t whole_B;
+    if (head != NULL) { head_at(head, h, 1); }
     whole_B = HEAD_B + h->len_B + CRC_B;
-    if (!exh_bytes_ok(&c) || (len_B != whole_B && len_B != whole_B + EXH_WIRE_SEAL_B)) {
+    if (head == NULL || (len_B != whole_B && len_B != whole_B + EXH_WIRE_SEAL_B)) {
         rx->corrupt++;
         return -EXH_E_SHORT;
     }
-    c.at = HEAD_B + h->len_B;
-    exh_bytes_u32(&c, &crc);
     if (h->magic != EXH_WIRE_MAGIC || h->session == 0 ||
-        crc != exh_crc32(0, buf, HEAD_B + h->len_B)) {
+        word_at(buf + HEAD_B + h->len_B) != exh_crc32(0, buf, HEAD_B + h->len_B)) {
         rx->corrupt++;
         return -EXH_E_CRC;
     }
@@ -220,7 +229,6 @@ static int read_packet(struct exh_wire_rx *rx, struct head *h, struct exh_wire_p
     p->type = h->type;
     p->seq = h->seq;
     p->stamp_us = h->stamp_us;
-    c.at = HEAD_B;
     if (!payload_bytes(&c, p)) {
         rx->unknown++;
         return -EXH_E_UNKNOWN;
@@ -311,7 +319,7 @@ int exh_wire_poll(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us)
 int exh_wire_decode(
     struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf, size_t len_B)
 {
-    struct exh_wire_packet now = {0};
+    struct exh_wire_packet now; /* its payload clears what is longer than others: a trace */
     struct head h = {0, 0, 0, 0, 0, 0, 0};
     const uint32_t reordered = rx->reordered;
     int r = read_packet(rx, &h, &now, (const uint8_t *)buf, len_B);
