@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Many fields in one call through a cursor. A cursor that writes and has room needs no call for
- * each field. Any other takes field by field. The bytes are the same. */
+ * each field. Any other takes field by field. The bytes are the same. A packet is read in the same
+ * way. */
 #ifndef NUM_PACK_H
 #define NUM_PACK_H
 
@@ -13,6 +14,15 @@ static inline uint8_t *pack_room(struct exh_bytes *c, uint32_t n)
 {
     const uint32_t at = c->at;
     if (c->mode != EXH_BYTES_WRITE || at > c->cap || n > c->cap - at) { return NULL; }
+    c->at = at + n;
+    return c->p + at;
+}
+
+/* The place of n bytes that are read now, or NULL. */
+static inline const uint8_t *unpack_room(struct exh_bytes *c, uint32_t n)
+{
+    const uint32_t at = c->at;
+    if (c->mode != EXH_BYTES_READ || at > c->cap || n > c->cap - at) { return NULL; }
     c->at = at + n;
     return c->p + at;
 }

@@ -6,12 +6,12 @@
 #include "exhand/safety.h"
 
 #include "../num/mem.h"
-#include "../num/place.h"
+#include "../num/pack.h"
+#include "../num/word.h"
 
 #define HEAD_B     UINT32_C(18)
 #define LEN_AT     4u
 #define CRC_B      4u
-#define PLANE_B    40u
 #define FINGERS_OF ((1u << EXH_FINGERS) - 1u)
 #define WINDOW     64 /* number of past sequence numbers remembered */
 
@@ -22,15 +22,15 @@ struct head {
     uint32_t session, seq, stamp_us;
 };
 
-static inline void head_at(uint8_t *p, struct head *h, int reads)
+static void head_bytes(struct exh_bytes *c, struct head *h)
 {
-    place_u16(p, &h->magic, reads);
-    place_u8(p + 2, &h->version, reads);
-    place_u8(p + 3, &h->type, reads);
-    place_u16(p + LEN_AT, &h->len_B, reads);
-    place_u32(p + 6, &h->session, reads);
-    place_u32(p + 10, &h->seq, reads);
-    place_u32(p + 14, &h->stamp_us, reads);
+    exh_bytes_u16(c, &h->magic);
+    exh_bytes_u8(c, &h->version);
+    exh_bytes_u8(c, &h->type);
+    exh_bytes_u16(c, &h->len_B);
+    exh_bytes_u32(c, &h->session);
+    exh_bytes_u32(c, &h->seq);
+    exh_bytes_u32(c, &h->stamp_us);
 }
 
 /* --- payloads --- */
@@ -41,38 +41,31 @@ static void demand(struct exh_bytes *c, int holds)
     if (!holds) { exh_bytes_fail(c); }
 }
 
-static inline void hello_at(uint8_t *p, struct exh_wire_hello *h, int reads)
-{
-    place_u8(p, &h->role, reads);
-    place_u32(p + 1, &h->lib_version, reads);
-    place_u32(p + 5, &h->table_crc, reads);
-    for (unsigned i = 0; i < 2 * EXH_FINGERS; i++) {
-        place_i16(p + 9 + 2 * i, &h->pull_radpm_q7[i / 2][i % 2], reads);
-    }
-}
-
 static void hello_bytes(struct exh_bytes *c, struct exh_wire_hello *h)
 {
-    uint8_t *const p = place_of(c, 9 + 4 * EXH_FINGERS);
-    if (p == NULL) { return; }
-    PLACE(c, hello_at, p, h);
+    exh_bytes_u8(c, &h->role);
+    exh_bytes_u32(c, &h->lib_version);
+    exh_bytes_u32(c, &h->table_crc);
+    const uint8_t *const p = unpack_room(c, 4 * EXH_FINGERS);
+    for (unsigned i = 0; i < 2 * EXH_FINGERS; i++) {
+        int16_t *const pull = &h->pull_radpm_q7[i / 2][i % 2];
+        if (p != NULL) {
+            *pull = signed_half(half_at(p + 2 * i));
+        } else {
+            exh_bytes_i16(c, pull);
+        }
+    }
     demand(c, h->role <= EXH_WIRE_WORLD);
 }
 
 static void finger_bytes(struct exh_bytes *c, struct exh_wire_state *s, unsigned f)
 {
-    int32_t *const joint = s->joint_turn_q32[f], *const tip = s->tip_m_q30[f];
-    int32_t v[] = {joint[0], joint[1], joint[2], tip[0], tip[1], tip[2], s->force_N_q20[f],
-        s->d_m_q30[f], s->q_m_q30[f], s->q_lim_m_q30[f]};
-    exh_bytes_i32s(c, v, 10);
-    for (unsigned i = 0; i < 3; i++) {
-        joint[i] = v[i];
-        tip[i] = v[3 + i];
-    }
-    s->force_N_q20[f] = v[6];
-    s->d_m_q30[f] = v[7];
-    s->q_m_q30[f] = v[8];
-    s->q_lim_m_q30[f] = v[9];
+    exh_bytes_i32s(c, s->joint_turn_q32[f], 3);
+    exh_bytes_i32s(c, s->tip_m_q30[f], 3);
+    exh_bytes_i32(c, &s->force_N_q20[f]);
+    exh_bytes_i32(c, &s->d_m_q30[f]);
+    exh_bytes_i32(c, &s->q_m_q30[f]);
+    exh_bytes_i32(c, &s->q_lim_m_q30[f]);
 }
 
 static void state_bytes(struct exh_bytes *c, struct exh_wire_state *s)
@@ -88,32 +81,38 @@ static void state_bytes(struct exh_bytes *c, struct exh_wire_state *s)
     demand(c, (s->fingers | s->frozen | s->touching) <= FINGERS_OF && s->state <= EXH_STATE_FAULT);
 }
 
-static inline void planes_at(uint8_t *p, struct exh_wire_planes *s, int reads)
+static void plane_bytes(struct exh_bytes *c, struct exh_wire_plane *w)
 {
-    place_u32(p, &s->echo_seq, reads);
-    place_u32(p + 4, &s->echo_stamp_us, reads);
-    place_u8(p + 8, &s->fingers, reads);
-    p += 9;
-    for (unsigned f = 0; f < EXH_FINGERS; f++, p += PLANE_B) {
-        struct exh_wire_plane *const w = &s->plane[f];
-        place_u8(p, &w->kind, reads);
-        place_u8(p + 1, &w->material, reads);
-        place_u16(p + 2, &w->object, reads);
-        place_vec3(p + 4, w->normal_q30, reads);
-        place_vec3(p + 16, w->point_m_q30, reads);
-        place_vec3(p + 28, w->hit_m_q30, reads);
+    const uint8_t *const p = unpack_room(c, 40);
+    if (p != NULL) {
+        w->kind = p[0];
+        w->material = p[1];
+        w->object = half_at(p + 2);
+        for (unsigned i = 0; i < 3; i++) {
+            w->normal_q30[i] = exh_from_u32(word_at(p + 4 + 4 * i));
+            w->point_m_q30[i] = exh_from_u32(word_at(p + 16 + 4 * i));
+            w->hit_m_q30[i] = exh_from_u32(word_at(p + 28 + 4 * i));
+        }
+    } else {
+        exh_bytes_u8(c, &w->kind);
+        exh_bytes_u8(c, &w->material);
+        exh_bytes_u16(c, &w->object);
+        exh_bytes_i32s(c, w->normal_q30, 3);
+        exh_bytes_i32s(c, w->point_m_q30, 3);
+        exh_bytes_i32s(c, w->hit_m_q30, 3);
     }
+    demand(c, w->kind <= EXH_PLANE_HIT);
 }
 
 static void planes_bytes(struct exh_bytes *c, struct exh_wire_planes *s)
 {
-    uint8_t *const p = place_of(c, 9 + EXH_FINGERS * PLANE_B);
-    if (p == NULL) { return; }
-    PLACE(c, planes_at, p, s);
+    exh_bytes_u32(c, &s->echo_seq);
+    exh_bytes_u32(c, &s->echo_stamp_us);
+    exh_bytes_u8(c, &s->fingers);
     demand(c, s->fingers <= FINGERS_OF);
     for (unsigned f = 0; f < EXH_FINGERS; f++) {
-        const unsigned kind = s->plane[f].kind;
-        demand(c, kind <= EXH_PLANE_HIT && (s->fingers >> f & 1 || kind == EXH_PLANE_UNTOLD));
+        plane_bytes(c, &s->plane[f]);
+        demand(c, s->fingers >> f & 1 || s->plane[f].kind == EXH_PLANE_UNTOLD);
     }
 }
 
@@ -137,7 +136,6 @@ static void trace_bytes(struct exh_bytes *c, struct exh_wire_trace *t)
     exh_bytes_i16(c, &t->result);
     exh_bytes_u8(c, &t->frames);
     demand(c, t->frames <= EXH_WIRE_FRAMES && t->result <= 0 && (t->result == 0 || t->frames == 0));
-    if (c->mode == EXH_BYTES_READ) { memset(t->frame, 0, sizeof t->frame); }
     for (unsigned i = 0; i < t->frames && i < EXH_WIRE_FRAMES; i++) {
         exh_bytes_u32(c, &t->frame[i].tick);
         exh_bytes_i32s(c, t->frame[i].raw, EXH_TRACE_SIGNALS);
@@ -163,19 +161,10 @@ static int payload_bytes(struct exh_bytes *c, struct exh_wire_packet *p)
     }
 }
 
-/* The size of a payload in memory, since others are up to ten times as long. */
-static size_t payload_size(const struct exh_wire_packet *p)
-{
-    switch (p->type) {
-    case EXH_WIRE_HELLO: return sizeof p->u.hello;
-    case EXH_WIRE_STATE: return sizeof p->u.state;
-    case EXH_WIRE_PLANES: return sizeof p->u.planes;
-    case EXH_WIRE_PARAM: return sizeof p->u.param;
-    case EXH_WIRE_ACK: return sizeof p->u.ack;
-    case EXH_WIRE_TRACE_ASK: return sizeof p->u.trace_ask;
-    default: return sizeof p->u.trace;
-    }
-}
+/* The size of a payload in memory by type, since others are up to ten times as long. */
+static const uint16_t size_B[] = {0, sizeof(struct exh_wire_hello), sizeof(struct exh_wire_state),
+    sizeof(struct exh_wire_planes), sizeof(struct exh_wire_param), sizeof(struct exh_wire_ack),
+    sizeof(struct exh_wire_trace_request), sizeof(struct exh_wire_trace)};
 
 /* --- sending --- */
 
@@ -184,9 +173,8 @@ int32_t exh_wire_encode(
 {
     struct head h = {EXH_WIRE_MAGIC, EXH_WIRE_VERSION, p->type, 0, tx->session, tx->seq, stamp_us};
     struct exh_bytes c = exh_bytes_writer(buf, cap_B);
-    uint8_t *const head = place_of(&c, HEAD_B);
     uint32_t end, crc;
-    if (head != NULL) { head_at(head, &h, 0); }
+    head_bytes(&c, &h);
     if (!payload_bytes(&c, p)) { return -EXH_E_UNKNOWN; }
     end = c.at;
     if (end == UINT32_MAX || tx->session == 0) { return -EXH_E_RANGE; }
@@ -209,9 +197,12 @@ static int read_packet(struct exh_wire_rx *rx, struct head *h, struct exh_wire_p
     const uint8_t *buf, size_t len_B)
 {
     struct exh_bytes c = exh_bytes_reader(buf, len_B);
-    uint8_t *const head = place_of(&c, HEAD_B);
+    const uint8_t *const head = unpack_room(&c, HEAD_B);
     uint32_t whole_B;
-    if (head != NULL) { head_at(head, h, 1); }
+    if (head != NULL) {
+        *h = (struct head){half_at(head), head[2], head[3], half_at(head + LEN_AT),
+            word_at(head + 6), word_at(head + 10), word_at(head + 14)};
+    }
     whole_B = HEAD_B + h->len_B + CRC_B;
     if (head == NULL || (len_B != whole_B && len_B != whole_B + EXH_WIRE_SEAL_B)) {
         rx->corrupt++;
@@ -229,6 +220,7 @@ static int read_packet(struct exh_wire_rx *rx, struct head *h, struct exh_wire_p
     p->type = h->type;
     p->seq = h->seq;
     p->stamp_us = h->stamp_us;
+    if (p->type < sizeof size_B / sizeof size_B[0]) { memset(&p->u, 0, size_B[p->type]); }
     if (!payload_bytes(&c, p)) {
         rx->unknown++;
         return -EXH_E_UNKNOWN;
@@ -319,7 +311,7 @@ int exh_wire_poll(struct exh_wire_rx *rx, uint32_t passed_us, uint32_t limit_us)
 int exh_wire_decode(
     struct exh_wire_rx *rx, struct exh_wire_packet *p, const void *buf, size_t len_B)
 {
-    struct exh_wire_packet now; /* its payload clears what is longer than others: a trace */
+    struct exh_wire_packet now; /* not cleared whole: a trace is three times as long as planes */
     struct head h = {0, 0, 0, 0, 0, 0, 0};
     const uint32_t reordered = rx->reordered;
     int r = read_packet(rx, &h, &now, (const uint8_t *)buf, len_B);
@@ -331,13 +323,13 @@ int exh_wire_decode(
     } else {
         r = refuse(rx, &h);
         if (rx->reordered == reordered || !may_be_late(h.type)) { return r; }
-        memcpy(p, &now, offsetof(struct exh_wire_packet, u) + payload_size(&now));
-        return h.type;
     }
-    rx->accepted++;
-    rx->quiet_us = 0;
-    rx->open = 0;
-    memcpy(p, &now, offsetof(struct exh_wire_packet, u) + payload_size(&now));
+    if (r == 0) {
+        rx->accepted++;
+        rx->quiet_us = 0;
+        rx->open = 0;
+    }
+    memcpy(p, &now, offsetof(struct exh_wire_packet, u) + size_B[now.type]);
     return h.type;
 }
 
@@ -383,10 +375,9 @@ void exh_wire_tx_serialize(struct exh_bytes *c, struct exh_wire_tx *s)
 
 void exh_wire_rx_serialize(struct exh_bytes *c, struct exh_wire_rx *s)
 {
-    uint32_t lo = (uint32_t)(s->seen & UINT32_MAX), hi = (uint32_t)(s->seen >> 32);
-    exh_bytes_u32(c, &lo);
-    exh_bytes_u32(c, &hi);
-    s->seen = (uint64_t)hi << 32 | lo;
+    int64_t seen = exh_from_u64(s->seen);
+    exh_bytes_i64(c, &seen);
+    s->seen = (uint64_t)seen;
     exh_bytes_u32(c, &s->seq);
     exh_bytes_u32(c, &s->session);
     exh_bytes_u32(c, &s->former);
