@@ -4,7 +4,7 @@
 
 #include "exhand/error.h"
 
-#include <stddef.h>
+#include <string.h>
 
 /* --- wiring: this is all of it (docs/CARDS.md) --- */
 
@@ -145,6 +145,7 @@ static void forget(struct exh_box_report *report)
     box.counts = no_counts;
     box.error = no_error;
     box.frame_read = box.scan_read = 0;
+    memset(box.frame, 0, sizeof box.frame);
     for (unsigned i = 0; i < 2; i++) { box.s526[i].live = 0; }
     if (report) {
         static const struct exh_box_report nothing;
@@ -425,7 +426,7 @@ int exh_box_read_glove(struct exh_glove_in *in)
     err = glove_take(&f);
     if (err < 0) { return fail(EXH_BOX_GLOVE, box.mm32xat.base, err, &f); }
     age = box.framed ? box.counts.reads - box.frame_read : UINT16_MAX;
-    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { in->raw[i] = box.framed ? box.frame[i] : 0; }
+    memcpy(in->raw, box.frame, sizeof in->raw);
     in->age_ticks = (uint16_t)(age < UINT16_MAX ? age : UINT16_MAX);
     return 0;
 }

@@ -6,7 +6,7 @@
 
 #include "exhand/error.h"
 
-#include <stddef.h>
+#include <string.h>
 
 /* offsets, 8 bits each */
 enum {
@@ -221,7 +221,7 @@ static int end_scan(struct exh_mm32xat *m, int bad, int16_t *code, struct exh_ca
 {
     m->running = m->taken = 0;
     if (bad == 0) {
-        for (unsigned k = 0; k < m->par.channels; k++) { code[k] = m->part[k]; }
+        memcpy(code, m->part, m->par.channels * sizeof code[0]);
         m->lost = 0;
         return 1;
     }

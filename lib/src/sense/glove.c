@@ -151,14 +151,14 @@ uint32_t exh_glove_believe(struct exh_glove *s, const struct exh_glove_cfg *cfg,
     uint32_t faulty = 0;
     if (!s->started) { start(s, cfg, in); }
     for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
-        const int16_t raw = in->raw[i];
+        int16_t raw = in->raw[i];
         if (raw < cfg->lo_raw[i] || raw > cfg->hi_raw[i] || (s->run[i] | s->cause[i]) != 0) {
             doubt(s, cfg, i, raw);
             faulty |= (uint32_t)(s->cause[i] != EXH_GLOVE_GOOD) << i;
-        } else {
-            s->good_raw[i] = raw;
+            raw = s->good_raw[i];
         }
-        code_raw_q16[i] = s->good_raw[i] * (INT32_C(1) << EXH_Q_RAW);
+        s->good_raw[i] = raw;
+        code_raw_q16[i] = raw * (INT32_C(1) << EXH_Q_RAW);
     }
     return faulty;
 }
@@ -167,9 +167,9 @@ uint32_t exh_glove_believe(struct exh_glove *s, const struct exh_glove_cfg *cfg,
 static inline int32_t angle_of(int32_t from_zero_raw_q15, int32_t gain_turnpraw_q38)
 {
     const unsigned n = EXH_Q_ZERO + EXH_Q_TPRAW - EXH_Q_TURN;
-    const uint64_t half = UINT64_C(1) << (31 + n);
-    const int64_t v = (int64_t)from_zero_raw_q15 * gain_turnpraw_q38 + (INT64_C(1) << (n - 1));
-    if ((uint64_t)v + half >= 2 * half) { return exh_sat32(v >> n); }
+    const uint32_t half = UINT32_C(1) << (n - 1);
+    const int64_t v = (int64_t)from_zero_raw_q15 * gain_turnpraw_q38 + half;
+    if ((uint32_t)((uint64_t)v >> 32) + half >= 2 * half) { return exh_sat32(v >> n); }
     return exh_from_u32((uint32_t)((uint64_t)v >> n & UINT32_MAX));
 }
 
