@@ -81,27 +81,27 @@ static void state_bytes(struct exh_bytes *c, struct exh_wire_state *s)
     demand(c, (s->fingers | s->frozen | s->touching) <= FINGERS_OF && s->state <= EXH_STATE_FAULT);
 }
 
-static void plane_bytes(struct exh_bytes *c, struct exh_wire_plane *w)
+static void plane_bytes(struct exh_bytes *c, struct exh_wire_plane *p)
 {
-    const uint8_t *const p = unpack_room(c, 40);
-    if (p != NULL) {
-        w->kind = p[0];
-        w->material = p[1];
-        w->object = half_at(p + 2);
+    const uint8_t *const at = unpack_room(c, 40);
+    if (at != NULL) {
+        p->kind = at[0];
+        p->material = at[1];
+        p->object = half_at(at + 2);
         for (unsigned i = 0; i < 3; i++) {
-            w->normal_q30[i] = exh_from_u32(word_at(p + 4 + 4 * i));
-            w->point_m_q30[i] = exh_from_u32(word_at(p + 16 + 4 * i));
-            w->hit_m_q30[i] = exh_from_u32(word_at(p + 28 + 4 * i));
+            p->normal_q30[i] = exh_from_u32(word_at(at + 4 + 4 * i));
+            p->point_m_q30[i] = exh_from_u32(word_at(at + 16 + 4 * i));
+            p->hit_m_q30[i] = exh_from_u32(word_at(at + 28 + 4 * i));
         }
     } else {
-        exh_bytes_u8(c, &w->kind);
-        exh_bytes_u8(c, &w->material);
-        exh_bytes_u16(c, &w->object);
-        exh_bytes_i32s(c, w->normal_q30, 3);
-        exh_bytes_i32s(c, w->point_m_q30, 3);
-        exh_bytes_i32s(c, w->hit_m_q30, 3);
+        exh_bytes_u8(c, &p->kind);
+        exh_bytes_u8(c, &p->material);
+        exh_bytes_u16(c, &p->object);
+        exh_bytes_i32s(c, p->normal_q30, 3);
+        exh_bytes_i32s(c, p->point_m_q30, 3);
+        exh_bytes_i32s(c, p->hit_m_q30, 3);
     }
-    demand(c, w->kind <= EXH_PLANE_HIT);
+    demand(c, p->kind <= EXH_PLANE_HIT);
 }
 
 static void planes_bytes(struct exh_bytes *c, struct exh_wire_planes *s)

@@ -5,7 +5,7 @@
  * table of ten values.
  *
  * EVA: -eva-slevel 20
- * PLANT: lib/src/talk/wire.c: !exh_bytes_ok(&c) || (len_B != whole_B && len_B != whole_B + EXH_WIRE_SEAL_B) -> !exh_bytes_ok(&c)
+ * PLANT: lib/src/talk/wire.c: head == NULL || (len_B != whole_B && len_B != whole_B + EXH_WIRE_SEAL_B) -> head == NULL
  * PLANT: lib/src/talk/wire.c: if (late >= WINDOW) { -> if (late > WINDOW) {
  * PLANT: lib/src/talk/wire.c: ahead < WINDOW ? rx->seen -> ahead <= WINDOW ? rx->seen
  * PLANT: lib/src/talk/wire.c: i < t->frames && i < EXH_WIRE_FRAMES -> i < t->frames
