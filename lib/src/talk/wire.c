@@ -220,11 +220,12 @@ static int read_packet(struct exh_wire_rx *rx, struct head *h, struct exh_wire_p
     p->type = h->type;
     p->seq = h->seq;
     p->stamp_us = h->stamp_us;
-    if (p->type < sizeof size_B / sizeof size_B[0]) { memset(&p->u, 0, size_B[p->type]); }
-    if (!payload_bytes(&c, p)) {
+    if (p->type == 0 || p->type > EXH_WIRE_TRACE) {
         rx->unknown++;
         return -EXH_E_UNKNOWN;
     }
+    memset(&p->u, 0, size_B[p->type]);
+    (void)payload_bytes(&c, p);
     if (c.at != HEAD_B + h->len_B) { /* failed, or another length */
         rx->corrupt++;
         return -EXH_E_CRC;
