@@ -18,6 +18,14 @@ static inline uint8_t *pack_room(struct exh_bytes *c, uint32_t n)
     return c->p + at;
 }
 
+static inline uint16_t half_at(const uint8_t *p) { return (uint16_t)(p[0] | (uint32_t)p[1] << 8); }
+
+/* The value of a 16-bit pattern read as two's complement. */
+static inline int16_t signed_half(uint16_t u)
+{
+    return (int16_t)(u < 0x8000u ? (int32_t)u : (int32_t)u - 0x10000);
+}
+
 /* The place of n bytes that are read now, or NULL. */
 static inline const uint8_t *unpack_room(struct exh_bytes *c, uint32_t n)
 {
