@@ -133,7 +133,8 @@ one_lib  := $(if $(one),$(one_at)/libexhand.a,$(lib))
 one_link := $(if $(one),$(base) $(PORT_CFLAGS) $(PORT_WHOLE) -flto-partition=one \
             -Wno-maybe-uninitialized $(CFLAGS))
 ifneq ($(one),)
-$(out)/$(SCENE)/ports/cards/%.o $(PORT_INLINE:%.c=$(out)/$(SCENE)/%.o): SCENE_CFLAGS += $(PORT_WHOLE)
+$(out)/$(SCENE)/ports/cards/%.o: SCENE_CFLAGS += $(PORT_WHOLE)
+$(PORT_INLINE:%.c=$(out)/$(SCENE)/%.o): SCENE_CFLAGS += $(PORT_WHOLE) -funroll-loops
 $(one_at)/%.o: %.c $(stamp)
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(base) $(PORT_CFLAGS) $(if $(filter lib/%,$<),,$(PORT_HOSTFLAGS)) $(PORT_WHOLE) \

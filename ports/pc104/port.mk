@@ -36,7 +36,7 @@ PORT_CFLAGS   := -m32 -march=i686 -ffreestanding -fno-pic -fno-pie -fno-stack-pr
 # Tuned for an Atom, a tenth fewer; every i686 still runs it. Tuned for the paper's older Atom
 # (bonnell) the dearest tick of the full box takes 170 more, and the image 800 B.
 PORT_WHOLE    := -O3 -flto -ffat-lto-objects -mtune=silvermont
-# Called often, and without state.
+# Called often, and without state. (The CRC's loop is short, so it is unrolled.)
 PORT_INLINE   := ports/pc104/port_io.c lib/src/run/crc_table.c
 PORT_FLOAT    := -msse2 -mfpmath=sse -fno-math-errno
 comma         := ,
