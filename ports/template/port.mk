@@ -7,7 +7,8 @@ PORT_SRC  := ports/template/board.c
 # PORT_QEMU       the program that PORT_RUN needs, then its packages.
 # PORT_CFLAGS     target and freestanding flags, for the library too.
 # PORT_WHOLE      flags with -flto, for scenes with SCENE_WHOLE. Library, scene, loop and cards
-#                 become one program, faster and longer. The port's own files stay separate.
+#                 become one program, faster and longer. The port's own files stay separate,
+#                 but for those of PORT_INLINE: called often, without state.
 # PORT_LDFLAGS    e.g. -nostdlib -static.
 # PORT_LDSCRIPT   one per memory map, in ldscripts/.
 # PORT_RUN        program that runs an image: exit status 0 when it said "done".

@@ -28,15 +28,15 @@ TEST(figures_by_hand)
                 "\"drop, in "
                 "turn\",20000,11,0,3911,6.139,12.000,25.000,10.000,0.000,40000,A/D,40000,3.655\n"),
         "%s", s.out);
-    /* 16533 * 2 / 1600 + 5 * 0.25 = 21.916; and 32: 18547 Hz; and 32 of 0.7: 22565. */
-    CHECK(strstr(s.out, ",21.916,32.000,25.000,10.000,27.500,18547,bus,22565,2.440\n") != NULL,
+    /* 13815 * 2 / 1600 + 5 * 0.25 = 18.519; and 32: 19795 Hz; and 32 of 0.7: 24439. */
+    CHECK(strstr(s.out, ",18.519,32.000,25.000,10.000,27.500,19795,bus,24439,2.546\n") != NULL,
         "%s", s.out);
     said(&s, dir, cli_budget, WORDS("budget", "--access-us", "2", "--csv"));
-    CHECK(strstr(s.out, ",21.916,64.000,25.000,10.000,27.500,11639,bus,22565,2.440\n") != NULL,
+    CHECK(strstr(s.out, ",18.519,64.000,25.000,10.000,27.500,12118,bus,24439,2.546\n") != NULL,
         "%s", s.out);
-    /* The fast access alone: 1e6 / (21.916 + 32 * 0.5). */
+    /* The fast access alone: 1e6 / (18.519 + 32 * 0.5). */
     said(&s, dir, cli_budget, WORDS("budget", "--fast-us", "0.5", "--csv"));
-    CHECK(strstr(s.out, ",18547,bus,26374,2.440\n") != NULL, "%s", s.out);
+    CHECK(strstr(s.out, ",19795,bus,28970,2.546\n") != NULL, "%s", s.out);
     said_clean(dir);
 }
 

@@ -42,7 +42,8 @@ $(B)/bench/sim_work $(B)/bench/sim_statistics:
 .PHONY: sim-built
 sim-built: $(B)/bench/sim_work $(B)/bench/sim_statistics
 
-# The kernels for a 32-bit CPU, as ports/pc104 compiles a full box. Only instructions count there.
+# The kernels for a 32-bit CPU, as ports/pc104 compiles a full box, but not tuned for one CPU. Only
+# instructions count there.
 i686_flags := -march=i686 -fno-pic -fno-pie -no-pie -fno-stack-protector -fcf-protection=none \
               -fno-asynchronous-unwind-tables -O3 -flto=auto -Wno-maybe-uninitialized
 bench_i686 := $(B)/bench/kernels-i686
