@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* A session of exhand identify, and its data. */
+#ifndef TEST_SIM_IDENTIFY_RIG_H
+#define TEST_SIM_IDENTIFY_RIG_H
+
 #include "identify/session.h"
 
 #include "check.h"
@@ -23,3 +26,5 @@ static void run(const struct identify_session *c)
     identify_data_free(&data);
     CHECK_EQ_I64(identify_session(c, &data), 0);
 }
+
+#endif

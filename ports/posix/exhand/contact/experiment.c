@@ -194,7 +194,7 @@ int bilateral_experiment(const struct bilateral_options *o)
     static struct bilateral_result result[BILATERAL_SPEEDS_MAX * BILATERAL_FINGERS];
     struct table2_runs local;
     FILE *csv;
-    int n = 0, err = local_runs(o, &local), heard = 0;
+    int n = 0, heard = 0, err = local_runs(o, &local);
     if (err) { return err; }
     memset(result, 0, sizeof result);
     if (o->run.k_Npm < 0 || o->run.b_Nspm < 0) {
