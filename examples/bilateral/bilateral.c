@@ -64,7 +64,7 @@ int bilateral_setup(struct bilateral_cfg *cfg, struct bilateral *s, const struct
         cfg->vouches &= cfg->finger[cfg->at[k]].calib.vouches;
     }
     like_the_first(cfg);
-    bilateral_frame_setup(cfg);
+    if (err == 0) { bilateral_frame_setup(cfg); }
     bilateral_wire_setup(&cfg->wire, &s->wire, (uint32_t)par->own.session, board.T);
     tell_pulls(cfg);
     if (err == 0) { err = exh_safety_setup(&cfg->safety, &par->safety, board.T); }

@@ -143,7 +143,7 @@ struct bilateral_part {
 
 /* The newest frame, processed over the ticks until the next. */
 struct bilateral_frame {
-    int32_t angle_turn_q32[EXH_GLOVE_SENSORS]; /* codes q16, then angles */
+    int32_t angle_turn_q32[EXH_GLOVE_SENSORS]; /* codes q16, then angles if needed */
     uint32_t faults;                           /* faulty sensors */
     uint32_t before_ticks;                     /* age of the previous frame; UINT32_MAX: none */
     uint8_t left;                              /* parts left to compute */
@@ -207,6 +207,7 @@ struct bilateral_cfg {
     uint32_t glove_ticks, link_ticks;                /* glove_ms, link_ms; 0: never */
     uint8_t at[BILATERAL_FINGERS];                   /* finger at this place */
     uint8_t n;                                       /* number of fingers in use */
+    uint32_t sensors;                                /* bit i: a finger in use needs sensor i */
     uint8_t parts;                                   /* parts of a frame */
     struct bilateral_part part[BILATERAL_PARTS + 1]; /* from part[p] to part[p + 1] */
     uint32_t rest_ticks;                             /* f0_rest */

@@ -3,12 +3,32 @@
 #include "bilateral.h"
 
 /* Parts of about equal cost: sensors and places up to these. The first part also has all codes, the
- * part with the last sensor the cross terms. */
+ * part with the last sensor that is needed the cross terms. */
 #define SENSOR_PARTS 4u
 static const struct bilateral_part upto[BILATERAL_PARTS + 1] = {
     {0, 0}, {4, 0}, {10, 0}, {16, 0}, {22, 0}, {22, 2}, {22, 4}, {22, 5}};
 
 static unsigned smaller(unsigned a, unsigned b) { return a < b ? a : b; }
+
+/* Sensors that the fingers in use need. Cross terms of others are left out. A term refers to a
+ * sensor without terms, so one pass finds all. */
+static uint32_t sensors_needed(struct bilateral_cfg *cfg)
+{
+    struct exh_glove_cfg *glove = &cfg->glove;
+    const unsigned crosses = glove->crosses;
+    uint32_t need = 0;
+    for (unsigned k = 0; k < cfg->n; k++) { need |= cfg->finger[cfg->at[k]].sensors; }
+    glove->crosses = 0;
+    for (unsigned n = 0; n < crosses; n++) {
+        const unsigned i = glove->crossed[n];
+        if (!(need >> i & 1u)) { continue; }
+        glove->crossed[glove->crosses++] = (uint8_t)i;
+        for (unsigned t = 0; t < 2; t++) { /* without a term: bit 31, which is no sensor's */
+            need |= UINT32_C(1) << (cfg->cal.sensor[i].of[t] & 31u);
+        }
+    }
+    return need & ((UINT32_C(1) << EXH_GLOVE_SENSORS) - 1u);
+}
 
 /* As many parts as defined, or as ticks to the next frame: so a frame is complete before the
  * next. */
@@ -17,10 +37,15 @@ void bilateral_frame_setup(struct bilateral_cfg *cfg)
     const unsigned all = SENSOR_PARTS + (cfg->n + 1u) / 2;
     const unsigned every = (unsigned)cfg->par->glove_own.every;
     const unsigned parts = every - 1u < all ? every : all; /* also for 0, which is refused */
-    cfg->part[0] = upto[0];
-    for (unsigned p = 1; p <= parts; p++) {
-        cfg->part[p] = upto[smaller((p * all + parts - 1) / parts, BILATERAL_PARTS)];
-        if (cfg->part[p].places > cfg->n) { cfg->part[p].places = cfg->n; }
+    unsigned first = 0, end = EXH_GLOVE_SENSORS;
+    cfg->sensors = sensors_needed(cfg);
+    while (first < end && !(cfg->sensors >> first & 1u)) { first++; }
+    while (end > first && !(cfg->sensors >> (end - 1u) & 1u)) { end--; }
+    for (unsigned p = 0; p <= parts; p++) {
+        struct bilateral_part *to = &cfg->part[p];
+        *to = upto[smaller((p * all + parts - 1) / parts, BILATERAL_PARTS)];
+        to->sensors = (uint8_t)(to->sensors < first ? first : smaller(to->sensors, end));
+        if (to->places > cfg->n) { to->places = cfg->n; }
     }
     cfg->parts = (uint8_t)parts;
 }
@@ -39,7 +64,7 @@ static void compute(struct bilateral *s, const struct bilateral_cfg *cfg, unsign
     const unsigned end = smaller(to->sensors, EXH_GLOVE_SENSORS);
     const unsigned places = smaller(to->places, bilateral_n(cfg));
     exh_glove_angles(&s->glove, &cfg->glove, first, end, angle_turn_q32);
-    if (first < end && end == EXH_GLOVE_SENSORS) { exh_glove_cross(&cfg->glove, angle_turn_q32); }
+    if (first < end && cfg->sensors >> end == 0) { exh_glove_cross(&cfg->glove, angle_turn_q32); }
     for (unsigned k = from->places; k < places; k++) {
         const unsigned f = bilateral_at(cfg, k);
         bilateral_finger_see(&s->finger[f], cfg, f, angle_turn_q32);

@@ -166,27 +166,10 @@ double bilateral_string_m(
     return hi;
 }
 
-/* Sensors of the fingers in use, and those that their angles have a share of. */
-static uint32_t sensors_in_use(const struct bilateral_cfg *c)
-{
-    uint32_t mask = 0, before;
-    for (unsigned k = 0; k < c->n; k++) { mask |= c->finger[c->at[k]].sensors; }
-    do {
-        before = mask;
-        for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
-            for (unsigned k = 0; k < 2 && mask >> i & 1; k++) {
-                const uint8_t of = c->cal.sensor[i].of[k];
-                if (of < EXH_GLOVE_SENSORS) { mask |= UINT32_C(1) << of; }
-            }
-        }
-    } while (mask != before);
-    return mask;
-}
-
 void bilateral_leave_out(const struct bilateral_run_cfg *c)
 {
     struct bilateral_cfg *scene;
     if (c->board.log || c->board.log_put || c->blackbox || c->more) { return; }
     (void)bilateral_memory(&scene);
-    sim_glove_reads(posix_glove(), sensors_in_use(scene));
+    sim_glove_reads(posix_glove(), scene->sensors);
 }

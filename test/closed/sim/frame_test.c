@@ -20,23 +20,33 @@ struct rig {
     struct exh_scene_in in;
 };
 
-/* Without a low-pass, which is another for another time between frames. */
-static void start(struct rig *r, int every)
+/* Abduction sensors have two cross terms each. */
+static void start_with(struct rig *r, int every, int fingers, int order)
 {
     static const struct rig none;
+    static const uint8_t abduction[] = {3, 10, 14, 18};
     *r = none;
     exh_scene_bilateral.defaults();
     memcpy(&r->par, exh_scene_bilateral.params->active, sizeof r->par);
     r->par.calib.uncalibrated = 1;
     r->par.own.session = 7;
-    r->par.own.fingers = 31;
+    r->par.own.fingers = fingers;
     r->par.glove_own.every = every;
-    r->par.glove.order = 0;
+    r->par.glove.order = order;
+    for (unsigned i = 0; i < LEN(abduction); i++) {
+        struct glove_sensor_par *s = &r->par.sensor[abduction[i]];
+        s->of[0] = abduction[i] - 3;
+        s->of[1] = abduction[i] - 2;
+        s->cross_q30[0] = s->cross_q30[1] = INT32_C(1) << 29;
+    }
     r->in.glove.age_ticks = UINT16_MAX;
     CHECK_EQ_I64(bilateral_setup(
                      &r->cfg, &r->box, &r->par, (struct exh_scene_board){{1, RATE_HZ}, 16}, NULL),
         0);
 }
+
+/* Without a low-pass, which is another for another time between frames. */
+static void start(struct rig *r, int every) { start_with(r, every, 31, 0); }
 
 /* All knuckles bent by so many codes. */
 static void tick(struct rig *r, int glove_new, int bent_raw)
@@ -132,6 +142,29 @@ TEST(a_fault_begins_at_once_and_ends_with_the_last_finger)
     }
 }
 
+/* A finger alone has the position that it has in a whole hand. The wrist has no angle there: its
+ * code stays. */
+TEST(a_finger_alone_needs_few_sensors)
+{
+    static const int every[] = {1, 3, 20};
+    static struct rig hand, alone;
+    for (unsigned f = 0; f < N; f++) {
+        for (unsigned e = 0; e < LEN(every); e++) {
+            start_with(&hand, every[e], 31, 2);
+            start_with(&alone, every[e], 1 << f, 2);
+            CHECK(alone.cfg.sensors >> EXH_GLOVE_PALM_ARCH == 0, "%u", (unsigned)alone.cfg.sensors);
+            for (int k = 0; k < 20 * every[e]; k++) {
+                const int bent_raw = check_i32_in(-3000, 3000), last = (k + 1) % every[e] == 0;
+                tick(&hand, k % every[e] == 0, bent_raw);
+                tick(&alone, k % every[e] == 0, bent_raw);
+                CHECK(!last || same_tip(&hand, &alone, f), "%u, %d: tick %d", f, every[e], k);
+            }
+            CHECK_EQ_I64(alone.box.frame.angle_turn_q32[EXH_GLOVE_WRIST_YAW],
+                alone.in.glove.raw[EXH_GLOVE_WRIST_YAW] * 65536);
+        }
+    }
+}
+
 /* A state from its bytes in the middle of a frame goes on as the other. */
 TEST(a_frame_goes_on_from_bytes)
 {
@@ -156,4 +189,4 @@ TEST(a_frame_goes_on_from_bytes)
 
 TEST_MAIN("bilateral, a frame in parts", fingers_are_seen_one_after_the_other,
     a_frame_is_whole_by_the_next, a_fault_begins_at_once_and_ends_with_the_last_finger,
-    a_frame_goes_on_from_bytes);
+    a_finger_alone_needs_few_sensors, a_frame_goes_on_from_bytes);

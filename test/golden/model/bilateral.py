@@ -9,7 +9,7 @@ from .chatter import Chatter, any_par as any_chatter
 from .contact import Contact
 from .drive import SLEW, Drive, Table, any_par as any_drive
 from .filter import Channel
-from .glove import NONE as NO_SENSOR, SENSORS, Glove, any_par as any_glove
+from .glove import CROSSED, NONE as NO_SENSOR, SENSORS, Glove, any_par as any_glove
 from .guard import Rail, Supply, any_supply
 from .hand import any_turn, joints
 from .hit2 import BENT, MAP, bones, sensors_of
@@ -240,11 +240,17 @@ class Bilateral:
         self.angle, self.doubts, self.before, self.left = [0] * SENSORS, 0, 0, 0
         units = 4 + (self.n + 1) // 2
         self.parts = min(par.every, units)
+        # sensors that the fingers in use need, directly or as a cross term of one
+        need = {i for f in self.at for i in range(SENSORS) if self.finger[f].sensors >> i & 1}
+        self.crossed = sorted(need.intersection(CROSSED))
+        need |= {a for i in self.crossed for a in par.sensor[i][5] if a != NO_SENSOR}
+        self.first, self.end = min(need), max(need) + 1
         self.part = [self.upto(-(-p * units // self.parts)) for p in range(self.parts + 1)]
 
     def upto(self, unit):
         """Sensors and places of fingers that are done behind so many units."""
-        return (0, 4, 10, 16, 22, 22, 22, 22)[unit], min(self.n, (0, 0, 0, 0, 0, 2, 4, 5)[unit])
+        sensors, places = ((0, 4, 10, 16, 22, 22, 22, 22)[unit], (0, 0, 0, 0, 0, 2, 4, 5)[unit])
+        return max(self.first, min(sensors, self.end)), min(self.n, places)
 
     def age(self, f):
         """Of what is known of where a finger is."""
@@ -296,8 +302,8 @@ class Bilateral:
         (s0, p0), (s1, p1) = self.part[self.parts - self.left:][:2]
         for i in range(s0, s1):
             self.angle[i] = self.glove.own(i, self.angle[i])
-        if s0 < s1 == SENSORS:
-            self.angle = self.glove.cross(self.angle)
+        if s0 < s1 == self.end:
+            self.angle = self.glove.cross(self.angle, self.crossed)
         for f in self.at[p0:p1]:
             self.finger[f].see(self.angle)
         self.left -= 1

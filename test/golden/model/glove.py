@@ -94,9 +94,9 @@ class Glove:
         s = self.sensors[i]
         return sat32(shr(((x >> 1) - s[0]) * s[1], 21))
 
-    def cross(self, own):
+    def cross(self, own, of=CROSSED):
         out = own[:]
-        for i in CROSSED:
+        for i in of:
             s = self.sensors[i]
             out[i] = sat32(own[i] +
                            sum(shr(own[a] * c, 30) for c, a in zip(s[2], s[5]) if a != NONE))
