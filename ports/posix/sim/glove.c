@@ -17,6 +17,7 @@
 #define TWO_PI 6.283185307179586
 #define DEG    (TWO_PI / 360)
 #define CODES  32768.0 /* either side of 0 V */
+#define ALL    ((UINT32_C(1) << SIM_GLOVE_SENSORS) - 1)
 
 #define FORGOTTEN 700 /* so many time constants: e^-700 is 0 */
 
@@ -87,8 +88,8 @@ int sim_glove_set(
 /* Without branches where the processor can. */
 static inline double limit(double v, double most)
 {
-    const double below = most < v ? most : v;
-    return -most > below ? -most : below;
+    const double below = v < most ? v : most;
+    return below > -most ? below : -most;
 }
 
 /* Of a share of the excitation. */
@@ -157,9 +158,10 @@ static double moved_V(struct sim_glove *g, unsigned i, double t_s, const struct 
 static inline double line_V(const struct sim_glove *g, unsigned i, double s, double left)
 {
     const struct sim_glove_sees *sees = &g->sees[i];
-    double rad = 0;
-    for (unsigned k = 0; k < sees->n; k++) {
-        const struct sim_lag *l = &g->angle_rad[sees->of[k]];
+    const struct sim_lag *l = &g->angle_rad[sees->of[0]];
+    double rad = sees->share[0] * (l->p[0] + l->p[1] * s + l->off * left);
+    for (unsigned k = 1; k < sees->n; k++) {
+        l = &g->angle_rad[sees->of[k]];
         rad += sees->share[k] * (l->p[0] + l->p[1] * s + l->off * left);
     }
     return limit(g->at_0_V[i] + rad * g->V_perrad[i], g->par.rail_V);
@@ -177,8 +179,7 @@ static void look(struct sim_glove *g, unsigned i)
         sees->of[sees->n] = g->of[bend[k]];
         sees->share[sees->n++] = g->par.couple / 2 * g->share[bend[k]];
     }
-    sees->mask = 0;
-    for (unsigned k = 0; k < sees->n; k++) { sees->mask |= UINT32_C(1) << sees->of[k]; }
+    g->volt_V[i] = line_V(g, i, 0, 0);
 }
 
 void sim_glove_start(struct sim_glove *g, const struct sim_glove_par *p, uint64_t seed,
@@ -203,7 +204,7 @@ void sim_glove_start(struct sim_glove *g, const struct sim_glove_par *p, uint64_
         }
     }
     for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) { look(g, i); }
-    g->moves = g->reads = g->holds = g->stays = (UINT32_C(1) << SIM_GLOVE_SENSORS) - 1;
+    g->reads = g->holds = g->stays = ALL;
     g->tau_s = 1 / (TWO_PI * p->cutoff_Hz);
     g->line_left = sim_exp_neg(p->interval_s / g->tau_s);
     g->slot_left = p->settle_s > 0 ? sim_exp_neg(p->interval_s / p->settle_s) : 0;
@@ -253,11 +254,12 @@ static inline double noise_V(const struct sim_glove *g, struct sim_random *r)
     return limit(sim_random_bytes(r) * g->noise_V_perLSB, g->noise_V_most);
 }
 
-/* Of a voltage in codes. */
+/* Of a voltage in codes, far within 32 bits. The cast cuts a half off. */
 static inline int16_t code_of(double v)
 {
-    v += CODES + 0.5; /* the cast cuts it off */
-    return (int16_t)(v < 0 ? -32768 : v >= 65536 ? 32767 : (int32_t)v - 32768);
+    const int32_t n = (int32_t)(v + (CODES + 0.5));
+    if (n >> 16) { return n < 0 ? INT16_MIN : INT16_MAX; }
+    return (int16_t)(n - 32768);
 }
 
 /* What the low-pass has left when channel `first` is held at t_s. Most angles that move began their
@@ -270,6 +272,39 @@ static struct left left_of_line(struct sim_glove *g, unsigned first, double t_s)
     return now;
 }
 
+/* Channels that have a fault, or that see an angle which moves other than on the newest lines.
+ * *stuck: those whose code stays. */
+static uint32_t odd(const struct sim_glove *g, uint32_t *stuck)
+{
+    uint64_t faults[3] = {0};
+    uint32_t mask = 0;
+    memcpy(faults, g->fault, sizeof g->fault);
+    *stuck = 0;
+    if (!(faults[0] | faults[1] | faults[2]) && (g->lines | g->stays) == ALL) { return 0; }
+    for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
+        if (!((g->lines | g->stays) >> i & 1)) { mask |= g->seen[i] & g->moves; }
+        if (g->fault[i] == SIM_GLOVE_STUCK) { *stuck |= UINT32_C(1) << i; }
+    }
+    for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
+        if (g->fault[i] != SIM_GLOVE_WELL) { mask |= UINT32_C(1) << i; }
+    }
+    return mask;
+}
+
+/* Their voltages, the first held at t_s. That of a fault is not kept. */
+static void odd_V(
+    struct sim_glove *g, uint32_t odds, unsigned first, double t_s, double tick_s, struct left now)
+{
+    for (unsigned i = first; odds >> i; i++) {
+        if (odds >> i & 1) {
+            const double held_s = i > first ? sim_glove_held_s(&g->par, i, tick_s) : t_s;
+            g->moves |= UINT32_C(1) << i;
+            g->volt_V[i] = moved_V(g, i, held_s, &now);
+        }
+        now.left *= g->line_left;
+    }
+}
+
 /* Channels first to end - 1 behind the multiplexer, the first held at t_s. It goes on as soon as a
  * channel is held: what is left of the one before has the whole slot to decay; left: of that before
  * the first. A channel that is not read keeps its code; no other gets its random number. */
@@ -277,36 +312,31 @@ static void convert(
     struct sim_glove *g, unsigned first, unsigned end, double t_s, double tick_s, double left)
 {
     const double slot_left = g->slot_left, line_left = g->line_left, code_perV = g->code_perV;
-    const int noisy = g->noise_V_most > 0;
-    const uint32_t moves = g->moves, reads = g->reads, plain = g->lines | g->stays;
+    const double interval_s = g->par.interval_s;
+    const struct left now = left_of_line(g, first, t_s);
+    uint32_t stuck, holds = g->holds >> first & ((UINT32_C(1) << (end - first)) - 1);
+    const uint32_t odds = odd(g, &stuck) & holds << first;
+    const uint32_t lines = g->moves & ~odds, reads = g->reads & ~stuck;
     struct sim_random rng = g->rng;
-    struct left now = left_of_line(g, first, t_s);
-    double before_V = g->held_V, line_s = t_s - g->line_s;
-    uint32_t holds = g->holds >> first & ((UINT32_C(1) << (end - first)) - 1);
+    double before_V = g->held_V, line_s = t_s - g->line_s, way_left = now.left;
+    if (odds) { odd_V(g, odds, first, t_s, tick_s, now); }
     for (unsigned i = first; holds; i++, holds >>= 1) {
-        double v = g->volt_V[i];
         if (holds & 1) {
-            if (g->fault[i] != SIM_GLOVE_WELL || (moves >> i & 1 && g->sees[i].mask & ~plain)) {
-                v = moved_V(g, i, i > first ? sim_glove_held_s(&g->par, i, tick_s) : t_s, &now);
-            } else if (moves >> i & 1) {
-                v = line_V(g, i, line_s, now.left);
-                if (!(g->sees[i].mask & ~g->stays)) { keep(g, i, v); }
-            }
-            before_V = v += (before_V - v) * left;
+            const double v = lines >> i & 1 ? line_V(g, i, line_s, way_left) : g->volt_V[i];
+            before_V = v + (before_V - v) * left;
             if (reads >> i & 1) {
                 struct sim_random own = rng;
-                if (noisy) { v += noise_V(g, &own); }
-                if (g->fault[i] != SIM_GLOVE_STUCK) { g->code[i] = code_of(v * code_perV); }
+                g->code[i] = code_of((before_V + noise_V(g, &own)) * code_perV);
             }
         }
         sim_random_skip(&rng, 1);
-        now.left *= line_left;
-        line_s += g->par.interval_s;
+        way_left *= line_left;
+        line_s += interval_s;
         left = slot_left;
     }
     g->held_V = before_V;
     g->held_s = end > first + 1 ? sim_glove_held_s(&g->par, end - 1, tick_s) : t_s;
-    if (noisy) { sim_random_skip(&g->rng, end - first); }
+    if (g->noise_V_most > 0) { sim_random_skip(&g->rng, end - first); }
 }
 
 /* The channels that are read, and before each those that it has 1e-12 of. */
@@ -314,8 +344,7 @@ static uint32_t held(const struct sim_glove *g)
 {
     uint32_t mask = g->reads;
     for (double left = g->slot_left; left > 1e-12; left *= g->slot_left) {
-        const uint32_t all = (UINT32_C(1) << SIM_GLOVE_SENSORS) - 1;
-        const uint32_t more = (mask >> 1 | mask << (SIM_GLOVE_SENSORS - 1)) & all & ~mask;
+        const uint32_t more = (mask >> 1 | mask << (SIM_GLOVE_SENSORS - 1)) & ALL & ~mask;
         if (!more) { break; }
         mask |= more;
     }
@@ -353,5 +382,5 @@ void sim_glove_scan(struct sim_glove *g, unsigned first, unsigned end, double ti
 
 int16_t sim_glove_code(const struct sim_glove_par *p, double v_V)
 {
-    return code_of(v_V * (CODES / p->span_V));
+    return code_of(limit(v_V, p->span_V) * (CODES / p->span_V));
 }

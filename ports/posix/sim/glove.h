@@ -73,7 +73,6 @@ struct sim_glove {
     unsigned char of[SIM_GLOVE_SENSORS];
     double share[SIM_GLOVE_SENSORS];
     struct sim_glove_sees {
-        uint32_t mask;
         unsigned char n, of[3];
         double share[3];
     } sees[SIM_GLOVE_SENSORS]; /* the angles that bend a sensor, and how much */

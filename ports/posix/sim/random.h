@@ -4,6 +4,9 @@
 #define SIM_RANDOM_H
 
 #include <stdint.h>
+#if defined(__SSE2__) && defined(__x86_64__) && !defined(__TINYC__)
+#include <emmintrin.h>
+#endif
 
 struct sim_random {
     uint64_t state;
@@ -52,13 +55,23 @@ static inline double sim_random_normal(struct sim_random *r)
     return (sim_random_sum(a + b + c) - 6 * 65535) * (1.0 / 65536);
 }
 
+/* The sum of the eight bytes of a number. */
+static inline double sim_random_eight(uint64_t u)
+{
+#if defined(__SSE2__) && defined(__x86_64__) && !defined(__TINYC__)
+    const __m128i sum = _mm_sad_epu8(_mm_cvtsi64_si128((int64_t)u), _mm_setzero_si128());
+    return _mm_cvtsd_f64(_mm_cvtepi32_pd(sum));
+#else
+    const uint64_t bytes = UINT64_C(0x00FF00FF00FF00FF), two = (u & bytes) + (u >> 8 & bytes);
+    return (double)(int32_t)(two * UINT64_C(0x0001000100010001) >> 48);
+#endif
+}
+
 /* Eight uniforms of 8 bits, of one number: a normal of deviation 1 within +-4.9, in steps of 1/209
  * of it. */
 static inline double sim_random_bytes(struct sim_random *r)
 {
-    const uint64_t bytes = UINT64_C(0x00FF00FF00FF00FF), u = sim_random_u64(r);
-    const uint64_t sum = ((u & bytes) + (u >> 8 & bytes)) * UINT64_C(0x0001000100010001) >> 48;
-    return ((int32_t)sum - 4 * 255) * 0.0047841924;
+    return (sim_random_eight(sim_random_u64(r)) - 4 * 255) * 0.0047841924;
 }
 
 /* A bell over -1/2..1/2: the mean of four 16-bit uniforms, peak to peak 1, standard
