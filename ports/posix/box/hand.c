@@ -132,9 +132,11 @@ static int one_finger(unsigned f, const struct bilateral_signals *sig)
         t->freezes++;
         t->scale = ((double)raw->q_lim_m_q30 - raw->q_m_q30) / -(double)raw->d_m_q30;
     }
-    t->frozen_yet |= (bits & EXH_PRECONTACT_STANDS) != 0;
-    t->contacts += raw->c && !t->c;
-    t->unfrozen += raw->c && !(bits & EXH_PRECONTACT_STANDS);
+    if (bits & EXH_PRECONTACT_STANDS) { t->frozen_yet = 1; }
+    if (raw->c) {
+        t->contacts += !t->c;
+        t->unfrozen += !(bits & EXH_PRECONTACT_STANDS);
+    }
     t->c = raw->c;
     if (!run.cfg->bare) {
         const int first = run.r->ticks == 1;
@@ -170,14 +172,15 @@ static const struct bilateral_signals *signals(void)
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
     const struct bilateral_signals *sig = signals();
+    const unsigned fingers = run.cfg->board.exo.fingers;
     int busy = 0;
     dumpfile_after(tick, in, out);
     run.last_tick = tick;
     run.r->ticks++;
     watch_arming(sig);
     if (!run.sees) { world_line_after(&sig->box); }
-    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
-        if (run.cfg->board.exo.fingers >> f & 1) { busy |= one_finger(f, sig); }
+    for (unsigned f = 0; fingers >> f; f++) {
+        if (fingers >> f & 1) { busy |= one_finger(f, sig); }
     }
     if (run.cfg->more) { run.cfg->more->after(tick, in, out); }
     if (!busy && run.done_s < 0) { run.done_s = posix_time_s(); }

@@ -38,9 +38,8 @@ static void keep_point(struct sim_exo *e, double t_s)
     p = &e->point[(e->first + e->points) % SIM_EXO_POINTS];
     e->points++;
     p->t_s = t_s;
-    for (unsigned i = 0; e->fingers >> i; i++) {
-        if (used(e, i)) { p->x_m[i] = e->finger[i].plant.x_m; }
-    }
+    e->newest_s = t_s;
+    for (unsigned k = 0; k < e->used; k++) { p->x_m[e->at[k]] = e->finger[e->at[k]].plant.x_m; }
 }
 
 int sim_exo_start(struct sim_exo *e, const struct sim_exo_par *p, const struct sim_device *d,
@@ -50,12 +49,13 @@ int sim_exo_start(struct sim_exo *e, const struct sim_exo_par *p, const struct s
     if (p->fingers >> SIM_FINGERS) { return -1; }
     e->fingers = p->fingers;
     e->gloved = gloved;
-    e->first = e->points = 0;
+    e->used = e->first = e->points = 0;
     e->torn = 0;
     memset(&e->way, 0, sizeof e->way);
     for (unsigned i = 0; i < SIM_FINGERS; i++) {
         struct sim_path_par path = p->path[i];
         if (!used(e, i)) { continue; }
+        e->at[e->used++] = (unsigned char)i;
         path.first_s += later_s;
         later_s += p->apart_s;
         /* A separate seed: each finger is independent of the others. */
@@ -66,36 +66,32 @@ int sim_exo_start(struct sim_exo *e, const struct sim_exo_par *p, const struct s
     return 0;
 }
 
-static double newest_s(const struct sim_exo *e)
-{
-    return e->point[(e->first + e->points - 1) % SIM_EXO_POINTS].t_s;
-}
-
 void sim_exo_advance(struct sim_exo *e, double until_s)
 {
+    const unsigned n = e->used;
     double to_s;
     do {
-        to_s = e->gloved && newest_s(e) + POINT_S < until_s ? newest_s(e) + POINT_S : until_s;
-        for (unsigned i = 0; e->fingers >> i; i++) {
-            if (used(e, i)) { sim_finger_advance(&e->finger[i], to_s); }
-        }
-        if (e->gloved && to_s > newest_s(e)) { keep_point(e, to_s); }
+        const double next_s = e->newest_s + POINT_S;
+        to_s = e->gloved && next_s < until_s ? next_s : until_s;
+        for (unsigned k = 0; k < n; k++) { sim_finger_advance(&e->finger[e->at[k]], to_s); }
+        if (to_s > e->newest_s) { keep_point(e, to_s); }
     } while (to_s < until_s);
 }
 
 int sim_exo_done(const struct sim_exo *e)
 {
-    for (unsigned i = 0; e->fingers >> i; i++) {
-        if (used(e, i) && e->finger[i].path.phase != SIM_PATH_DONE) { return 0; }
+    for (unsigned k = 0; k < e->used; k++) {
+        if (e->finger[e->at[k]].path.phase != SIM_PATH_DONE) { return 0; }
     }
     return 1;
 }
 
 void sim_exo_latch(struct sim_exo *e, double at_s, const double ref_A[SIM_FINGERS])
 {
-    if (e->gloved && newest_s(e) + POINT_S < at_s) { sim_exo_advance(e, at_s); } /* points first */
-    for (unsigned i = 0; e->fingers >> i; i++) {
-        if (used(e, i)) { sim_finger_latch(&e->finger[i], at_s, ref_A[i]); }
+    const unsigned n = e->used;
+    if (e->gloved && e->newest_s + POINT_S < at_s) { sim_exo_advance(e, at_s); } /* points first */
+    for (unsigned k = 0; k < n; k++) {
+        sim_finger_latch(&e->finger[e->at[k]], at_s, ref_A[e->at[k]]);
     }
 }
 
@@ -127,13 +123,13 @@ static void feed(struct sim_exo *e, struct sim_glove *g)
 {
     const struct sim_exo_point *a = &e->point[e->first];
     const struct sim_exo_point *b = &e->point[(e->first + 1) % SIM_EXO_POINTS];
+    const unsigned n = e->used;
     double from_s = -1, left = 0;
-    for (unsigned i = 0; e->fingers >> i; i++) {
+    for (unsigned k = 0; k < n; k++) {
+        const unsigned i = e->at[k], knuckle = (unsigned)bends[i][0];
         const double radpm = e->finger[i].bend_radpm[0];
-        const unsigned knuckle = (unsigned)bends[i][0];
         struct sim_lag *l = &g->angle_rad[knuckle];
         struct sim_line way;
-        if (!used(e, i)) { continue; }
         way.start_s = a->t_s;
         way.at = radpm * a->x_m[i];
         way.slope = radpm * ((b->x_m[i] - a->x_m[i]) / (b->t_s - a->t_s));

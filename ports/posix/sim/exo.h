@@ -22,13 +22,15 @@ struct sim_exo_par {
 struct sim_exo_par sim_exo_default(void);
 
 struct sim_exo {
-    unsigned fingers;
+    unsigned fingers, used;        /* in use, and how many */
+    unsigned char at[SIM_FINGERS]; /* which */
     struct sim_finger finger[SIM_FINGERS];
     int gloved;
     struct sim_exo_point {
         double t_s, x_m[SIM_FINGERS];
     } point[SIM_EXO_POINTS]; /* where the fingers were, oldest first in the ring */
     unsigned first, points;
+    double newest_s;      /* of the last point */
     struct sim_decay way; /* what the glove's low-pass leaves from point to point */
     int torn;             /* points were overwritten before a glove had read them */
 };

@@ -71,7 +71,8 @@ void sim_finger_start(struct sim_finger *f, const struct sim_finger_par *par,
     f->bend_radpm[0] = par->arm_m[0] / square;
     f->bend_radpm[1] = rest / square;
     sim_path_start(&f->path, path, &load, record, sim_random_u64(&f->rng));
-    f->plant.x_m = f->plant.q_m = f->target_m = sim_path_at(&f->path, 0);
+    f->hand = (struct plant_hand){par->k_Npm, par->b_Nspm, sim_path_at(&f->path, 0), 0, 0};
+    f->plant.x_m = f->plant.q_m = f->hand.x_m;
     f->grid = sim_random_unit(&f->rng);
     f->servo_s = sim_random_unit(&f->rng) / d->servo_hz;
     f->sample_s = FAR_S;
@@ -93,36 +94,33 @@ void sim_finger_safe(struct sim_finger *f)
 static double earlier(double a, double b) { return a < b ? a : b; }
 
 /* Advances the finger alone to the next event. */
-static void advance_plant(struct sim_finger *f, double to_s, double dt_s)
+static void advance_plant(struct sim_finger *f, double to_s)
 {
-    const double at_m = sim_path_at(&f->path, to_s);
-    const struct plant_hand hand = {
-        f->par.k_Npm, f->par.b_Nspm, f->target_m, (at_m - f->target_m) / (to_s - f->now_s), 0};
+    const double at_m = sim_path_at(&f->path, to_s), grid_s = sim_grid(to_s);
+    const double dt_s = grid_s - f->grid_s;
+    f->hand.v_mps = (at_m - f->hand.x_m) / (to_s - f->now_s);
     if (dt_s > 0) {
         plant_advance_hand_piece(&f->plant, &f->device,
-            plant_pieces_find(&f->pieces, &f->device, dt_s, hand.b_Nspm), f->ref_A, &hand);
+            plant_pieces_find(&f->pieces, &f->device, dt_s, f->hand.b_Nspm), f->ref_A, &f->hand);
     }
-    f->target_m = at_m;
+    f->hand.x_m = at_m;
     f->now_s = to_s;
+    f->grid_s = grid_s;
 }
 
 void sim_finger_advance(struct sim_finger *f, double until_s)
 {
-    double grid_s = sim_grid(f->now_s), turn_s = sim_path_next_s(&f->path);
+    double turn_s = sim_path_next_s(&f->path);
     while (f->now_s < until_s) {
         const double from_s = f->now_s;
         double to_s = earlier(earlier(until_s, from_s + PIECE_S), f->sample_s);
         if (turn_s <= from_s) {
             sim_path_advance(&f->path, from_s);
             turn_s = sim_path_next_s(&f->path);
-            f->target_m = sim_path_at(&f->path, from_s);
+            f->hand.x_m = sim_path_at(&f->path, from_s);
         }
         to_s = earlier(to_s, turn_s);
-        if (to_s > from_s) {
-            const double to_grid_s = sim_grid(to_s);
-            advance_plant(f, to_s, to_grid_s - grid_s);
-            grid_s = to_grid_s;
-        }
+        if (to_s > from_s) { advance_plant(f, to_s); }
         if (f->sample_s <= f->now_s) {
             f->ref_A = f->latched_A;
             f->sample_s = FAR_S;

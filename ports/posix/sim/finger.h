@@ -41,9 +41,9 @@ struct sim_finger {
     struct sim_path path;
     struct plant plant;
     struct plant_pieces pieces;
-    double target_m; /* of the path, now */
+    struct plant_hand hand; /* its target: of the path, now */
     struct sim_random rng;
-    double now_s;
+    double now_s, grid_s; /* now; the same on the grid of lengths */
     double latched_A;     /* D/A output */
     double ref_A;         /* what the servo last sampled */
     double servo_s;       /* its first sample */

@@ -4,6 +4,8 @@
 #include "grid.h"
 #include "plant.h"
 
+#include <math.h>
+
 /* Behind so many tau less is left than 2.9e-20: of what is below 900 y, not half a last bit of y.
  */
 #define SETTLED 45
@@ -53,8 +55,6 @@ double sim_curve_at(const struct sim_curve *x, double t_s)
     return v;
 }
 
-static double size_of(double v) { return v < 0 ? -v : v; }
-
 double sim_lag_sine(const struct sim_lag *l, double s)
 {
     const double wt = l->x.omega_radps * l->tau_s;
@@ -88,7 +88,7 @@ double sim_lag_at(const struct sim_lag *l, double t_s)
 {
     const double s = t_s - l->x.start_s;
     double y = sim_lag_target(l, s);
-    if (l->off != 0 && !(s > SETTLED * l->tau_s && size_of(l->off) < 900 * size_of(y))) {
+    if (l->off != 0 && !(s > SETTLED * l->tau_s && fabs(l->off) < 900 * fabs(y))) {
         y += l->off * sim_exp_neg(s / l->tau_s);
     }
     return y;
@@ -106,8 +106,16 @@ double sim_decay_at(struct sim_decay *d, double tau_s, double s)
 
 void sim_lag_line(struct sim_lag *l, const struct sim_line *x, double left)
 {
-    const double y = sim_lag_left(l, x->start_s, left);
-    l->x = (struct sim_curve){x->start_s, {x->at, x->slope}, 0, 0, 0};
+    double y;
+    if (l->terms <= 2 && l->x.amp == 0) { /* as after another line, the rest of x is 0 */
+        y = l->p[1] * (x->start_s - l->x.start_s) + l->p[0] + l->off * left;
+    } else {
+        y = sim_lag_left(l, x->start_s, left);
+        l->x = (struct sim_curve){0};
+    }
+    l->x.start_s = x->start_s;
+    l->x.c[0] = x->at;
+    l->x.c[1] = x->slope;
     l->p[1] = x->slope;
     l->p[0] = x->at - l->tau_s * x->slope;
     l->terms = x->slope != 0 ? 2 : 1;
