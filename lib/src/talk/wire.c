@@ -7,11 +7,10 @@
 
 #include "../num/mem.h"
 #include "../num/pack.h"
-#include "../num/word.h"
 
 #define HEAD_B     UINT32_C(18)
-#define LEN_AT     4u
 #define CRC_B      4u
+#define FRAMES_AT  10u /* in a TRACE: the number of frames */
 #define FINGERS_OF ((1u << EXH_FINGERS) - 1u)
 #define WINDOW     64 /* number of past sequence numbers remembered */
 
@@ -22,143 +21,138 @@ struct head {
     uint32_t session, seq, stamp_us;
 };
 
-static void head_bytes(struct exh_bytes *c, struct head *h)
+static void head_bytes(uint8_t *p, struct head *h, int takes)
 {
-    exh_bytes_u16(c, &h->magic);
-    exh_bytes_u8(c, &h->version);
-    exh_bytes_u8(c, &h->type);
-    exh_bytes_u16(c, &h->len_B);
-    exh_bytes_u32(c, &h->session);
-    exh_bytes_u32(c, &h->seq);
-    exh_bytes_u32(c, &h->stamp_us);
+    p = u16_field(p, &h->magic, takes);
+    p = u8_field(p, &h->version, takes);
+    p = u8_field(p, &h->type, takes);
+    p = u16_field(p, &h->len_B, takes);
+    p = u32_fields(p, &h->session, 1, takes);
+    p = u32_fields(p, &h->seq, 1, takes);
+    (void)u32_fields(p, &h->stamp_us, 1, takes);
 }
 
 /* --- payloads --- */
 
-/* Requires a possible value; otherwise the whole packet is refused. */
-static void demand(struct exh_bytes *c, int holds)
+static void hello_bytes(uint8_t *p, struct exh_wire_hello *h, int takes)
 {
-    if (!holds) { exh_bytes_fail(c); }
-}
-
-static void hello_bytes(struct exh_bytes *c, struct exh_wire_hello *h)
-{
-    exh_bytes_u8(c, &h->role);
-    exh_bytes_u32(c, &h->lib_version);
-    exh_bytes_u32(c, &h->table_crc);
-    const uint8_t *const p = unpack_room(c, 4 * EXH_FINGERS);
+    p = u8_field(p, &h->role, takes);
+    p = u32_fields(p, &h->lib_version, 1, takes);
+    p = u32_fields(p, &h->table_crc, 1, takes);
     for (unsigned i = 0; i < 2 * EXH_FINGERS; i++) {
-        int16_t *const pull = &h->pull_radpm_q7[i / 2][i % 2];
-        if (p != NULL) {
-            *pull = signed_half(half_at(p + 2 * i));
-        } else {
-            exh_bytes_i16(c, pull);
-        }
+        p = i16_field(p, &h->pull_radpm_q7[i / 2][i % 2], takes);
     }
-    demand(c, h->role <= EXH_WIRE_WORLD);
 }
 
-static void finger_bytes(struct exh_bytes *c, struct exh_wire_state *s, unsigned f)
+static void state_bytes(uint8_t *p, struct exh_wire_state *s, int takes)
 {
-    exh_bytes_i32s(c, s->joint_turn_q32[f], 3);
-    exh_bytes_i32s(c, s->tip_m_q30[f], 3);
-    exh_bytes_i32(c, &s->force_N_q20[f]);
-    exh_bytes_i32(c, &s->d_m_q30[f]);
-    exh_bytes_i32(c, &s->q_m_q30[f]);
-    exh_bytes_i32(c, &s->q_lim_m_q30[f]);
-}
-
-static void state_bytes(struct exh_bytes *c, struct exh_wire_state *s)
-{
-    exh_bytes_u32(c, &s->tick);
-    exh_bytes_u8(c, &s->fingers);
-    exh_bytes_u8(c, &s->state);
-    exh_bytes_u8(c, &s->frozen);
-    exh_bytes_u8(c, &s->touching);
-    exh_bytes_u16(c, &s->age_ms);
-    exh_bytes_u32(c, &s->faults);
-    for (unsigned f = 0; f < EXH_FINGERS; f++) { finger_bytes(c, s, f); }
-    demand(c, (s->fingers | s->frozen | s->touching) <= FINGERS_OF && s->state <= EXH_STATE_FAULT);
-}
-
-static void plane_bytes(struct exh_bytes *c, struct exh_wire_plane *p)
-{
-    const uint8_t *const at = unpack_room(c, 40);
-    if (at != NULL) {
-        p->kind = at[0];
-        p->material = at[1];
-        p->object = half_at(at + 2);
-        for (unsigned i = 0; i < 3; i++) {
-            p->normal_q30[i] = exh_from_u32(word_at(at + 4 + 4 * i));
-            p->point_m_q30[i] = exh_from_u32(word_at(at + 16 + 4 * i));
-            p->hit_m_q30[i] = exh_from_u32(word_at(at + 28 + 4 * i));
-        }
-    } else {
-        exh_bytes_u8(c, &p->kind);
-        exh_bytes_u8(c, &p->material);
-        exh_bytes_u16(c, &p->object);
-        exh_bytes_i32s(c, p->normal_q30, 3);
-        exh_bytes_i32s(c, p->point_m_q30, 3);
-        exh_bytes_i32s(c, p->hit_m_q30, 3);
-    }
-    demand(c, p->kind <= EXH_PLANE_HIT);
-}
-
-static void planes_bytes(struct exh_bytes *c, struct exh_wire_planes *s)
-{
-    exh_bytes_u32(c, &s->echo_seq);
-    exh_bytes_u32(c, &s->echo_stamp_us);
-    exh_bytes_u8(c, &s->fingers);
-    demand(c, s->fingers <= FINGERS_OF);
+    p = u32_fields(p, &s->tick, 1, takes);
+    p = u8_field(p, &s->fingers, takes);
+    p = u8_field(p, &s->state, takes);
+    p = u8_field(p, &s->frozen, takes);
+    p = u8_field(p, &s->touching, takes);
+    p = u16_field(p, &s->age_ms, takes);
+    p = u32_fields(p, &s->faults, 1, takes);
     for (unsigned f = 0; f < EXH_FINGERS; f++) {
-        plane_bytes(c, &s->plane[f]);
-        demand(c, s->fingers >> f & 1 || s->plane[f].kind == EXH_PLANE_UNTOLD);
+        p = i32_fields(p, s->joint_turn_q32[f], 3, takes);
+        p = i32_fields(p, s->tip_m_q30[f], 3, takes);
+        p = i32_fields(p, &s->force_N_q20[f], 1, takes);
+        p = i32_fields(p, &s->d_m_q30[f], 1, takes);
+        p = i32_fields(p, &s->q_m_q30[f], 1, takes);
+        p = i32_fields(p, &s->q_lim_m_q30[f], 1, takes);
     }
 }
 
-static void param_bytes(struct exh_bytes *c, struct exh_wire_param *p)
+static void planes_bytes(uint8_t *p, struct exh_wire_planes *s, int takes)
 {
-    exh_bytes_u16(c, &p->id);
-    exh_bytes_u16(c, &p->instance);
-    exh_bytes_i32(c, &p->value);
+    p = u32_fields(p, &s->echo_seq, 1, takes);
+    p = u32_fields(p, &s->echo_stamp_us, 1, takes);
+    p = u8_field(p, &s->fingers, takes);
+    for (unsigned f = 0; f < EXH_FINGERS; f++) {
+        struct exh_wire_plane *const plane = &s->plane[f];
+        p = u8_field(p, &plane->kind, takes);
+        p = u8_field(p, &plane->material, takes);
+        p = u16_field(p, &plane->object, takes);
+        p = i32_fields(p, plane->normal_q30, 3, takes);
+        p = i32_fields(p, plane->point_m_q30, 3, takes);
+        p = i32_fields(p, plane->hit_m_q30, 3, takes);
+    }
 }
 
-static void trace_ask_bytes(struct exh_bytes *c, struct exh_wire_trace_request *a)
+static uint8_t *param_bytes(uint8_t *p, struct exh_wire_param *s, int takes)
 {
-    exh_bytes_u32(c, &a->every);
-    for (unsigned i = 0; i < EXH_TRACE_SIGNALS; i++) { exh_bytes_u16(c, &a->index[i]); }
+    p = u16_field(p, &s->id, takes);
+    p = u16_field(p, &s->instance, takes);
+    return i32_fields(p, &s->value, 1, takes);
 }
 
-static void trace_bytes(struct exh_bytes *c, struct exh_wire_trace *t)
+static void trace_bytes(uint8_t *p, struct exh_wire_trace *t, int takes)
 {
-    exh_bytes_u32(c, &t->request_seq);
-    exh_bytes_u32(c, &t->first);
-    exh_bytes_i16(c, &t->result);
-    exh_bytes_u8(c, &t->frames);
-    demand(c, t->frames <= EXH_WIRE_FRAMES && t->result <= 0 && (t->result == 0 || t->frames == 0));
+    p = u32_fields(p, &t->request_seq, 1, takes);
+    p = u32_fields(p, &t->first, 1, takes);
+    p = i16_field(p, &t->result, takes);
+    p = u8_field(p, &t->frames, takes);
     for (unsigned i = 0; i < t->frames && i < EXH_WIRE_FRAMES; i++) {
-        exh_bytes_u32(c, &t->frame[i].tick);
-        exh_bytes_i32s(c, t->frame[i].raw, EXH_TRACE_SIGNALS);
+        p = u32_fields(p, &t->frame[i].tick, 1, takes);
+        p = i32_fields(p, t->frame[i].raw, EXH_TRACE_SIGNALS, takes);
     }
 }
 
-/* The payload of p->type. 0: unknown type. */
-static int payload_bytes(struct exh_bytes *c, struct exh_wire_packet *p)
+/* The payload of p->type, which is known, put at a place of length_B() or taken from there. */
+static void payload_bytes(uint8_t *at, struct exh_wire_packet *p, int takes)
 {
+    struct exh_wire_trace_request *const ask = &p->u.trace_ask;
     switch (p->type) {
-    case EXH_WIRE_HELLO: hello_bytes(c, &p->u.hello); return 1;
-    case EXH_WIRE_STATE: state_bytes(c, &p->u.state); return 1;
-    case EXH_WIRE_PLANES: planes_bytes(c, &p->u.planes); return 1;
-    case EXH_WIRE_PARAM: param_bytes(c, &p->u.param); return 1;
+    case EXH_WIRE_HELLO: hello_bytes(at, &p->u.hello, takes); break;
+    case EXH_WIRE_STATE: state_bytes(at, &p->u.state, takes); break;
+    case EXH_WIRE_PLANES: planes_bytes(at, &p->u.planes, takes); break;
+    case EXH_WIRE_PARAM: (void)param_bytes(at, &p->u.param, takes); break;
     case EXH_WIRE_ACK:
-        param_bytes(c, &p->u.ack.param);
-        exh_bytes_i16(c, &p->u.ack.result);
-        exh_bytes_u32(c, &p->u.ack.request_seq);
-        return 1;
-    case EXH_WIRE_TRACE_ASK: trace_ask_bytes(c, &p->u.trace_ask); return 1;
-    case EXH_WIRE_TRACE: trace_bytes(c, &p->u.trace); return 1;
-    default: return 0;
+        at = param_bytes(at, &p->u.ack.param, takes);
+        at = i16_field(at, &p->u.ack.result, takes);
+        (void)u32_fields(at, &p->u.ack.request_seq, 1, takes);
+        break;
+    case EXH_WIRE_TRACE_ASK:
+        at = u32_fields(at, &ask->every, 1, takes);
+        for (int i = 0; i < EXH_TRACE_SIGNALS; i++) { at = u16_field(at, &ask->index[i], takes); }
+        break;
+    default: trace_bytes(at, &p->u.trace, takes);
     }
+}
+
+static int planes_can_be(const struct exh_wire_planes *s)
+{
+    for (unsigned f = 0; f < EXH_FINGERS; f++) {
+        const unsigned most = s->fingers >> f & 1 ? EXH_PLANE_HIT : EXH_PLANE_UNTOLD;
+        if (s->plane[f].kind > most) { return 0; }
+    }
+    return s->fingers <= FINGERS_OF;
+}
+
+/* With an impossible value, the whole packet is refused. */
+static int can_be(const struct exh_wire_packet *p)
+{
+    const struct exh_wire_state *const s = &p->u.state;
+    const struct exh_wire_trace *const t = &p->u.trace;
+    switch (p->type) {
+    case EXH_WIRE_HELLO: return p->u.hello.role <= EXH_WIRE_WORLD;
+    case EXH_WIRE_STATE:
+        return (s->fingers | s->frozen | s->touching) <= FINGERS_OF && s->state <= EXH_STATE_FAULT;
+    case EXH_WIRE_PLANES: return planes_can_be(&p->u.planes);
+    case EXH_WIRE_TRACE:
+        return t->frames <= EXH_WIRE_FRAMES && t->result <= 0 && (t->result == 0 || t->frames == 0);
+    default: return 1;
+    }
+}
+
+static int is_known(uint8_t type) { return type != 0 && type <= EXH_WIRE_TRACE; }
+
+/* Bytes of a payload. Only that of a TRACE depends on its frames. */
+static uint32_t length_B(uint8_t type, uint32_t frames)
+{
+    static const uint8_t least_B[] = {0, 9 + 4 * EXH_FINGERS, 14 + 40 * EXH_FINGERS,
+        9 + 40 * EXH_FINGERS, 8, 14, 4 + 2 * EXH_TRACE_SIGNALS, FRAMES_AT + 1};
+    return least_B[type] + (type == EXH_WIRE_TRACE ? frames * (4 + 4 * EXH_TRACE_SIGNALS) : 0);
 }
 
 /* The size of a payload in memory by type, since others are up to ten times as long. */
@@ -172,22 +166,20 @@ int32_t exh_wire_encode(
     struct exh_wire_tx *tx, struct exh_wire_packet *p, uint32_t stamp_us, void *buf, size_t cap_B)
 {
     struct head h = {EXH_WIRE_MAGIC, EXH_WIRE_VERSION, p->type, 0, tx->session, tx->seq, stamp_us};
-    struct exh_bytes c = exh_bytes_writer(buf, cap_B);
-    uint32_t end, crc;
-    head_bytes(&c, &h);
-    if (!payload_bytes(&c, p)) { return -EXH_E_UNKNOWN; }
-    end = c.at;
-    if (end == UINT32_MAX || tx->session == 0) { return -EXH_E_RANGE; }
+    uint8_t *const at = (uint8_t *)buf;
+    const uint32_t frames = p->type == EXH_WIRE_TRACE ? p->u.trace.frames : 0;
+    uint32_t end;
+    if (!is_known(p->type)) { return -EXH_E_UNKNOWN; }
+    if (!can_be(p) || tx->session == 0) { return -EXH_E_RANGE; }
+    h.len_B = (uint16_t)length_B(p->type, frames);
+    end = HEAD_B + h.len_B;
     if (cap_B < end + CRC_B) { return -EXH_E_SHORT; }
-    h.len_B = (uint16_t)(end - HEAD_B); /* the length is known only here */
-    c.at = LEN_AT;
-    exh_bytes_u16(&c, &h.len_B);
-    c.at = end;
-    crc = exh_crc32(0, buf, end);
-    exh_bytes_u32(&c, &crc);
+    head_bytes(at, &h, 0);
+    payload_bytes(at + HEAD_B, p, 0);
+    put_word(at + end, exh_crc32(0, buf, end));
     p->seq = tx->seq++;
     p->stamp_us = stamp_us;
-    return (int32_t)c.at;
+    return (int32_t)(end + CRC_B);
 }
 
 /* --- receiving --- */
@@ -196,15 +188,12 @@ int32_t exh_wire_encode(
 static int read_packet(struct exh_wire_rx *rx, struct head *h, struct exh_wire_packet *p,
     const uint8_t *buf, size_t len_B)
 {
-    struct exh_bytes c = exh_bytes_reader(buf, len_B);
-    const uint8_t *const head = unpack_room(&c, HEAD_B);
+    uint8_t *const at = exh_bytes_reader(buf, len_B).p;
     uint32_t whole_B;
-    if (head != NULL) {
-        *h = (struct head){half_at(head), head[2], head[3], half_at(head + LEN_AT),
-            word_at(head + 6), word_at(head + 10), word_at(head + 14)};
-    }
+    int whole;
+    if (len_B >= HEAD_B) { head_bytes(at, h, 1); }
     whole_B = HEAD_B + h->len_B + CRC_B;
-    if (head == NULL || (len_B != whole_B && len_B != whole_B + EXH_WIRE_SEAL_B)) {
+    if (len_B != whole_B && len_B != whole_B + EXH_WIRE_SEAL_B) {
         rx->corrupt++;
         return -EXH_E_SHORT;
     }
@@ -220,13 +209,13 @@ static int read_packet(struct exh_wire_rx *rx, struct head *h, struct exh_wire_p
     p->type = h->type;
     p->seq = h->seq;
     p->stamp_us = h->stamp_us;
-    if (p->type == 0 || p->type > EXH_WIRE_TRACE) {
+    if (!is_known(p->type)) {
         rx->unknown++;
         return -EXH_E_UNKNOWN;
     }
-    memset(&p->u, 0, size_B[p->type]);
-    (void)payload_bytes(&c, p);
-    if (c.at != HEAD_B + h->len_B) { /* failed, or another length */
+    whole = h->len_B == length_B(p->type, h->len_B > FRAMES_AT ? at[HEAD_B + FRAMES_AT] : 0);
+    if (whole) { payload_bytes(at + HEAD_B, p, 1); }
+    if (!whole || !can_be(p)) {
         rx->corrupt++;
         return -EXH_E_CRC;
     }

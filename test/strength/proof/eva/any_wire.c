@@ -5,12 +5,13 @@
  * table of ten values.
  *
  * EVA: -eva-slevel 20
- * PLANT: lib/src/talk/wire.c: head == NULL || (len_B != whole_B && len_B != whole_B + EXH_WIRE_SEAL_B) -> head == NULL
+ * PLANT: lib/src/talk/wire.c: if (len_B != whole_B && len_B != whole_B + EXH_WIRE_SEAL_B) -> if (len_B < HEAD_B)
  * PLANT: lib/src/talk/wire.c: if (late >= WINDOW) { -> if (late > WINDOW) {
  * PLANT: lib/src/talk/wire.c: ahead < WINDOW ? rx->seen -> ahead <= WINDOW ? rx->seen
  * PLANT: lib/src/talk/wire.c: i < t->frames && i < EXH_WIRE_FRAMES -> i < t->frames
  * PLANT: lib/src/talk/wire.c: if (cap_B < end + CRC_B) { return -EXH_E_SHORT; } -> (void)0;
  */
+#define __builtin_memcpy memcpy /* the one that Eva knows */
 #include "num/bytes.c"
 #include "num/crc.c"
 #include "num/fix.c"
