@@ -60,14 +60,24 @@ static double within_one(double v) { return v > 1 ? 1 : v < -1 ? -1 : v; }
 /* Of jitter_s. Both draws every time: the kinds share one sequence. */
 static double jitter(struct sim_link_way *w)
 {
-    const double even = 2 * sim_random_unit(&w->delay_rng) - 1;
-    const double bell = sim_random_normal(&w->delay_rng) / 3;
     const int kind = (int)w->par.jitter;
+    double even, bell;
+    if (kind == SIM_LINK_CONSTANT) {
+        sim_random_skip(&w->delay_rng, 4);
+        return 0;
+    }
+    even = 2 * sim_random_unit(&w->delay_rng) - 1;
+    bell = sim_random_normal(&w->delay_rng) / 3;
     w->wander = w->par.memory * w->wander + w->fresh * bell;
-    return kind == SIM_LINK_UNIFORM      ? even
-           : kind == SIM_LINK_NORMAL     ? within_one(bell)
-           : kind == SIM_LINK_CORRELATED ? within_one(w->wander)
-                                         : 0;
+    return kind == SIM_LINK_UNIFORM ? even : within_one(kind == SIM_LINK_NORMAL ? bell : w->wander);
+}
+
+/* An effect that is off draws too, but nobody looks at it. */
+static int happens(struct sim_random *r, double share)
+{
+    if (share > 0) { return sim_random_unit(r) < share; }
+    sim_random_skip(r, 1);
+    return 0;
 }
 
 /* < 0: lost on the recorded way. */
@@ -151,9 +161,9 @@ int sim_link_send(struct sim_link_way *w, double t_s, const void *buf, size_t le
 {
     const struct sim_link_par *p = &w->par;
     const double delayed_s = delay_s(w);
-    const int lost = sim_random_unit(&w->loss_rng) < p->loss || delayed_s < 0;
-    const int twice = sim_random_unit(&w->duplicate_rng) < p->duplicate;
-    const int back = sim_random_unit(&w->reorder_rng) < p->reorder;
+    const int lost = happens(&w->loss_rng, p->loss) || delayed_s < 0;
+    const int twice = happens(&w->duplicate_rng, p->duplicate);
+    const int back = happens(&w->reorder_rng, p->reorder);
     double due_s = t_s + delayed_s;
     if (len_B > SIM_LINK_PACKET_B) {
         w->counts.too_long++;
