@@ -95,20 +95,21 @@ static uint32_t sense(struct bilateral *s, const struct bilateral_cfg *cfg,
 }
 
 /* Moves the gate's codes from places back to fingers. The gate does not know unused drives; they
- * get the code of 0 A of the first. */
+ * get their own code of 0 A. */
 static void out_by_finger(
     const struct bilateral_cfg *cfg, const struct exh_drive_out *placed, struct exh_drive_out *out)
 {
+    const unsigned n = bilateral_n(cfg);
     out->enable = 0;
     out->alive = placed->alive;
     for (unsigned k = 0; k < BILATERAL_FINGERS; k++) {
         const unsigned f = bilateral_at(cfg, k);
-        out->dac_raw[f] = placed->dac_raw[k];
-        out->enable = (uint8_t)(out->enable | (placed->enable >> k & 1u) << f);
-    }
-    for (unsigned k = bilateral_n(cfg); k < BILATERAL_FINGERS; k++) {
-        const unsigned f = bilateral_at(cfg, k);
-        out->dac_raw[f] = (uint16_t)cfg->par->drive[f].dac_zero_raw;
+        if (k < n) {
+            out->dac_raw[f] = placed->dac_raw[k];
+            out->enable = (uint8_t)(out->enable | (placed->enable >> k & 1u) << f);
+        } else {
+            out->dac_raw[f] = (uint16_t)cfg->par->drive[f].dac_zero_raw;
+        }
     }
 }
 

@@ -130,6 +130,9 @@ struct bilateral_finger {
     int32_t joint_turn_q32[EXH_HAND_JOINTS]; /* these four are of the newest glove frame */
     struct exh_vec3 tip_m_q30, slope_q24;
     uint8_t clamped;
+    /* Not saved, as neither changes a result: frames in which the position may still be kept, and
+     * what it was computed from besides the joints. */
+    uint8_t keep_frames, how;
 };
 
 /* --- a glove frame --- */

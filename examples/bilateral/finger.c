@@ -44,11 +44,34 @@ int bilateral_finger_setup(struct bilateral_cfg *cfg, unsigned place, struct exh
     return err;
 }
 
+/* While all joints stay, the position of the last frame holds. It is computed again in every
+ * KEEP_FRAMES-th frame, so that damaged memory heals. */
+#define KEEP_FRAMES 8
+
+static int stays(struct bilateral_finger *s, const int32_t *joint_turn_q32, unsigned how)
+{
+    uint32_t moved = s->how ^ how;
+    for (unsigned j = 0; j < EXH_HAND_JOINTS; j++) {
+        moved |= (uint32_t)(s->joint_turn_q32[j] ^ joint_turn_q32[j]);
+        s->joint_turn_q32[j] = joint_turn_q32[j];
+    }
+    s->how = (uint8_t)how;
+    if (moved == 0 && s->keep_frames > 0) {
+        s->keep_frames--;
+        return 1;
+    }
+    s->keep_frames = KEEP_FRAMES - 1;
+    return 0;
+}
+
 void bilateral_finger_see(struct bilateral_finger *s, const struct bilateral_cfg *cfg, unsigned f,
     const int32_t *angle_turn_q32)
 {
-    s->clamped = (uint8_t)exh_hand_joints(&exh_hit2_map, f, angle_turn_q32, s->joint_turn_q32);
-    if (cfg->par->precontact[f].from_slope) {
+    const unsigned sloped = cfg->par->precontact[f].from_slope != 0;
+    int32_t joint_turn_q32[EXH_HAND_JOINTS];
+    s->clamped = (uint8_t)exh_hand_joints(&exh_hit2_map, f, angle_turn_q32, joint_turn_q32);
+    if (stays(s, joint_turn_q32, s->clamped | sloped << EXH_HAND_JOINTS)) { return; }
+    if (sloped) {
         struct exh_hand_finger hand = cfg->finger[f].hand; /* joints at a limit do not move */
         if (s->clamped & 1u << 1) { hand.pull_radpm_q20[0] = 0; }
         if (s->clamped & 1u << 2) { hand.pull_radpm_q20[1] = 0; }

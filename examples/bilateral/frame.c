@@ -128,7 +128,9 @@ void bilateral_see(
 uint32_t bilateral_finger_age(
     const struct bilateral *s, const struct bilateral_cfg *cfg, unsigned place)
 {
-    if (s->glove_faults & cfg->finger[bilateral_at(cfg, place)].sensors) { return UINT32_MAX; }
+    if (s->glove_faults && s->glove_faults & cfg->finger[bilateral_at(cfg, place)].sensors) {
+        return UINT32_MAX;
+    }
     return place < s->frame.places ? s->glove_age_ticks : s->frame.before_ticks;
 }
 

@@ -165,6 +165,31 @@ TEST(a_finger_alone_needs_few_sensors)
     }
 }
 
+/* The position of a finger that rests is kept. It is the one of its joints in every frame, also
+ * after a change of the rule for s; a damaged one heals within 8 frames. */
+TEST(a_position_is_kept_while_the_joints_stay)
+{
+    static struct rig r;
+    struct bilateral_finger *s = &r.box.finger[1];
+    int32_t *sloped = &r.par.precontact[1].from_slope;
+    int bent_raw = 0;
+    start(&r, 1);
+    for (int k = 0; k < 5000; k++) {
+        struct exh_hand_finger hand = r.cfg.finger[1].hand;
+        struct exh_vec3 tip, slope;
+        if (k % 50 == 15) { *sloped = !*sloped; }
+        if (k % 50 == 30) { bent_raw = check_i32_in(-6000, 6000); }
+        if (k % 50 == 49) { s->tip_m_q30.y ^= 1 << check_i32_in(0, 30); }
+        tick(&r, 1, bent_raw);
+        for (unsigned i = 0; i < 2; i++) {
+            if (s->clamped >> (i + 1) & 1) { hand.pull_radpm_q20[i] = 0; }
+        }
+        exh_hand_tip_slope(&hand, s->joint_turn_q32, &tip, &slope);
+        CHECK((k + 1) % 50 < 7 || memcmp(&tip, &s->tip_m_q30, sizeof tip) == 0, "tick %d", k);
+        CHECK(!*sloped || memcmp(&slope, &s->slope_q24, sizeof slope) == 0, "tick %d", k);
+    }
+}
+
 /* A state from its bytes in the middle of a frame goes on as the other. */
 TEST(a_frame_goes_on_from_bytes)
 {
@@ -189,4 +214,5 @@ TEST(a_frame_goes_on_from_bytes)
 
 TEST_MAIN("bilateral, a frame in parts", fingers_are_seen_one_after_the_other,
     a_frame_is_whole_by_the_next, a_fault_begins_at_once_and_ends_with_the_last_finger,
-    a_finger_alone_needs_few_sensors, a_frame_goes_on_from_bytes);
+    a_finger_alone_needs_few_sensors, a_position_is_kept_while_the_joints_stay,
+    a_frame_goes_on_from_bytes);
