@@ -115,33 +115,50 @@ void sim_exo_glove(struct sim_exo *e, struct sim_glove *g, const struct sim_glov
             sim_glove_follow(g, (unsigned)bends[i][j], (unsigned)bends[i][0], radpm[1] / radpm[0]);
         }
     }
+    e->knuckles = e->seen = 0;
+    for (unsigned k = 0; k < e->used; k++) {
+        e->knuckles |= UINT32_C(1) << bends[e->at[k]][0];
+        e->seen |= g->seen[bends[e->at[k]][0]];
+    }
 }
 
-/* Moves the glove from the oldest point to the next, and drops the oldest. All knuckles that move
- * began the last movement in the same instant, so they share the rest of their low-pass. */
+/* The knuckles stay from a on, as if they had settled. After a gap all that was before has died
+ * out: it is many lags long. */
+static void settle(struct sim_exo *e, struct sim_glove *g, const struct sim_exo_point *a)
+{
+    for (unsigned k = 0; k < e->used; k++) {
+        const unsigned i = e->at[k];
+        struct sim_lag *l = &g->angle_rad[bends[i][0]];
+        const double torn_rad = e->finger[i].bend_radpm[0] * a->x_m[i];
+        sim_lag_start(l, l->tau_s, e->torn ? torn_rad : sim_lag_at(l, a->t_s));
+        l->x.start_s = a->t_s;
+    }
+    e->torn = 0;
+    g->line_s = a->t_s;
+    g->stays &= ~e->knuckles;
+}
+
+/* Moves the glove from the oldest point to the next, and drops the oldest. All knuckles begin their
+ * lines together, so they share the rest of their low-pass. */
 static void feed(struct sim_exo *e, struct sim_glove *g)
 {
     const struct sim_exo_point *a = &e->point[e->first];
     const struct sim_exo_point *b = &e->point[(e->first + 1) % SIM_EXO_POINTS];
+    const double start_s = a->t_s, step_s = b->t_s - start_s;
     const unsigned n = e->used;
-    double from_s = -1, left = 0;
+    double left;
+    if (e->torn || e->knuckles & ~g->lines) { settle(e, g, a); }
+    left = sim_decay_at(&e->way, g->tau_s, sim_grid_s(g->line_s, start_s));
     for (unsigned k = 0; k < n; k++) {
-        const unsigned i = e->at[k], knuckle = (unsigned)bends[i][0];
+        const unsigned i = e->at[k];
         const double radpm = e->finger[i].bend_radpm[0];
-        struct sim_lag *l = &g->angle_rad[knuckle];
-        struct sim_line way;
-        way.start_s = a->t_s;
-        way.at = radpm * a->x_m[i];
-        way.slope = radpm * ((b->x_m[i] - a->x_m[i]) / (b->t_s - a->t_s));
-        /* All that is left is many lags long: whatever was before has died out. */
-        if (e->torn) { sim_lag_start(l, l->tau_s, way.at); }
-        if (l->x.start_s != from_s) {
-            from_s = l->x.start_s;
-            left = sim_decay_at(&e->way, l->tau_s, sim_grid_s(from_s, a->t_s));
-        }
-        sim_glove_line(g, knuckle, &way, left);
+        const struct sim_line way = {
+            start_s, radpm * a->x_m[i], radpm * ((b->x_m[i] - a->x_m[i]) / step_s)};
+        sim_lag_line(&g->angle_rad[bends[i][0]], &way, left);
     }
-    e->torn = 0;
+    g->line_s = start_s;
+    g->lines = e->knuckles;
+    g->moves |= e->seen;
     e->first = (e->first + 1) % SIM_EXO_POINTS;
     e->points--;
 }

@@ -24,6 +24,7 @@ struct sim_exo_par sim_exo_default(void);
 struct sim_exo {
     unsigned fingers, used;        /* in use, and how many */
     unsigned char at[SIM_FINGERS]; /* which */
+    uint32_t knuckles, seen;       /* sensors of their knuckles, and all that see those */
     struct sim_finger finger[SIM_FINGERS];
     int gloved;
     struct sim_exo_point {

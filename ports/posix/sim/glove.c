@@ -133,25 +133,8 @@ static double shown_V(const struct sim_glove *g, unsigned i, double rad)
 
 double sim_glove_volt(const struct sim_glove *g, unsigned i, double t_s)
 {
-    int rests;
+    int rests = 0;
     return shown_V(g, i, bent_rad(g, i, t_s, NULL, &rests));
-}
-
-static void keep(struct sim_glove *g, unsigned i, double v)
-{
-    g->volt_V[i] = v;
-    g->moves &= ~(UINT32_C(1) << i);
-}
-
-/* The same; that of a channel at rest and without a fault is kept. */
-static double moved_V(struct sim_glove *g, unsigned i, double t_s, const struct left *now)
-{
-    double v;
-    int rests = 1;
-    if (g->fault[i] != SIM_GLOVE_WELL) { return sim_glove_volt(g, i, t_s); }
-    v = limit(g->at_0_V[i] + bent_rad(g, i, t_s, now, &rests) * g->V_perrad[i], g->par.rail_V);
-    if (rests) { keep(g, i, v); }
-    return v;
 }
 
 /* The same, where all angles stay or began a straight line so long ago. */
@@ -215,27 +198,14 @@ void sim_glove_start(struct sim_glove *g, const struct sim_glove_par *p, uint64_
     g->held_s = -1;
 }
 
-static void begin(struct sim_glove *g, unsigned i, double start_s)
-{
-    const uint32_t angle = UINT32_C(1) << i;
-    if (start_s != g->line_s) { g->lines = 0; }
-    g->line_s = start_s;
-    g->lines |= angle;
-    g->stays &= ~angle;
-    g->moves |= g->seen[i];
-}
-
 void sim_glove_move(struct sim_glove *g, unsigned i, const struct sim_curve *x)
 {
+    const uint32_t angle = UINT32_C(1) << i;
     sim_lag_follow(&g->angle_rad[i], x);
-    begin(g, i, x->start_s);
-    g->lines &= ~(UINT32_C(1) << i);
-}
-
-void sim_glove_line(struct sim_glove *g, unsigned i, const struct sim_line *x, double left)
-{
-    sim_lag_line(&g->angle_rad[i], x, left);
-    begin(g, i, x->start_s);
+    g->lines = x->start_s != g->line_s ? 0 : g->lines & ~angle;
+    g->line_s = x->start_s;
+    g->stays &= ~angle;
+    g->moves |= g->seen[i];
 }
 
 void sim_glove_follow(struct sim_glove *g, unsigned i, unsigned of, double share)
@@ -283,25 +253,22 @@ static uint32_t odd(const struct sim_glove *g, uint32_t *stuck)
     if (!(faults[0] | faults[1] | faults[2]) && (g->lines | g->stays) == ALL) { return 0; }
     for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
         if (!((g->lines | g->stays) >> i & 1)) { mask |= g->seen[i] & g->moves; }
-        if (g->fault[i] == SIM_GLOVE_STUCK) { *stuck |= UINT32_C(1) << i; }
-    }
-    for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
         if (g->fault[i] != SIM_GLOVE_WELL) { mask |= UINT32_C(1) << i; }
+        if (g->fault[i] == SIM_GLOVE_STUCK) { *stuck |= UINT32_C(1) << i; }
     }
     return mask;
 }
 
-/* Their voltages, the first held at t_s. That of a fault is not kept. */
+/* Their voltages, the first held at t_s. That of a channel at rest and without a fault is kept. */
 static void odd_V(
     struct sim_glove *g, uint32_t odds, unsigned first, double t_s, double tick_s, struct left now)
 {
-    for (unsigned i = first; odds >> i; i++) {
-        if (odds >> i & 1) {
-            const double held_s = i > first ? sim_glove_held_s(&g->par, i, tick_s) : t_s;
-            g->moves |= UINT32_C(1) << i;
-            g->volt_V[i] = moved_V(g, i, held_s, &now);
-        }
-        now.left *= g->line_left;
+    for (unsigned i = first; odds >> i; i++, now.left *= g->line_left) {
+        const double held_s = i > first ? sim_glove_held_s(&g->par, i, tick_s) : t_s;
+        int rests = g->fault[i] == SIM_GLOVE_WELL;
+        if (!(odds >> i & 1)) { continue; }
+        g->volt_V[i] = shown_V(g, i, bent_rad(g, i, held_s, rests ? &now : NULL, &rests));
+        g->moves = (g->moves & ~(UINT32_C(1) << i)) | (uint32_t)!rests << i;
     }
 }
 

@@ -88,9 +88,6 @@ void sim_glove_move(struct sim_glove *g, unsigned i, const struct sim_curve *x);
 /* Behind the amplifier, without noise, at t_s. */
 double sim_glove_volt(const struct sim_glove *g, unsigned i, double t_s);
 
-/* The same on a straight line, as sim_lag_line() says. */
-void sim_glove_line(struct sim_glove *g, unsigned i, const struct sim_line *x, double left);
-
 /* From now on the joint of sensor i moves by `share` of what that of sensor `of` does. */
 void sim_glove_follow(struct sim_glove *g, unsigned i, unsigned of, double share);
 

@@ -103,21 +103,3 @@ double sim_decay_at(struct sim_decay *d, double tau_s, double s)
     }
     return d->left[at];
 }
-
-void sim_lag_line(struct sim_lag *l, const struct sim_line *x, double left)
-{
-    double y;
-    if (l->terms <= 2 && l->x.amp == 0) { /* as after another line, the rest of x is 0 */
-        y = l->p[1] * (x->start_s - l->x.start_s) + l->p[0] + l->off * left;
-    } else {
-        y = sim_lag_left(l, x->start_s, left);
-        l->x = (struct sim_curve){0};
-    }
-    l->x.start_s = x->start_s;
-    l->x.c[0] = x->at;
-    l->x.c[1] = x->slope;
-    l->p[1] = x->slope;
-    l->p[0] = x->at - l->tau_s * x->slope;
-    l->terms = x->slope != 0 ? 2 : 1;
-    l->off = l->tau_s > 0 ? y - l->p[0] : 0;
-}

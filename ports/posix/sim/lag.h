@@ -23,7 +23,7 @@ struct sim_lag {
     double tau_s;              /* 0: none */
     struct sim_curve x;        /* the input */
     double p[SIM_CURVE_TERMS]; /* what y runs after, of the polynomial, */
-    int terms;                 /* up to its last that is not 0 */
+    int terms;                 /* up to its last that is not 0; of a line 2 */
     double off;                /* y less that, at the start */
 };
 
@@ -75,16 +75,28 @@ static inline int sim_lag_rests(const struct sim_lag *l)
 {
     return l->off == 0 && l->terms == 1 && l->x.amp == 0;
 }
-struct sim_line {
-    double start_s, at, slope;
-};
-/* The same output as sim_lag_at(), and a line to follow as by sim_lag_follow(). left: what is left
- * of e^-(t / tau). */
+
+/* The same output as sim_lag_at(). left: what is left of e^-(t / tau). */
 static inline double sim_lag_left(const struct sim_lag *l, double t_s, double left)
 {
     return sim_lag_target(l, t_s - l->x.start_s) + l->off * left;
 }
-void sim_lag_line(struct sim_lag *l, const struct sim_line *x, double left);
+
+/* From a straight line, or from rest, on to another line, as sim_lag_follow() does; tau is not 0.
+ * Without a branch, since the rest of x is 0. */
+struct sim_line {
+    double start_s, at, slope;
+};
+static inline void sim_lag_line(struct sim_lag *l, const struct sim_line *x, double left)
+{
+    const double s = x->start_s - l->x.start_s, y = l->p[1] * s + l->p[0] + l->off * left;
+    l->x.start_s = x->start_s;
+    l->x.c[0] = x->at;
+    l->x.c[1] = l->p[1] = x->slope;
+    l->p[0] = x->at - l->tau_s * x->slope;
+    l->terms = 2;
+    l->off = y - l->p[0];
+}
 
 /* Sine and cosine from + - x; |x| < 1e6; error < 1e-15 + 1e-16 |x|. */
 double sim_sin(double x);

@@ -23,7 +23,7 @@ static inline void step_current(struct plant *p, const struct plant_piece *s, do
 static inline double tension(const struct sim_device *d, double stretch_m, double opening_mps)
 {
     const double T = d->cable_npm * stretch_m + d->cable_nspm * opening_mps;
-    const double pull_N = 0 > T ? 0 : T;
+    const double pull_N = T > 0 ? T : 0;
     return stretch_m < 0 ? 0 : pull_N;
 }
 
