@@ -333,8 +333,8 @@ static double load_A(void)
 {
     double sum_A = 0;
     if (!sim.exo.fingers) { return magnitude(sim.mass.ref_A); }
-    for (unsigned i = 0; i < EXH_FINGERS && sim.exo.fingers >> i; i++) {
-        if (sim.exo.fingers >> i & 1) { sum_A += magnitude(sim.exo.finger[i].ref_A); }
+    for (unsigned k = 0; k < sim.exo.used; k++) {
+        sum_A += magnitude(sim.exo.finger[sim.exo.at[k]].ref_A);
     }
     return sum_A;
 }
@@ -354,14 +354,12 @@ static int16_t supply_raw(void)
 static int read_device(struct exh_drive_in *in)
 {
     const double jitter_cnt = sim.cfg.enc_jitter_cnt;
+    const unsigned n = sim.exo.fingers ? sim.exo.used : 0;
     memset(in, 0, sizeof *in);
-    if (!sim.exo.fingers) {
-        sim_mass_read(&sim.mass, jitter_cnt, &in->enc_raw[0], &in->mon_raw[0]);
-    }
-    for (unsigned i = 0; i < EXH_FINGERS && sim.exo.fingers >> i; i++) {
-        if (sim.exo.fingers >> i & 1) {
-            sim_finger_read(&sim.exo.finger[i], jitter_cnt, &in->enc_raw[i], &in->mon_raw[i]);
-        }
+    if (n == 0) { sim_mass_read(&sim.mass, jitter_cnt, &in->enc_raw[0], &in->mon_raw[0]); }
+    for (unsigned k = 0; k < n; k++) {
+        const unsigned i = sim.exo.at[k];
+        sim_finger_read(&sim.exo.finger[i], jitter_cnt, &in->enc_raw[i], &in->mon_raw[i]);
     }
     in->din = EXH_DIN_ESTOP | EXH_DIN_DEADMAN | EXH_DIN_WATCHDOG | EXH_DIN_CARDS |
               EXH_DIN_DRIVE0 * sim.drives;

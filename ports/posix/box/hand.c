@@ -121,13 +121,14 @@ static void keep(
 }
 
 /* 1 while the finger has something to do. */
-static int one_finger(unsigned f, const struct bilateral_signals *sig)
+static int one_finger(
+    const struct bilateral_run_cfg *c, unsigned f, const struct bilateral_signals *sig)
 {
     const struct bilateral_paper *raw = &sig->paper[f];
     const struct sim_finger *plant = posix_finger(f);
     const int32_t bits = sig->more[f].bits;
     struct bilateral_track *t = &run.r->finger[f];
-    if (run.cfg->keep) { keep(f, t, raw, bits); }
+    if (c->keep) { keep(f, t, raw, bits); }
     if (bits & EXH_PRECONTACT_FREEZE) {
         t->freezes++;
         t->scale = ((double)raw->q_lim_m_q30 - raw->q_m_q30) / -(double)raw->d_m_q30;
@@ -138,7 +139,7 @@ static int one_finger(unsigned f, const struct bilateral_signals *sig)
         t->unfrozen += !(bits & EXH_PRECONTACT_STANDS);
     }
     t->c = raw->c;
-    if (!run.cfg->bare) {
+    if (!c->bare) {
         const int first = run.r->ticks == 1;
         widen(&t->range, plant->plant.x_m, raw, sig->more[f].joint_turn_q32, first);
         if (t->frozen_yet) { t->digest = digest_of(t->digest, raw); }
@@ -172,7 +173,8 @@ static const struct bilateral_signals *signals(void)
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
     const struct bilateral_signals *sig = signals();
-    const unsigned fingers = run.cfg->board.exo.fingers;
+    const struct bilateral_run_cfg *c = run.cfg;
+    const unsigned fingers = c->board.exo.fingers;
     int busy = 0;
     dumpfile_after(tick, in, out);
     run.last_tick = tick;
@@ -180,9 +182,9 @@ static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh
     watch_arming(sig);
     if (!run.sees) { world_line_after(&sig->box); }
     for (unsigned f = 0; fingers >> f; f++) {
-        if (fingers >> f & 1) { busy |= one_finger(f, sig); }
+        if (fingers >> f & 1) { busy |= one_finger(c, f, sig); }
     }
-    if (run.cfg->more) { run.cfg->more->after(tick, in, out); }
+    if (c->more) { c->more->after(tick, in, out); }
     if (!busy && run.done_s < 0) { run.done_s = posix_time_s(); }
     if (!busy && posix_time_s() > run.done_s + AFTER_S) { posix_stop(); }
 }

@@ -108,17 +108,21 @@ static void advance_plant(struct sim_finger *f, double to_s)
     f->grid_s = grid_s;
 }
 
+/* The path's next phase or row. Inline, this rare part would take the loop's registers. */
+__attribute__((noinline)) static double turn(struct sim_finger *f)
+{
+    sim_path_advance(&f->path, f->now_s);
+    f->hand.x_m = sim_path_at(&f->path, f->now_s);
+    return sim_path_next_s(&f->path);
+}
+
 void sim_finger_advance(struct sim_finger *f, double until_s)
 {
     double turn_s = sim_path_next_s(&f->path);
     while (f->now_s < until_s) {
         const double from_s = f->now_s;
         double to_s = earlier(earlier(until_s, from_s + PIECE_S), f->sample_s);
-        if (turn_s <= from_s) {
-            sim_path_advance(&f->path, from_s);
-            turn_s = sim_path_next_s(&f->path);
-            f->hand.x_m = sim_path_at(&f->path, from_s);
-        }
+        if (turn_s <= from_s) { turn_s = turn(f); }
         to_s = earlier(to_s, turn_s);
         if (to_s > from_s) { advance_plant(f, to_s); }
         if (f->sample_s <= f->now_s) {

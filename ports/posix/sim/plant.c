@@ -166,17 +166,14 @@ static inline void step_finger(struct plant *p, const struct sim_device *d,
     stop(&p->q_m, &p->w_mps, hand->end_m);
 }
 
-__attribute__((noinline)) static void more_hand_steps(struct plant *p, const struct sim_device *d,
+/* Apart from the finger's loop over events: inline it would take its registers. */
+__attribute__((noinline)) void plant_advance_hand_piece(struct plant *p, const struct sim_device *d,
     const struct plant_piece *s, double ref_A, const struct plant_hand *hand)
 {
-    for (int i = 1; i < s->n; i++) { step_finger(p, d, s, ref_A, hand, (i + 0.5) * s->h_s); }
-}
-
-void plant_advance_hand_piece(struct plant *p, const struct sim_device *d,
-    const struct plant_piece *s, double ref_A, const struct plant_hand *hand)
-{
-    step_finger(p, d, s, ref_A, hand, 0.5 * s->h_s);
-    if (s->n > 1) { more_hand_steps(p, d, s, ref_A, hand); }
+    int i = 0;
+    do {
+        step_finger(p, d, s, ref_A, hand, (i + 0.5) * s->h_s);
+    } while (++i < s->n);
 }
 
 void plant_advance_hand(struct plant *p, const struct sim_device *d, double dt_s, double ref_A,
