@@ -177,7 +177,8 @@ static void hide(const struct peer *p, struct exh_wire_planes *planes, double t_
 
 static void answer(struct peer *p, struct sim_link *link, double t_s)
 {
-    struct exh_wire_packet out = {.type = EXH_WIRE_PLANES};
+    struct exh_wire_packet out; /* planes are set whole */
+    out.type = EXH_WIRE_PLANES;
     peer_look(p->cfg.world, &p->state, &p->pace, t_s, &out.u.planes);
     hide(p, &out.u.planes, t_s);
     out.u.planes.echo_seq = p->echo_seq;

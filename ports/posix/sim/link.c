@@ -72,7 +72,7 @@ static double jitter(struct sim_link_way *w)
     return kind == SIM_LINK_UNIFORM ? even : within_one(kind == SIM_LINK_NORMAL ? bell : w->wander);
 }
 
-/* An effect that is off draws too, but nobody looks at it. */
+/* An effect that is off counts its draw without computing it. */
 static int happens(struct sim_random *r, double share)
 {
     if (share > 0) { return sim_random_unit(r) < share; }
