@@ -104,8 +104,15 @@ static uint8_t cause_of(const struct exh_glove_cfg *cfg, unsigned i, int16_t raw
     return raw >= cfg->high_raw ? cfg->high_cause : EXH_GLOVE_OUTSIDE;
 }
 
-/* Processes a bad code, or a good one on a channel with rejected codes. */
-static void doubt(struct exh_glove *s, const struct exh_glove_cfg *cfg, unsigned i, int16_t raw)
+/* A good code on a channel without rejected codes. */
+static int is_plain(
+    const struct exh_glove *s, const struct exh_glove_cfg *cfg, unsigned i, int16_t raw)
+{
+    return raw >= cfg->lo_raw[i] && raw <= cfg->hi_raw[i] && (s->run[i] | s->cause[i]) == 0;
+}
+
+/* Processes any code. */
+static void judge(struct exh_glove *s, const struct exh_glove_cfg *cfg, unsigned i, int16_t raw)
 {
     const uint8_t now = cause_of(cfg, i, raw);
     const int faulty = s->cause[i] != EXH_GLOVE_GOOD, bad = now != EXH_GLOVE_GOOD;
@@ -149,16 +156,16 @@ uint32_t exh_glove_believe(struct exh_glove *s, const struct exh_glove_cfg *cfg,
     const struct exh_glove_in *in, int32_t *code_raw_q16)
 {
     uint32_t faulty = 0;
+    unsigned i = 0;
     if (!s->started) { start(s, cfg, in); }
-    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) {
-        int16_t raw = in->raw[i];
-        if (raw < cfg->lo_raw[i] || raw > cfg->hi_raw[i] || (s->run[i] | s->cause[i]) != 0) {
-            doubt(s, cfg, i, raw);
-            faulty |= (uint32_t)(s->cause[i] != EXH_GLOVE_GOOD) << i;
-            raw = s->good_raw[i];
-        }
-        s->good_raw[i] = raw;
-        code_raw_q16[i] = raw * (INT32_C(1) << EXH_Q_RAW);
+    for (; i < EXH_GLOVE_SENSORS && is_plain(s, cfg, i, in->raw[i]); i++) {
+        s->good_raw[i] = in->raw[i];
+        code_raw_q16[i] = in->raw[i] * (INT32_C(1) << EXH_Q_RAW);
+    }
+    for (; i < EXH_GLOVE_SENSORS; i++) { /* from the first that is not plain */
+        judge(s, cfg, i, in->raw[i]);
+        faulty |= (uint32_t)(s->cause[i] != EXH_GLOVE_GOOD) << i;
+        code_raw_q16[i] = s->good_raw[i] * (INT32_C(1) << EXH_Q_RAW);
     }
     return faulty;
 }
