@@ -14,19 +14,18 @@ static unsigned smaller(unsigned a, unsigned b) { return a < b ? a : b; }
  * sensor without terms, so one pass finds all. */
 static uint32_t sensors_needed(struct bilateral_cfg *cfg)
 {
-    struct exh_glove_cfg *glove = &cfg->glove;
-    const unsigned crosses = glove->crosses;
     uint32_t need = 0;
+    unsigned kept = 0;
     for (unsigned k = 0; k < cfg->n; k++) { need |= cfg->finger[cfg->at[k]].sensors; }
-    glove->crosses = 0;
-    for (unsigned n = 0; n < crosses; n++) {
-        const unsigned i = glove->crossed[n];
-        if (!(need >> i & 1u)) { continue; }
-        glove->crossed[glove->crosses++] = (uint8_t)i;
+    for (unsigned i = 0; i < EXH_GLOVE_SENSORS && kept < EXH_GLOVE_SENSORS; i++) {
+        const uint8_t *of = cfg->cal.sensor[i].of;
+        if (!(need >> i & 1u) || (of[0] & of[1]) == EXH_GLOVE_NONE) { continue; }
+        cfg->glove.crossed[kept++] = (uint8_t)i;
         for (unsigned t = 0; t < 2; t++) { /* without a term: bit 31, which is no sensor's */
-            need |= UINT32_C(1) << (cfg->cal.sensor[i].of[t] & 31u);
+            need |= UINT32_C(1) << (of[t] & 31u);
         }
     }
+    cfg->glove.crosses = (uint8_t)kept;
     return need & ((UINT32_C(1) << EXH_GLOVE_SENSORS) - 1u);
 }
 
