@@ -121,27 +121,23 @@ static void keep(
 }
 
 /* 1 while the finger has something to do. */
-static int one_finger(
-    const struct bilateral_run_cfg *c, unsigned f, const struct bilateral_signals *sig)
+static int one_finger(unsigned f, const struct bilateral_signals *sig)
 {
     const struct bilateral_paper *raw = &sig->paper[f];
     const struct sim_finger *plant = posix_finger(f);
     const int32_t bits = sig->more[f].bits;
     struct bilateral_track *t = &run.r->finger[f];
-    if (c->keep) { keep(f, t, raw, bits); }
+    if (run.cfg->keep) { keep(f, t, raw, bits); }
     if (bits & EXH_PRECONTACT_FREEZE) {
         t->freezes++;
         t->scale = ((double)raw->q_lim_m_q30 - raw->q_m_q30) / -(double)raw->d_m_q30;
     }
     if (bits & EXH_PRECONTACT_STANDS) { t->frozen_yet = 1; }
-    if (raw->c) {
-        t->contacts += !t->c;
-        t->unfrozen += !(bits & EXH_PRECONTACT_STANDS);
-    }
+    if (raw->c) { t->unfrozen += !(bits & EXH_PRECONTACT_STANDS); }
+    if (raw->c && !t->c) { t->contacts++; }
     t->c = raw->c;
-    if (!c->bare) {
-        const int first = run.r->ticks == 1;
-        widen(&t->range, plant->plant.x_m, raw, sig->more[f].joint_turn_q32, first);
+    if (!run.cfg->bare) {
+        widen(&t->range, plant->plant.x_m, raw, sig->more[f].joint_turn_q32, run.r->ticks == 1);
         if (t->frozen_yet) { t->digest = digest_of(t->digest, raw); }
     }
     return plant->path.phase != SIM_PATH_DONE;
@@ -173,18 +169,17 @@ static const struct bilateral_signals *signals(void)
 static void after(uint32_t tick, const struct exh_scene_in *in, const struct exh_drive_out *out)
 {
     const struct bilateral_signals *sig = signals();
-    const struct bilateral_run_cfg *c = run.cfg;
-    const unsigned fingers = c->board.exo.fingers;
+    unsigned fingers = run.cfg->board.exo.fingers;
     int busy = 0;
     dumpfile_after(tick, in, out);
     run.last_tick = tick;
     run.r->ticks++;
     watch_arming(sig);
     if (!run.sees) { world_line_after(&sig->box); }
-    for (unsigned f = 0; fingers >> f; f++) {
-        if (fingers >> f & 1) { busy |= one_finger(c, f, sig); }
+    for (unsigned f = 0; fingers; f++, fingers >>= 1) {
+        if (fingers & 1) { busy |= one_finger(f, sig); }
     }
-    if (c->more) { c->more->after(tick, in, out); }
+    if (run.cfg->more) { run.cfg->more->after(tick, in, out); }
     if (!busy && run.done_s < 0) { run.done_s = posix_time_s(); }
     if (!busy && posix_time_s() > run.done_s + AFTER_S) { posix_stop(); }
 }
