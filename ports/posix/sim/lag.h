@@ -37,8 +37,9 @@ static inline int sim_poly_terms(const double c[SIM_CURVE_TERMS])
 
 static inline double sim_poly(const double c[SIM_CURVE_TERMS], int terms, double s)
 {
-    double v = c[terms - 1];
-    for (int k = terms - 2; k >= 0; k--) { v = v * s + c[k]; }
+    double v = c[SIM_CURVE_TERMS - 1];
+    if (terms == 1) { return c[0]; }
+    for (int k = SIM_CURVE_TERMS - 2; k >= 0; k--) { v = v * s + c[k]; }
     return v;
 }
 
