@@ -99,13 +99,13 @@ static void advance_plant(struct sim_finger *f, double to_s)
     const double at_m = sim_path_at(&f->path, to_s), grid_s = sim_grid(to_s);
     const double dt_s = grid_s - f->grid_s;
     f->hand.v_mps = (at_m - f->hand.x_m) / (to_s - f->now_s);
+    f->now_s = to_s;
+    f->grid_s = grid_s;
     if (dt_s > 0) {
         plant_advance_hand_piece(&f->plant, &f->device,
             plant_pieces_find(&f->pieces, &f->device, dt_s, f->hand.b_Nspm), f->ref_A, &f->hand);
     }
     f->hand.x_m = at_m;
-    f->now_s = to_s;
-    f->grid_s = grid_s;
 }
 
 /* The path's next phase or row. Inline, this rare part would take the loop's registers. */

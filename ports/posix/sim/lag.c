@@ -55,7 +55,7 @@ double sim_curve_at(const struct sim_curve *x, double t_s)
     return v;
 }
 
-double sim_lag_sine(const struct sim_lag *l, double s)
+__attribute__((noinline)) double sim_lag_sine(const struct sim_lag *l, double s)
 {
     const double wt = l->x.omega_radps * l->tau_s;
     const double a = l->x.omega_radps * s + l->x.phase_rad;

@@ -94,7 +94,7 @@ void plant_hold_piece(struct plant *p, const struct plant_piece *s, double ref_A
     for (int i = 0; i < s->n; i++) { step_current(p, s, ref_A); }
 }
 
-const struct plant_piece *plant_pieces_put(
+__attribute__((noinline)) const struct plant_piece *plant_pieces_put(
     struct plant_pieces *c, unsigned at, const struct sim_device *d, double dt_s, double hand_nspm)
 {
     c->dt_s[at] = dt_s;
