@@ -62,7 +62,7 @@ struct sim_glove {
     /* What most channels need not work out again. */
     uint32_t reads, holds;                   /* channels that are read, and that those depend on */
     uint32_t moves, seen[SIM_GLOVE_SENSORS]; /* channels that may change; those that see angle i */
-    double volt_V[SIM_GLOVE_SENSORS];        /* of those that do not */
+    double volt_V[SIM_GLOVE_SENSORS];        /* of those that do not; of others of no use */
     double line_s;                           /* when an angle last began another movement */
     uint32_t lines, stays;   /* angles that then began a straight line; that never moved */
     double tau_s, line_left; /* of the low-pass, and what it leaves from channel to channel */

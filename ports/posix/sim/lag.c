@@ -4,8 +4,6 @@
 #include "grid.h"
 #include "plant.h"
 
-#include <math.h>
-
 /* Behind so many tau less is left than 2.9e-20: of what is below 900 y, not half a last bit of y.
  */
 #define SETTLED 45
@@ -55,6 +53,8 @@ double sim_curve_at(const struct sim_curve *x, double t_s)
     return v;
 }
 
+static double size_of(double v) { return v < 0 ? -v : v; }
+
 __attribute__((noinline)) double sim_lag_sine(const struct sim_lag *l, double s)
 {
     const double wt = l->x.omega_radps * l->tau_s;
@@ -88,7 +88,7 @@ double sim_lag_at(const struct sim_lag *l, double t_s)
 {
     const double s = t_s - l->x.start_s;
     double y = sim_lag_target(l, s);
-    if (l->off != 0 && !(s > SETTLED * l->tau_s && fabs(l->off) < 900 * fabs(y))) {
+    if (l->off != 0 && !(s > SETTLED * l->tau_s && size_of(l->off) < 900 * size_of(y))) {
         y += l->off * sim_exp_neg(s / l->tau_s);
     }
     return y;
