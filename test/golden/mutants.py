@@ -323,7 +323,7 @@ MUTANTS = (
     ("wire", L + "talk/wire.c", "if (s->plane[f].kind > most) { return 0; }", ""),
     ("wire", L + "talk/wire.c", "s->fingers >> f & 1 ?", "1 ?"),
     ("wire", L + "talk/wire.c", "(len_B != whole_B && len_B != whole_B + EXH_WIRE_SEAL_B)",
-     "len_B < whole_B"),
+     "(len_B < whole_B)"),
     ("wire", L + "talk/wire.c", "(int16_t)result, p->seq", "(int16_t)result, p->stamp_us"),
     ("wire", L + "talk/wire.c", "t->frames <= EXH_WIRE_FRAMES && ", ""),
     ("wire", L + "talk/wire.c", "(t->result == 0 || t->frames == 0)", "1"),
