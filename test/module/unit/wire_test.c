@@ -113,7 +113,9 @@ TEST(there_and_back)
         struct exh_wire_tx tx = {9, 1};
         struct exh_wire_packet p = sample(t), back = {.type = 0};
         uint8_t again[EXH_WIRE_MAX_B];
-        const int32_t n = exh_wire_encode(&tx, &p, 0x12345678, buf, sizeof buf);
+        const int32_t n =
+            exh_wire_encode(&tx, &p, 0x12345678, memset(buf, 0xA5, sizeof buf), sizeof buf);
+        for (size_t k = (size_t)n; k < sizeof buf; k++) { CHECK(buf[k] == 0xA5, "beyond %d", t); }
         CHECK_EQ_I64(exh_wire_decode(&rx, &back, buf, (size_t)n), t);
         CHECK(back.type == t && back.seq == 1 && back.stamp_us == 0x12345678 && rx.accepted == 2,
             "type %d", t);
@@ -462,7 +464,7 @@ TEST(writing_refuses)
     struct exh_wire_packet p = sample(EXH_WIRE_STATE);
     CHECK_EQ_I64(exh_wire_encode(&tx, &p, 0, buf, 235), -EXH_E_SHORT);
     CHECK_EQ_I64(exh_wire_encode(&tx, &p, 0, buf, 236), 236);
-    p.u.state.touching = 32;
+    p.u.state.fingers = p.u.state.frozen = p.u.state.touching = 32;
     CHECK_EQ_I64(exh_wire_encode(&tx, &p, 0, buf, sizeof buf), -EXH_E_RANGE);
     p = sample(EXH_WIRE_PLANES);
     p.u.planes.plane[4].kind = EXH_PLANE_HIT;

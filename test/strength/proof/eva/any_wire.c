@@ -6,6 +6,7 @@
  *
  * EVA: -eva-slevel 20
  * PLANT: lib/src/talk/wire.c: if (len_B != whole_B && len_B != whole_B + EXH_WIRE_SEAL_B) -> if (len_B < HEAD_B)
+ * PLANT: lib/src/talk/wire.c: if (whole) { -> if (1) {
  * PLANT: lib/src/talk/wire.c: if (late >= WINDOW) { -> if (late > WINDOW) {
  * PLANT: lib/src/talk/wire.c: ahead < WINDOW ? rx->seen -> ahead <= WINDOW ? rx->seen
  * PLANT: lib/src/talk/wire.c: i < t->frames && i < EXH_WIRE_FRAMES -> i < t->frames
