@@ -16,6 +16,7 @@
 
 #define PIECE_S 600e-6 /* the target moves on a straight line for no longer */
 #define FAR_S   1e30
+#define NOTHING 1e-300 /* a smaller number may cost a processor 100 times as much */
 
 const struct sim_device_row sim_finger_row[] = {
     {"mass", "kg", 0.1, 0.005, 1, "unsure", "finger and exoskeleton, reflected to the string"},
@@ -71,6 +72,7 @@ void sim_finger_start(struct sim_finger *f, const struct sim_finger_par *par,
     f->bend_radpm[0] = par->arm_m[0] / square;
     f->bend_radpm[1] = rest / square;
     sim_path_start(&f->path, path, &load, record, sim_random_u64(&f->rng));
+    f->lead_left = 1;
     f->hand = (struct plant_hand){par->k_Npm, par->b_Nspm, sim_path_at(&f->path, 0), 0, 0};
     f->plant.x_m = f->plant.q_m = f->hand.x_m;
     f->grid = sim_random_unit(&f->rng);
@@ -96,8 +98,11 @@ static double earlier(double a, double b) { return a < b ? a : b; }
 /* Advances the finger alone to the next event. */
 static void advance_plant(struct sim_finger *f, double to_s)
 {
-    const double at_m = sim_path_at(&f->path, to_s), grid_s = sim_grid(to_s);
-    const double dt_s = grid_s - f->grid_s;
+    const double grid_s = sim_grid(to_s), dt_s = grid_s - f->grid_s;
+    double at_m;
+    if (dt_s > 0) { f->lead_left *= sim_decay_at(&f->lead, f->path.e.tau_s, dt_s); }
+    if (f->lead_left < NOTHING) { f->lead_left = 0; }
+    at_m = sim_path_left(&f->path, to_s, f->lead_left);
     f->hand.v_mps = (at_m - f->hand.x_m) / (to_s - f->now_s);
     f->now_s = to_s;
     f->grid_s = grid_s;
@@ -112,6 +117,7 @@ static void advance_plant(struct sim_finger *f, double to_s)
 __attribute__((noinline)) static double turn(struct sim_finger *f)
 {
     sim_path_advance(&f->path, f->now_s);
+    f->lead_left = 1;
     f->hand.x_m = sim_path_at(&f->path, f->now_s);
     return sim_path_next_s(&f->path);
 }

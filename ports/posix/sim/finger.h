@@ -42,6 +42,8 @@ struct sim_finger {
     struct plant plant;
     struct plant_pieces pieces;
     struct plant_hand hand; /* its target: of the path, now */
+    struct sim_decay lead;  /* of the path's lead in a step, */
+    double lead_left;       /* and since its phase began */
     struct sim_random rng;
     double now_s, grid_s; /* now; the same on the grid of lengths */
     double latched_A;     /* D/A output */

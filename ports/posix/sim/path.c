@@ -106,6 +106,11 @@ double sim_path_at(const struct sim_path *p, double t_s)
     return sim_path_wanted(p, t_s) + sim_lag_at(&p->e, t_s);
 }
 
+double sim_path_left(const struct sim_path *p, double t_s, double left)
+{
+    return sim_path_wanted(p, t_s) + sim_lag_left(&p->e, t_s, left);
+}
+
 /* --- approaches --- */
 
 static double varied(struct sim_path *p, double v)

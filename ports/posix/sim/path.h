@@ -85,6 +85,8 @@ double sim_path_next_s(const struct sim_path *p);
 
 /* The spring's end, and the script itself; t_s from the phase's begin to its end. */
 double sim_path_at(const struct sim_path *p, double t_s);
+/* The same. left: what is left of e^-(t / p->e.tau_s) since p->e.x.start_s. */
+double sim_path_left(const struct sim_path *p, double t_s, double left);
 double sim_path_wanted(const struct sim_path *p, double t_s);
 
 /* The 22 angles of a row (rad, in the glove's order), flexion of finger 0..4 counted up or, sign
