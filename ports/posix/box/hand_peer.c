@@ -32,19 +32,22 @@ void peer_look(const struct peer_world *w, const struct exh_wire_state *in, cons
         world_frame(w->scene, in, pace, t_s, out, NULL);
         return;
     }
-    *out = w->wall;
-    for (unsigned f = 0; w->jump_s > 0 && t_s >= w->jump_s && f < EXH_FINGERS; f++) {
+    out->fingers = w->wall.fingers & in->fingers;
+    for (unsigned f = 0; f < EXH_FINGERS; f++) {
+        static const struct exh_wire_plane untold;
         struct exh_wire_plane *p = &out->plane[f];
-        for (int i = 0; i < 3; i++) {
+        if (!(out->fingers >> f & 1)) {
+            *p = untold;
+            continue;
+        }
+        *p = w->wall.plane[f];
+        for (int i = 0; w->jump_s > 0 && t_s >= w->jump_s && i < 3; i++) {
             p->point_m_q30[i] += (int32_t)(w->jump_m * p->normal_q30[i]);
         }
-    }
-    out->fingers &= in->fingers;
-    for (unsigned f = 0; f < EXH_FINGERS; f++) {
-        const int used = (int)(out->fingers >> f & 1);
-        const int far = w->ray_m > 0 && peer_gap_m(&out->plane[f], in->tip_m_q30[f]) < -w->ray_m;
-        if (!used || far) { memset(&out->plane[f], 0, sizeof out->plane[f]); }
-        if (used && far) { out->plane[f].kind = EXH_PLANE_NONE; }
+        if (w->ray_m > 0 && peer_gap_m(p, in->tip_m_q30[f]) < -w->ray_m) {
+            *p = untold;
+            p->kind = EXH_PLANE_NONE;
+        }
     }
 }
 
@@ -78,25 +81,25 @@ static void take_trace(struct peer *p, const struct exh_wire_trace *t)
 
 static void take(struct peer *p, const void *buf, size_t len_B)
 {
-    struct exh_wire_packet in;
-    const int type = exh_wire_decode(&p->rx, &in, buf, len_B);
+    struct exh_wire_packet *in = &p->in[p->at ^ 1u];
+    const int type = exh_wire_decode(&p->rx, in, buf, len_B);
     if (type == EXH_WIRE_HELLO) {
         p->hello_s = -1; /* a new peer: answer in this tick */
-        pace_pull(&p->pace, &in.u.hello);
+        pace_pull(&p->pace, &in->u.hello);
     }
-    if (type == EXH_WIRE_TRACE) { take_trace(p, &in.u.trace); }
+    if (type == EXH_WIRE_TRACE) { take_trace(p, &in->u.trace); }
     if (type == EXH_WIRE_STATE) {
-        p->state = in.u.state;
-        if (p->cfg.world->scene) { pace_take(&p->pace, &p->state, in.stamp_us); } /* its reader */
-        p->echo_seq = in.seq;
-        p->echo_stamp_us = in.stamp_us;
+        p->at ^= 1u;
+        if (p->cfg.world->scene) { pace_take(&p->pace, &in->u.state, in->stamp_us); }
+        p->echo_seq = in->seq;
+        p->echo_stamp_us = in->stamp_us;
         p->told = 1;
     }
     for (int i = 0; type == EXH_WIRE_ACK && i < p->cfg.params; i++) {
-        const struct exh_wire_param *a = &in.u.ack.param, *b = &p->cfg.param[i];
+        const struct exh_wire_param *a = &in->u.ack.param, *b = &p->cfg.param[i];
         if (a->id == b->id && a->instance == b->instance && a->value == b->value) {
             p->acked |= 1u << i;
-            if (in.u.ack.result < 0) { p->refused |= 1u << i; }
+            if (in->u.ack.result < 0) { p->refused |= 1u << i; }
         }
     }
 }
@@ -179,7 +182,7 @@ static void answer(struct peer *p, struct sim_link *link, double t_s)
 {
     struct exh_wire_packet out; /* planes are set whole */
     out.type = EXH_WIRE_PLANES;
-    peer_look(p->cfg.world, &p->state, &p->pace, t_s, &out.u.planes);
+    peer_look(p->cfg.world, &p->in[p->at].u.state, &p->pace, t_s, &out.u.planes);
     hide(p, &out.u.planes, t_s);
     out.u.planes.echo_seq = p->echo_seq;
     out.u.planes.echo_stamp_us = p->echo_stamp_us;

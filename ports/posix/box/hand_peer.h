@@ -56,7 +56,8 @@ struct peer {
     struct peer_cfg cfg;
     struct exh_wire_tx tx;
     struct exh_wire_rx rx;
-    struct exh_wire_state state;
+    struct exh_wire_packet in[2]; /* the newest STATE, and room for the next packet */
+    unsigned at;                  /* of the STATE */
     struct pace pace;
     uint32_t echo_seq, echo_stamp_us;
     double hello_s, param_s; /* when the last went out */
