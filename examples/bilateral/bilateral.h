@@ -131,7 +131,7 @@ struct bilateral_finger {
     struct exh_vec3 tip_m_q30, slope_q24;
     uint8_t clamped;
     /* Not saved, as neither changes a result: frames in which the position may still be kept, and
-     * what it was computed from besides the joints. */
+     * what it was computed from in addition to the joints. */
     uint8_t keep_frames, how;
 };
 
