@@ -384,7 +384,7 @@ static int put_out(const struct exh_drive_out *out)
 {
     struct exh_drive_out wired;
     const struct sim_device *d = &sim.cfg.device;
-    const unsigned axes = sim.exo.fingers ? sim.exo.fingers : 1;
+    const unsigned n = sim.exo.fingers ? sim.exo.used : 1;
     struct output *o = &sim.queue[(sim.head + sim.queued) % OUTPUTS_MAX];
 
     if (sim.queued == OUTPUTS_MAX) { return -EXH_E_IO; }
@@ -394,7 +394,8 @@ static int put_out(const struct exh_drive_out *out)
         out = &wired;
     }
     o->at_s = due_s(sim.now_s);
-    for (unsigned i = 0; i < EXH_FINGERS && axes >> i; i++) {
+    for (unsigned k = 0; k < n; k++) {
+        const unsigned i = sim.exo.fingers ? sim.exo.at[k] : 0;
         o->ref_A[i] = sim_drive_A(d, out->dac_raw[i], out->enable >> i & 1);
     }
     sim.queued++;
