@@ -135,6 +135,12 @@ struct bilateral_finger {
     uint8_t keep_frames, how;
 };
 
+/* A port that need not take the same time in every tick defines more, to save time while a finger
+ * rests. Every choice gives the same bits. */
+#ifndef BILATERAL_KEEP_FRAMES
+#define BILATERAL_KEEP_FRAMES 1
+#endif
+
 /* --- a glove frame --- */
 
 #define BILATERAL_PARTS 7

@@ -45,9 +45,7 @@ int bilateral_finger_setup(struct bilateral_cfg *cfg, unsigned place, struct exh
 }
 
 /* While all joints stay, the position of the last frame holds. It is computed again in every
- * KEEP_FRAMES-th frame, so that damaged memory heals. */
-#define KEEP_FRAMES 8
-
+ * BILATERAL_KEEP_FRAMES-th frame, so that damaged memory heals. */
 static int stays(struct bilateral_finger *s, const int32_t *joint_turn_q32, unsigned how)
 {
     uint32_t moved = s->how ^ how;
@@ -55,12 +53,13 @@ static int stays(struct bilateral_finger *s, const int32_t *joint_turn_q32, unsi
         moved |= (uint32_t)(s->joint_turn_q32[j] ^ joint_turn_q32[j]);
         s->joint_turn_q32[j] = joint_turn_q32[j];
     }
+    if (BILATERAL_KEEP_FRAMES == 1) { return 0; }
     s->how = (uint8_t)how;
     if (moved == 0 && s->keep_frames > 0) {
         s->keep_frames--;
         return 1;
     }
-    s->keep_frames = KEEP_FRAMES - 1;
+    s->keep_frames = BILATERAL_KEEP_FRAMES - 1;
     return 0;
 }
 

@@ -16,6 +16,7 @@
  * PLANT: examples/bilateral/bilateral.c: limits[k] = now[k].limits | -> limits[k] |= now[k].limits |
  * PLANT: examples/bilateral/finger.c: if (s->clamped & 1u << 1) { hand.pull_radpm_q20[0] = 0; } -> hand.pull_radpm_q20[0] *= 2;
  */
+#define BILATERAL_KEEP_FRAMES 8
 #include "bilateral/bilateral.c"
 
 #include "called_box.h"
