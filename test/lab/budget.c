@@ -23,11 +23,11 @@ static const struct load {
 } load[] = {
     {"drop", 20000, 14, 0, 3968, 2, 0, "make hil ARGS=rates, all in every tick"},
     {"drop, in turn", 20000, 11, 0, 3911, 1, 0, "make hil ARGS=rates, turns=1"},
-    {"bilateral, frame in a tick", 10000, 44, 49, 19658, 4, 1,
+    {"bilateral, frame in a tick", 10000, 44, 49, 18891, 4, 1,
         "accesses: test/device/cards; make hil ARGS=box, 2 kHz: a frame in every tick"},
-    {"bilateral, in turn, frame", 10000, 30, 1, 13815, 1, 11,
+    {"bilateral, in turn, frame", 10000, 30, 1, 13448, 1, 11,
         "make hil ARGS=box, 10 kHz, turns=1 scan_slice=2: packets and a part"},
-    {"bilateral, in turn, part", 10000, 30, 6, 13815, 1, 11, "the same, and 2 samples"},
+    {"bilateral, in turn, part", 10000, 30, 6, 13448, 1, 11, "the same, and 2 samples"},
 };
 #define LOADS       ((int)(sizeof load / sizeof load[0]))
 #define TIMER_READS 5 /* and one access to the interrupt controller, in every tick */

@@ -44,8 +44,8 @@ even="--spread 60000"
 even_drop="--spread 80000"
 # The most instructions that a tick of the full box may take, the image's part and the scene's. With
 # a glove frame in every tick. With one in every twentieth, computed and taken in parts.
-dear="--most 20000"
-dear_parts="--most 14300"
+dear="--most 19500"
+dear_parts="--most 13900"
 # With as few accesses as a tick can do with (docs/CARDS.md); the glove at 500 Hz, in parts.
 sparing="monitor=2 turns=1"
 parts="--loop --turns --glove-last --set every=20"
