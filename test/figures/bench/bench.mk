@@ -43,7 +43,7 @@ $(B)/bench/sim_work $(B)/bench/sim_statistics:
 sim-built: $(B)/bench/sim_work $(B)/bench/sim_statistics
 
 # The kernels for a 32-bit CPU, as ports/pc104 compiles a full box, but not tuned for one CPU. Only
-# instructions count there. This program is larger than an image: without a limit of its own for
+# instructions count there. This program is larger than an image: with the usual limit for
 # large units, the compiler would inline less here than there.
 i686_flags := -march=i686 -fno-pic -fno-pie -no-pie -fno-stack-protector -fcf-protection=none \
               -fno-asynchronous-unwind-tables -O3 -flto=auto -Wno-maybe-uninitialized \
