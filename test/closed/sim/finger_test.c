@@ -168,6 +168,7 @@ static struct passed pass(
     for (double t = h; f.path.phase <= SIM_PATH_APPROACH; t += h) {
         double now_w;
         sim_finger_advance(&f, t);
+        CHECK(fabs(f.hand.x_m - sim_path_at(&f.path, t)) < 1e-12, "%.6f s: not on its path", t);
         if (f.path.phase > SIM_PATH_APPROACH) { break; }
         now_w = sim_path_wanted(&f.path, t);
         if (x < path->believed_m && f.plant.x_m >= path->believed_m) {
