@@ -185,4 +185,5 @@ void bilateral_finger_bytes(struct exh_bytes *c, struct bilateral_finger *s)
     exh_bytes_vec3(c, &s->tip_m_q30);
     exh_bytes_vec3(c, &s->slope_q24);
     exh_bytes_u8(c, &s->clamped);
+    s->keep_frames = 0; /* it was of another position */
 }

@@ -190,6 +190,27 @@ TEST(a_position_is_kept_while_the_joints_stay)
     }
 }
 
+/* A position from bytes is computed again, whatever was kept before. Here they are of a finger
+ * without a frame, whose joints are 0 as those of a straight one. */
+TEST(a_position_from_bytes_is_not_kept)
+{
+    static struct rig r;
+    struct bilateral_finger fresh = {.keep_frames = 0}, old = {.keep_frames = 0};
+    int32_t straight_turn_q32[EXH_GLOVE_SENSORS];
+    uint8_t byte[1024];
+    struct exh_bytes to = exh_bytes_writer(byte, sizeof byte), from;
+    start(&r, 1);
+    for (unsigned i = 0; i < EXH_GLOVE_SENSORS; i++) { straight_turn_q32[i] = -EXH_DEG(60, 1); }
+    bilateral_finger_bytes(&to, &fresh);
+    bilateral_finger_see(&old, &r.cfg, EXH_MIDDLE, straight_turn_q32);
+    from = exh_bytes_reader(byte, to.at);
+    bilateral_finger_bytes(&from, &old);
+    CHECK(exh_bytes_ok(&from) && old.tip_m_q30.x == 0, "the bytes");
+    bilateral_finger_see(&fresh, &r.cfg, EXH_MIDDLE, straight_turn_q32);
+    bilateral_finger_see(&old, &r.cfg, EXH_MIDDLE, straight_turn_q32);
+    CHECK(memcmp(&fresh.tip_m_q30, &old.tip_m_q30, sizeof old.tip_m_q30) == 0, "kept");
+}
+
 /* A state from its bytes in the middle of a frame goes on as the other. */
 TEST(a_frame_goes_on_from_bytes)
 {
@@ -215,4 +236,4 @@ TEST(a_frame_goes_on_from_bytes)
 TEST_MAIN("bilateral, a frame in parts", fingers_are_seen_one_after_the_other,
     a_frame_is_whole_by_the_next, a_fault_begins_at_once_and_ends_with_the_last_finger,
     a_finger_alone_needs_few_sensors, a_position_is_kept_while_the_joints_stay,
-    a_frame_goes_on_from_bytes);
+    a_position_from_bytes_is_not_kept, a_frame_goes_on_from_bytes);
