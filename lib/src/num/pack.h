@@ -55,7 +55,8 @@ static inline uint8_t *u16_field(uint8_t *p, uint16_t *v, int takes)
 /* Within a loop, GCC does not join the bytes of put_word(). So a little-endian CPU copies words. */
 static inline uint8_t *u32_fields(uint8_t *p, uint32_t *v, unsigned n, int takes)
 {
-#if defined __GNUC__ && !defined __TINYC__ && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+#if defined __GNUC__ && !defined __TINYC__ && defined __BYTE_ORDER__ && \
+    __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
     __builtin_memcpy(takes ? (void *)v : p, takes ? p : (void *)v, 4 * n);
     return p + 4 * n;
 #else
