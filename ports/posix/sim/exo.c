@@ -51,6 +51,7 @@ int sim_exo_start(struct sim_exo *e, const struct sim_exo_par *p, const struct s
     e->gloved = gloved;
     e->used = e->first = e->points = 0;
     e->torn = 0;
+    e->newest_s = 0;
     memset(&e->way, 0, sizeof e->way);
     for (unsigned i = 0; i < SIM_FINGERS; i++) {
         struct sim_path_par path = p->path[i];
