@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* CRC-32 for the host: 16 bytes a step by products without carries, where the processor has them,
- * else by the library's table.
+/* CRC-32 for the host: 64 bytes a step by products without carries, where the processor has them,
+ * else, and below 64 bytes, by the library's table.
  *
  * A block of 16 bytes moves on by n bits if its halves are multiplied by x^(n+63) and x^(n-1)
  * modulo the polynomial, bits reflected (V. Gopal et al., Fast CRC Computation for Generic
