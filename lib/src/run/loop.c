@@ -35,21 +35,18 @@ static void same_glove(struct exh_scene_in *in)
  * frame. */
 static int read_glove(const struct exh_scene *sc, struct exh_scene_in *in, uint32_t *wait)
 {
-    uint16_t age;
+    struct exh_glove_in got;
     int err;
     same_glove(in);
-    age = in->glove.age_ticks;
     if (*wait > 0) {
         --*wait;
         return 0;
     }
     if (sc->glove_every && *sc->glove_every > 1) { *wait = (uint32_t)*sc->glove_every - 1; }
-    err = sc->read_glove(&in->glove);
-    if (err < 0) {
-        in->glove.age_ticks = age; /* no scene looks at codes that are not new */
-        return err;
-    }
-    in->glove_new = in->glove.age_ticks < age && in->glove.age_ticks < UINT16_MAX;
+    err = sc->read_glove(&got);
+    if (err < 0) { return err; }
+    in->glove_new = got.age_ticks < in->glove.age_ticks && got.age_ticks < UINT16_MAX;
+    in->glove = got;
     return 0;
 }
 

@@ -16,6 +16,7 @@
 
 #define PIECE_S 600e-6 /* the target moves on a straight line for no longer */
 #define FAR_S   1e30
+#define LONG_S  0.5
 #define NOTHING 1e-300 /* a smaller number may cost a processor 100 times as much */
 
 const struct sim_device_row sim_finger_row[] = {
@@ -95,13 +96,25 @@ void sim_finger_safe(struct sim_finger *f)
 
 static double earlier(double a, double b) { return a < b ? a : b; }
 
+/* From step to step, which takes no exponential. A long lag's rest is large and almost cancels, so
+ * each of its last bits counts: it is worked out at once. */
+static void carry_lead(struct sim_finger *f, double to_s, double dt_s)
+{
+    const struct sim_lag *l = &f->path.e;
+    if (l->tau_s > LONG_S) {
+        f->lead_left = sim_exp_neg((to_s - l->x.start_s) / l->tau_s);
+    } else if (dt_s > 0) {
+        f->lead_left *= sim_decay_at(&f->lead, l->tau_s, dt_s);
+    }
+    if (f->lead_left < NOTHING) { f->lead_left = 0; }
+}
+
 /* Advances the finger alone to the next event. */
 static void advance_plant(struct sim_finger *f, double to_s)
 {
     const double grid_s = sim_grid(to_s), dt_s = grid_s - f->grid_s;
     double at_m;
-    if (dt_s > 0) { f->lead_left *= sim_decay_at(&f->lead, f->path.e.tau_s, dt_s); }
-    if (f->lead_left < NOTHING) { f->lead_left = 0; }
+    carry_lead(f, to_s, dt_s);
     at_m = sim_path_left(&f->path, to_s, f->lead_left);
     f->hand.v_mps = (at_m - f->hand.x_m) / (to_s - f->now_s);
     f->now_s = to_s;

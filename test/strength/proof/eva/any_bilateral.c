@@ -164,6 +164,7 @@ static void any_cfg(void)
     ANY(cfg.at);
     ANY(cfg.part);
     cfg.parts = any8();
+    cfg.sensors = any_u32();
     /*@ admit safety_cfg(&cfg.safety); */
     cfg.par = &active;
     ANY(cfg.glove);
@@ -211,6 +212,10 @@ static void one_tick(uint8_t least, uint8_t most, uint8_t packets)
     any_cfg();
     cfg.n = (uint8_t)Frama_C_unsigned_int_interval(least, most);
     exh_scene_bilateral.state(&c);
+    for (unsigned f = 0; f < BILATERAL_FINGERS; f++) {
+        state.finger[f].keep_frames = any8();
+        state.finger[f].how = any8();
+    }
     exh_integrity_seal(&guard, &cfg, sizeof cfg, &params);
     ANY(in);
     ANY(signals);

@@ -9,7 +9,7 @@
  * PLANT: lib/src/run/loop.c: while (in->packets < EXH_SCENE_PACKETS) { -> while (in->packets <= EXH_SCENE_PACKETS) {
  * PLANT: lib/src/run/loop.c: if (n <= 0 || n > EXH_SCENE_PACKET_B) { return; } -> if (n <= 0) { return; }
  * PLANT: lib/src/run/loop.c: if (err == 0) { err = sc->setup(*board); } -> err = sc->setup(*board);
- * PLANT: lib/src/run/loop.c: const int err = exh_board_read_drive(&got); -> const int err = exh_board_read_drive(&got) > 0;
+ * PLANT: lib/src/run/loop.c: if (err < 0) { return err; } -> (void)0;
  * PLANT: lib/src/run/loop.c: if (sc->end) { sc->end(); } -> sc->end();
  * PLANT: lib/src/run/loop.c: if (sc->tell) { sc->tell(); } -> sc->tell();
  * PLANT: lib/src/run/loop.c: file[n] != '\0' && n < 48 -> file[n] != '\0'
