@@ -97,7 +97,7 @@ void sim_finger_safe(struct sim_finger *f)
 static double earlier(double a, double b) { return a < b ? a : b; }
 
 /* From step to step, which takes no exponential. A long lag's rest is large and almost cancels, so
- * each of its last bits counts: it is worked out at once. */
+ * each of its last bits counts: it is computed anew. */
 static void carry_lead(struct sim_finger *f, double to_s, double dt_s)
 {
     const struct sim_lag *l = &f->path.e;
