@@ -8,7 +8,7 @@
 
 #include "check.h"
 
-static uint8_t buf[EXH_WIRE_MAX_B];
+static uint8_t buf[EXH_WIRE_MAX_B + 20]; /* and a TRACE with a frame too many */
 
 static struct exh_wire_packet sample(uint8_t type)
 {
@@ -185,6 +185,20 @@ TEST(values_that_cannot_be)
         CHECK(take(&rx, n) == bad[i].want, "case %d", (int)i);
         CHECK(rx.corrupt + rx.version + rx.unknown == 1 && rx.seq == start.seq, "case %d", (int)i);
     }
+}
+
+/* Its length is right, and so is its CRC. */
+TEST(a_trace_with_a_frame_too_many)
+{
+    const uint32_t len_B = 11 + (EXH_WIRE_FRAMES + 1) * (4 + 4 * EXH_TRACE_SIGNALS);
+    struct exh_wire_rx rx = met(9, 0);
+    (void)write_as(EXH_WIRE_TRACE, 9, 1);
+    buf[4] = (uint8_t)(len_B & 0xFF);
+    buf[5] = (uint8_t)(len_B >> 8);
+    buf[18 + 10] = EXH_WIRE_FRAMES + 1;
+    seal(18 + len_B + 4);
+    CHECK_EQ_I64(take(&rx, 18 + len_B + 4), -EXH_E_CRC);
+    CHECK_EQ_I64(rx.corrupt, 1);
 }
 
 TEST(a_trace_fits_a_packet_whole_and_no_frame_is_missed_unseen)
@@ -539,7 +553,7 @@ TEST(state_round_trip)
 }
 
 TEST_MAIN("unit/wire", bytes_are_those_of_the_document, there_and_back,
-    every_bit_flipped_and_every_byte_cut_off, values_that_cannot_be,
+    every_bit_flipped_and_every_byte_cut_off, values_that_cannot_be, a_trace_with_a_frame_too_many,
     a_trace_fits_a_packet_whole_and_no_frame_is_missed_unseen, only_what_is_newer,
     parameters_and_answers_may_be_late_but_once, sequence_numbers_wrap, far_ahead_is_not_believed,
     no_packet_makes_it_deaf_for_good, silence_is_only_what_is_heard_of_nobody,
