@@ -172,7 +172,7 @@ TEST(a_position_is_kept_while_the_joints_stay)
     static struct rig r;
     struct bilateral_finger *s = &r.box.finger[1];
     int32_t *sloped = &r.par.precontact[1].from_slope;
-    int bent_raw = 0;
+    int bent_raw = 0, kept = 0;
     start(&r, 1);
     for (int k = 0; k < 5000; k++) {
         struct exh_hand_finger hand = r.cfg.finger[1].hand;
@@ -185,9 +185,11 @@ TEST(a_position_is_kept_while_the_joints_stay)
             if (s->clamped >> (i + 1) & 1) { hand.pull_radpm_q20[i] = 0; }
         }
         exh_hand_tip_slope(&hand, s->joint_turn_q32, &tip, &slope);
+        kept += memcmp(&tip, &s->tip_m_q30, sizeof tip) != 0;
         CHECK((k + 1) % 50 < 7 || memcmp(&tip, &s->tip_m_q30, sizeof tip) == 0, "tick %d", k);
         CHECK(!*sloped || memcmp(&slope, &s->slope_q24, sizeof slope) == 0, "tick %d", k);
     }
+    CHECK(kept > 0, "no damage outlived a frame: nothing is kept here");
 }
 
 /* A position from bytes is computed again, whatever was kept before. Here they are of a finger
