@@ -53,12 +53,7 @@ const struct sim_device_row sim_device_row[] = {
     {"substep", "s", 250e-6, 1e-7, 1e-3, "ours",
         "longest integration step; unless given, shorter where string and rotor want it"},
 };
-const int sim_device_rows = (int)(sizeof sim_device_row / sizeof sim_device_row[0]);
-
-typedef char device_rows_match[sizeof(struct sim_device) / sizeof(double) ==
-                                       sizeof sim_device_row / sizeof sim_device_row[0]
-                                   ? 1
-                                   : -1];
+SIM_ROWS(sim_device, sim_device_row);
 
 void sim_rows_default(void *values, const struct sim_device_row *rows, int n)
 {

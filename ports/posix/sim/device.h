@@ -28,6 +28,12 @@ struct sim_device_row {
     const char *help;
 };
 
+/* The number of rows of a table, one for each double of a struct, in its order. */
+#define SIM_ROWS(par, row) \
+    const int row##s = (int)(sizeof row / sizeof row[0]); \
+    typedef char \
+        row##s_match[sizeof(struct par) / sizeof(double) == sizeof row / sizeof row[0] ? 1 : -1]
+
 /* Rows in the order of struct sim_device. */
 extern const struct sim_device_row sim_device_row[];
 extern const int sim_device_rows;

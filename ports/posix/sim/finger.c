@@ -28,12 +28,7 @@ const struct sim_device_row sim_finger_row[] = {
     {"arm2", "m", 0.016, 0.002, 0.05, "lib", "of the joint beyond it"},
     {"arm3", "m", 0.012, 0, 0.05, "lib", "of the last joint, which bends as that one does"},
 };
-const int sim_finger_rows = (int)(sizeof sim_finger_row / sizeof sim_finger_row[0]);
-
-typedef char finger_rows_match[sizeof(struct sim_finger_par) / sizeof(double) ==
-                                       sizeof sim_finger_row / sizeof sim_finger_row[0]
-                                   ? 1
-                                   : -1];
+SIM_ROWS(sim_finger_par, sim_finger_row);
 
 struct sim_finger_par sim_finger_default(void)
 {

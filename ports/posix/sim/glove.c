@@ -38,12 +38,7 @@ const struct sim_device_row sim_glove_row[] = {
         "time constant of the multiplexer: a step of full scale settles to one code in 4 us"},
     {"span", "v", 10, 1, 10, "paper", "the card's range, either side of 0, in 16 bits"},
 };
-const int sim_glove_rows = (int)(sizeof sim_glove_row / sizeof sim_glove_row[0]);
-
-typedef char glove_rows_match[sizeof(struct sim_glove_par) / sizeof(double) ==
-                                      sizeof sim_glove_row / sizeof sim_glove_row[0]
-                                  ? 1
-                                  : -1];
+SIM_ROWS(sim_glove_par, sim_glove_row);
 
 /* In the glove's order. End points: file (one user's, 8 bits), angles nominal. An abduction
  * sensor is bent by the two fingers it joins, the thumb's by its rotation (ours). */

@@ -25,12 +25,7 @@ const struct sim_device_row sim_link_row[] = {
     {"queue", "", 1024, 1, SIM_LINK_QUEUE, "ours", "packets on their way at most"},
     {"trace_scale", "", 1, 0, 1000, "ours", "of a recorded delay; 0.5 for round trips"},
 };
-const int sim_link_rows = (int)(sizeof sim_link_row / sizeof sim_link_row[0]);
-
-typedef char link_rows_match[sizeof(struct sim_link_par) / sizeof(double) ==
-                                     sizeof sim_link_row / sizeof sim_link_row[0]
-                                 ? 1
-                                 : -1];
+SIM_ROWS(sim_link_par, sim_link_row);
 
 struct sim_link_par sim_link_default(void)
 {

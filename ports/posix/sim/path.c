@@ -25,12 +25,7 @@ const struct sim_device_row sim_path_row[] = {
         "all but `believed` and `first` vary by +- this from one to the next"},
     {"approaches", "", 0, 0, 1e9, "ours", "how many; 0: for ever"},
 };
-const int sim_path_rows = (int)(sizeof sim_path_row / sizeof sim_path_row[0]);
-
-typedef char path_rows_match[sizeof(struct sim_path_par) / sizeof(double) ==
-                                     sizeof sim_path_row / sizeof sim_path_row[0]
-                                 ? 1
-                                 : -1];
+SIM_ROWS(sim_path_par, sim_path_row);
 
 struct sim_path_par sim_path_default(void)
 {
