@@ -18,6 +18,7 @@
 #include "exhand/board.h"
 #include "exhand/error.h"
 
+#include <math.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -326,15 +327,13 @@ int exh_board_wait(void)
     return stop || interrupted || done() ? -1 : (int)missed;
 }
 
-static double magnitude(double v) { return v < 0 ? -v : v; }
-
 /* What the motors take in all. */
 static double load_A(void)
 {
     double sum_A = 0;
-    if (!sim.exo.fingers) { return magnitude(sim.mass.ref_A); }
+    if (!sim.exo.fingers) { return fabs(sim.mass.ref_A); }
     for (unsigned k = 0; k < sim.exo.used; k++) {
-        sum_A += magnitude(sim.exo.finger[sim.exo.at[k]].ref_A);
+        sum_A += fabs(sim.exo.finger[sim.exo.at[k]].ref_A);
     }
     return sum_A;
 }
@@ -460,11 +459,7 @@ static int16_t coarse(int16_t code)
 {
     const double step = 2 * 29491.2 / 254;
     const double sample = (double)sim_floor((code + 29491.2) / step + 0.5);
-    return (int16_t)sim_floor((sample < 0        ? 0
-                                  : sample > 254 ? 254
-                                                 : sample) *
-                                  step -
-                              29491.2 + 0.5);
+    return (int16_t)sim_floor(fmin(fmax(sample, 0), 254) * step - 29491.2 + 0.5);
 }
 
 /* The frame before, if there is one: this one is still on its line. */
