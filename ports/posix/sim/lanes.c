@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "lanes.h"
 
+#define STEP_LANES
 #include "step.h"
 
 #include <stddef.h>

@@ -5,12 +5,17 @@
 
 #include "plant.h"
 
-/* Dry friction may take up to `most` off a velocity, never turn it. Without branches, here and in
- * tension(): no processor can predict when something sticks. */
+/* Dry friction may take up to `most` off a velocity, never turn it. A sub-step waits for each of
+ * its operations, but not for a predicted branch; plants side by side (STEP_LANES) have none. */
 static inline double shrink(double v, double most)
 {
+#ifdef STEP_LANES
     const double taken = v < most ? v : most;
     return v - (taken > -most ? taken : -most);
+#else
+    if (!(v <= most)) { return v - most; } /* also if it is no number */
+    return v < -most ? v + most : 0;
+#endif
 }
 
 static inline void step_current(struct plant *p, const struct plant_piece *s, double ref_A)
