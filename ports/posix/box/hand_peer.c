@@ -203,14 +203,14 @@ static void start_anew(struct peer *p)
 void peer_frame(void *ctx, struct sim_link *link, double t_s)
 {
     struct peer *p = ctx;
-    uint8_t buf[SIM_LINK_PACKET_B];
-    int n, there;
+    const struct sim_link_packet *got;
+    int there;
     if (p->cfg.again_s > 0 && t_s >= p->cfg.again_s && !p->born_again) { start_anew(p); }
     there = t_s >= p->cfg.from_s && t_s < p->cfg.until_s;
     (void)exh_wire_poll(&p->rx, (uint32_t)fmin(1e6 * (t_s - p->heard_s), 4e9), QUIET_US);
     p->heard_s = t_s;
-    while ((n = sim_link_recv(&link->way[SIM_LINK_OUT], t_s, buf, sizeof buf)) > 0) {
-        if (there) { take(p, buf, (size_t)n); }
+    while ((got = sim_link_take(&link->way[SIM_LINK_OUT], t_s, sizeof got->byte)) != NULL) {
+        if (there) { take(p, got->byte, got->len_B); }
     }
     if (!there) { return; }
     p->frames++;

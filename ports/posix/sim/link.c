@@ -186,18 +186,24 @@ double sim_link_next_s(const struct sim_link_way *w)
     return w->queued ? w->slot[w->order[w->queued - 1]].due_s : FAR_S;
 }
 
-int sim_link_recv(struct sim_link_way *w, double t_s, void *buf, size_t cap_B)
+__attribute__((noinline)) const struct sim_link_packet *sim_link_take(
+    struct sim_link_way *w, double t_s, size_t cap_B)
 {
     while (sim_link_next_s(w) <= t_s) {
         const struct sim_link_packet *p = &w->slot[w->order[--w->queued]];
         w->counts.arrived++;
         w->counts.overtaken += p->number + 1 < w->newest;
         if (p->number + 1 > w->newest) { w->newest = p->number + 1; }
-        if (p->len_B <= cap_B && p->len_B > 0) {
-            memcpy(buf, p->byte, p->len_B);
-            return p->len_B;
-        }
+        if (p->len_B <= cap_B && p->len_B > 0) { return p; }
         w->counts.too_long += p->len_B > cap_B;
     }
-    return 0;
+    return NULL;
+}
+
+int sim_link_recv(struct sim_link_way *w, double t_s, void *buf, size_t cap_B)
+{
+    const int arrived = sim_link_next_s(w) <= t_s; /* mostly not, which takes no call */
+    const struct sim_link_packet *p = arrived ? sim_link_take(w, t_s, cap_B) : NULL;
+    if (p) { memcpy(buf, p->byte, p->len_B); }
+    return p ? p->len_B : 0;
 }

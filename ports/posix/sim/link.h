@@ -90,7 +90,11 @@ void sim_link_start(struct sim_link_way *w, const struct sim_link_par *p,
  * longer than any may be. */
 int sim_link_send(struct sim_link_way *w, double t_s, const void *buf, size_t len_B);
 
-/* The next that has arrived by t_s: its length, or 0: none. One longer than cap_B is dropped. */
+/* The next that has arrived by t_s, or NULL: none. One longer than cap_B is dropped. It stays valid
+ * until the next is sent. */
+const struct sim_link_packet *sim_link_take(struct sim_link_way *w, double t_s, size_t cap_B);
+
+/* The same, copied: its length, or 0: none. */
 int sim_link_recv(struct sim_link_way *w, double t_s, void *buf, size_t cap_B);
 
 /* When the next arrives, 1e30: nothing is on its way. */
