@@ -178,7 +178,8 @@ void sim_exo_frame(
         if (e->points > 1 && next->t_s <= last_s) { /* in the midst of the frame */
             for (end = i + 1; sim_glove_held_s(&g->par, end, tick_s) < next->t_s; end++) {}
         }
-        sim_glove_scan(g, i, end, tick_s, raw);
+        sim_glove_scan(g, i, end, tick_s);
         i = end;
     }
+    memcpy(raw, g->code, sizeof g->code);
 }

@@ -337,11 +337,10 @@ int16_t sim_glove_convert(struct sim_glove *g, unsigned i, double t_s)
     return g->code[i];
 }
 
-void sim_glove_scan(struct sim_glove *g, unsigned first, unsigned end, double tick_s, int16_t *raw)
+void sim_glove_scan(struct sim_glove *g, unsigned first, unsigned end, double tick_s)
 {
     const double t_s = sim_glove_held_s(&g->par, first, tick_s);
     convert(g, first, end, t_s, tick_s, first == 0 ? left_at(g, t_s) : g->slot_left);
-    memcpy(raw + first, g->code + first, (end - first) * sizeof raw[0]);
 }
 
 int16_t sim_glove_code(const struct sim_glove_par *p, double v_V)

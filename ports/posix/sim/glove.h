@@ -105,7 +105,7 @@ static inline double sim_glove_held_s(const struct sim_glove_par *p, unsigned i,
 int16_t sim_glove_convert(struct sim_glove *g, unsigned i, double t_s);
 
 /* Channels first to end - 1 of the frame of this tick, whose first is 0. */
-void sim_glove_scan(struct sim_glove *g, unsigned first, unsigned end, double tick_s, int16_t *raw);
+void sim_glove_scan(struct sim_glove *g, unsigned first, unsigned end, double tick_s);
 
 /* The code of a voltage: nearest, limited to 16 bits. */
 int16_t sim_glove_code(const struct sim_glove_par *p, double v_V);

@@ -179,6 +179,7 @@ void sim_operator_frame(
     for (unsigned i = 0; i < SIM_GLOVE_SENSORS; i++) {
         const double held_s = sim_glove_held_s(&g->par, i, tick_s);
         sim_operator_advance(o, g, held_s);
-        sim_glove_scan(g, i, i + 1, tick_s, raw);
+        sim_glove_scan(g, i, i + 1, tick_s);
     }
+    memcpy(raw, g->code, sizeof g->code);
 }
