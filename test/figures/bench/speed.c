@@ -12,7 +12,6 @@
 
 #include "exhand/exhand.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -111,17 +110,26 @@ static double simulate(const struct experiment *e, int seed)
     return sum_s;
 }
 
-/* The fastest, since all else that a machine does only slows a run. */
+static int by_size(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The median is judged. The fastest, which other work slowed least, is printed beside it. */
 static int measure(const struct experiment *e)
 {
-    double best = 0;
-    for (int i = 0; i < (max_ticks ? 1 : ROUNDS * SEEDS); i++) {
+    const int n = max_ticks ? 1 : ROUNDS * SEEDS;
+    double times[ROUNDS * SEEDS];
+    for (int i = 0; i < n; i++) {
         const double from_s = cpu_s(), s = simulate(e, i % SEEDS);
         if (s < 0) { return 1; }
-        best = fmax(best, s / (cpu_s() - from_s));
+        times[i] = s / (cpu_s() - from_s);
     }
-    printf("simulation: %s at %d Hz: a core %.0f x real time, wanted %.0f: %s\n", e->says, RATE_HZ,
-        best, e->want, best >= e->want ? "PASS" : "FAIL");
+    qsort(times, (size_t)n, sizeof times[0], by_size);
+    printf("simulation: %s at %d Hz: a core %.0f x real time (fastest %.0f), wanted %.0f: %s\n",
+        e->says, RATE_HZ, times[n / 2], times[n - 1], e->want,
+        times[n / 2] >= e->want ? "PASS" : "FAIL");
     return 0;
 }
 
