@@ -107,6 +107,15 @@ TEST(what_is_held_does_not_move)
     CHECK(fabs(p.cur_A - 3.3) < 1e-9, "its current flows all the same: %.12f A", p.cur_A);
 }
 
+/* Else a plant that went beyond all numbers would look as if it rested. */
+TEST(what_is_no_number_stays_none)
+{
+    const struct sim_device d = sim_device_default();
+    struct plant p = {0.01, (double)NAN, 0.01, (double)NAN, 0, 0};
+    plant_advance(&p, &d, 1e-3, 0, 0);
+    CHECK(isnan(p.v_mps) && isnan(p.w_mps), "%g, %g m/s", p.v_mps, p.w_mps);
+}
+
 /* ---- Stiction ---------------------------------------------------------------- */
 
 /* The mass is on a string stretched for `tension`, and the rotor is stuck. The load of the mass is
@@ -666,10 +675,10 @@ TEST(side_by_side_they_go_as_alone)
 }
 
 TEST_MAIN("plant", impact_speed_is_that_of_a_free_fall, a_rotor_slows_the_fall_by_its_share,
-    what_is_held_does_not_move, stiction_holds_without_creep, stiction_lets_go_at_its_limit,
-    friction_stops_in_closed_form, the_string_only_pulls_and_pulls_both_ends_alike,
-    current_loop_is_exact_at_any_substep, monitor_lags_behind_the_current,
-    a_monitor_as_fast_as_the_current, exp_neg_is_good_to_1e_12,
+    what_is_held_does_not_move, what_is_no_number_stays_none, stiction_holds_without_creep,
+    stiction_lets_go_at_its_limit, friction_stops_in_closed_form,
+    the_string_only_pulls_and_pulls_both_ends_alike, current_loop_is_exact_at_any_substep,
+    monitor_lags_behind_the_current, a_monitor_as_fast_as_the_current, exp_neg_is_good_to_1e_12,
     energy_never_grows_with_the_motor_off, a_quarter_of_the_error_with_half_the_substep,
     friction_is_of_second_order, steps_that_will_do_are_stable,
     friction_beside_strong_damping_takes_what_it_takes, the_step_that_is_named_will_do,
